@@ -14,10 +14,12 @@ const quiet = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
-  // Without a crash reporter the browser without windows does not handle an access outside of wasm memory, and the page crashes.
+  // Without a crash reporter the browser without windows does not handle an access outside of wasm memory, and the page
+  // crashes.
   '--enable-crash-reporter',
-  // Every page compiles the modules anew, and few tests run long enough to win back the time of the optimising compiler: a third of
-  // what a page takes until it is ready. Optimised code runs in the parity tests (Node), in Firefox and in WebKit.
+  // Every page compiles the modules anew, and few tests run long enough to win back the time of the optimising
+  // compiler: a third of what a page takes until it is ready. Optimised code runs in the parity tests (Node), in
+  // Firefox and in WebKit.
   '--js-flags=--liftoff-only',
 ];
 // Software WebGPU and WebGL2; with fewer flags the graphics process fails on presenting while the API reports success.

@@ -4,6 +4,8 @@ import { dirname, join } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
 import { build, defineConfig } from 'vite';
 
+/** @import { Plugin } from 'vite' */
+
 /** What the builds of both pages share. */
 const SHARED = {
   target: 'es2022',
@@ -13,9 +15,9 @@ const SHARED = {
 };
 
 /**
- * Has the built page ask for the core in its head, so that it comes at the same time as the scripts. The development server
- * needs no such thing.
- * @type {import('vite').Plugin}
+ * Has the built page ask for the core in its head, so that it comes at the same time as the scripts. The development
+ * server needs no such thing.
+ * @type {Plugin}
  */
 const preloadCore = {
   name: 'preload-core',
@@ -33,9 +35,9 @@ const preloadCore = {
 };
 
 /**
- * Builds the lesson's page by itself: if the two pages were one build, what both use would become files of their own, and the first
- * page would wait for more of them.
- * @type {import('vite').Plugin & {folder?: string}}
+ * Builds the lesson's page by itself: if the two pages were one build, what both use would become files of their own,
+ * and the first page would wait for more of them.
+ * @type {Plugin & {folder?: string}}
  */
 const lessonPage = {
   name: 'lesson-page',
@@ -87,9 +89,9 @@ const quickBundles = {
 /** Name of the service worker's file. It must not change: browsers look for a new version under the old name. */
 const SERVICE_WORKER = 'service-worker.js';
 /**
- * Has the development server answer with a worker that removes itself, for browsers that have kept the built site's from the same
- * port.
- * @type {import('vite').Plugin}
+ * Has the development server answer with a worker that removes itself, for browsers that have kept the built site's
+ * from the same port.
+ * @type {Plugin}
  */
 const noServiceWorker = {
   name: 'no-service-worker',
@@ -107,9 +109,9 @@ addEventListener('activate', async () => {
 };
 
 /**
- * Builds the service worker, with the list of all files of the site. Workbox keeps a file until its revision changes; a name that
- * Vite has made from the contents needs none.
- * @type {import('vite').Plugin & {folder?: string}}
+ * Builds the service worker, with the list of all files of the site. Workbox keeps a file until its revision changes; a
+ * name that Vite has made from the contents needs none.
+ * @type {Plugin & {folder?: string}}
  */
 const offline = {
   name: 'offline',

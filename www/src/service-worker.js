@@ -1,8 +1,9 @@
 /**
- * The service worker, which makes the page work without a network: Workbox stores all files of a version and answers from them.
+ * The service worker, which makes the page work without a network: Workbox stores all files of a version and answers
+ * from them.
  *
- * A page is answered from one version alone. The next one is stored beside it and waits until no page of the old one is left, or
- * until a page asks for it and loads again.
+ * A page is answered from one version alone. The next one is stored beside it and waits until no page of the old one is
+ * left, or until a page asks for it and loads again.
  *
  * @module
  */

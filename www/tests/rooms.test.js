@@ -152,6 +152,17 @@ test('every room exists', () => {
     ).toBe(true);
 });
 
+test('no comment runs over the width of the code', () => {
+  const written = [...files.keys()].filter((path) => path !== 'engine/core-types');
+  const long = written.flatMap((path) =>
+    readFileSync(join(SRC, `${path}.js`), 'utf8')
+      .split('\n')
+      .filter((line) => line.length > 120 && /^\s*(\/?\*|\/\/)/.test(line))
+      .map((line) => `${path}: ${line}`),
+  );
+  expect(long).toEqual([]);
+});
+
 test('a use is found in every form, and judged', () => {
   const uses = usesOf(
     'ui/field/panel',

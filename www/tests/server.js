@@ -28,7 +28,8 @@ const types = {
 
 /**
  * Creates a server of the site.
- * @param {(name: string, content: Buffer) => Buffer | string} [change]  what is sent for a file, by its path in the site
+ * @param {(name: string, content: Buffer) => Buffer | string} [change]  what is sent for a file, by its path in the
+ *   site
  */
 export const createSite = (change = (_name, content) => content) =>
   createServer((request, response) => {

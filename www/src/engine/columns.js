@@ -5,6 +5,8 @@
  * @module
  */
 
+/** @import { Bounds, Mesh } from './types.js' */
+
 /** Parent index of a seed, as the core writes it. */
 export const NO_PARENT = 0xffffffff;
 /** Codes of the slot fates, as in the core. */
@@ -44,7 +46,9 @@ export class Columns {
     /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
     this.positions = new Float32Array(0);
-    /** The positions in double precision, in a box so far from the origin that single precision rounds them; else empty. */
+    /**
+     * The positions in double precision, in a box so far from the origin that single precision rounds them; else empty.
+     */
     this.exact = new Float64Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
@@ -68,15 +72,15 @@ export class Columns {
     this.curvature = new Float32Array(0);
     this.curved = 0;
     /**
-     * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept. Empty before a
-     * relaxation has ended. They stay until the next run begins, also while no level is shown: nothing but the whole run could make
-     * them again, and their 12 bytes for a particle are few beside the 57 of all columns.
+     * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept.
+     * Empty before a relaxation has ended. They stay until the next run begins, also while no level is shown: nothing
+     * but the whole run could make them again, and their 12 bytes for a particle are few beside the 57 of all columns.
      * @type {Float32Array[]}
      */
     this.past = [];
     /** The one of them that is drawn, null for the present positions. @type {number | null} */
     this.step = null;
-    /** The mesh over the particles, while it is drawn. @type {import('./types.js').Mesh | null} */
+    /** The mesh over the particles, while it is drawn. @type {Mesh | null} */
     this.mesh = null;
   }
 
@@ -190,7 +194,7 @@ export class Columns {
 
   /**
    * Returns the smallest box around the discs of all particles, or null if there are none.
-   * @returns {import('./types.js').Bounds | null}
+   * @returns {Bounds | null}
    */
   bounds() {
     if (this.count === 0) return null;

@@ -4,10 +4,15 @@
  * @module
  */
 
+/**
+ * @import { Parts } from './index.js'
+ * @import { EngineDebug } from './types.js'
+ */
+
 /** Delay between a motion of the camera and its entry in the state. */
 export const CAMERA_MS = 120;
 
-/** @param {import('./index.js').Parts} parts @returns {import('./types.js').EngineDebug} */
+/** @param {Parts} parts @returns {EngineDebug} */
 export function createDebug({ store, picture: { viewer }, runs: { sampling } }) {
   return {
     provoke: (fault) => sampling.client.post({ type: 'provoke', fault }),

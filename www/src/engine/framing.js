@@ -6,15 +6,21 @@
  */
 import { effect } from '@preact/signals-core';
 
+/**
+ * @import { Columns } from './columns.js'
+ * @import { Store } from './store.js'
+ * @import { Viewer } from './view/viewer.js'
+ */
+
 /** Pause in typing after which the formula counts as finished. */
 const TYPING_MS = 900;
 
 export class Framing {
   /**
    * @param {object} parts
-   * @param {import('./store.js').Store} parts.store
-   * @param {import('./columns.js').Columns} parts.columns
-   * @param {import('./view/viewer.js').Viewer} parts.viewer
+   * @param {Store} parts.store
+   * @param {Columns} parts.columns
+   * @param {Viewer} parts.viewer
    */
   constructor({ store, columns, viewer }) {
     this.store = store;
@@ -32,7 +38,8 @@ export class Framing {
       effect(() => {
         if (!this.rests() || Number.isNaN(this.writtenMs) || this.waits()) return;
         this.hold();
-        // The camera waits for a pause in typing, so that the picture does not move with every key. A link is whole at once.
+        // The camera waits for a pause in typing, so that the picture does not move with every key. A link is whole at
+        // once.
         if (this.isTyped) this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
         else queueMicrotask(() => this.come());
       }),
@@ -54,8 +61,8 @@ export class Framing {
   }
 
   /**
-   * Returns whether the camera waits for a surface: the last one stays in the picture while a formula without one is typed, and
-   * the camera stays with it.
+   * Returns whether the camera waits for a surface: the last one stays in the picture while a formula without one is
+   * typed, and the camera stays with it.
    */
   waits() {
     return this.isTyped && this.columns.stale;

@@ -7,15 +7,22 @@ import { effect, signal, untracked } from '@preact/signals-core';
 import { seenOf } from './view/style.js';
 
 /**
- * Largest number of particles at which the surface to come is drawn. They are joined to a mesh for it, which takes about 0.1 s.
+ * @import { Runs } from './runs.js'
+ * @import { Store } from './store.js'
+ * @import { Viewer } from './view/viewer.js'
+ */
+
+/**
+ * Largest number of particles at which the surface to come is drawn. They are joined to a mesh for it, which takes
+ * about 0.1 s.
  */
 const MOST_TO_COME = 200_000;
 
 /**
  * @param {object} parts
- * @param {import('./store.js').Store} parts.store
- * @param {import('./view/viewer.js').Viewer} parts.viewer
- * @param {import('./runs.js').Runs} parts.runs
+ * @param {Store} parts.store
+ * @param {Viewer} parts.viewer
+ * @param {Runs} parts.runs
  * @returns {() => void} ends it
  */
 export function keepLook({ store, viewer, runs: { loader, sampling } }) {
@@ -40,8 +47,8 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     const field = store.field.value;
     // Where there is no surface, its box is shown, unless there is no surface anywhere.
     const isMissed = store.empty.value && field?.reach !== 'nowhere';
-    // While only a part of the run is shown, the surface to come is drawn faintly. The mesh over all particles stands for it: it is
-    // exact where the particles will be, and there is no second way of drawing.
+    // While only a part of the run is shown, the surface to come is drawn faintly. The mesh over all particles stands
+    // for it: it is exact where the particles will be, and there is no second way of drawing.
     const isToCome = (view.level !== null || view.follow !== null) && viewer.columns.count <= MOST_TO_COME;
     return {
       ...seenOf(view),

@@ -11,15 +11,17 @@ import { attachControls } from './view/controls.js';
 import { Viewer } from './view/viewer.js';
 
 /**
- * @typedef {import('./columns.js').Columns} Columns
- * @typedef {import('./store.js').Store} Store
- * @typedef {import('./types.js').Vec3} Vec3
+ * @import { Columns } from './columns.js'
+ * @import { Store } from './store.js'
+ * @import { Vec3 } from './types.js'
+ * @import { BackendKind, Device } from './view/backends.js'
  */
+
 /**
  * @typedef {object} Picture
  * @property {Viewer} viewer
- * @property {(index: number | null, x: number, y: number, tapped?: boolean) => void} hover  reports the particle under a point of
- *   the host, or null for none
+ * @property {(index: number | null, x: number, y: number, tapped?: boolean) => void} hover  reports the particle under
+ *   a point of the host, or null for none
  * @property {() => void} close
  */
 
@@ -28,7 +30,7 @@ import { Viewer } from './view/viewer.js';
  * @param {HTMLElement} parts.host
  * @param {Store} parts.store
  * @param {Columns} parts.columns
- * @param {import('./view/backends.js').BackendKind | null} parts.first  the back end to try first
+ * @param {BackendKind | null} parts.first  the back end to try first
  * @returns {Picture}
  */
 export function createPicture({ host, store, columns, first }) {
@@ -104,7 +106,7 @@ export function createPicture({ host, store, columns, first }) {
  */
 function deviceEvents(store) {
   return {
-    onDevice(/** @type {import('./view/backends.js').Device} */ { kind, renderer }) {
+    onDevice(/** @type {Device} */ { kind, renderer }) {
       batch(() => {
         store.backend.value = kind;
         store.adapter.value = renderer.adapter();
@@ -134,7 +136,11 @@ function deviceEvents(store) {
   };
 }
 
-/** Adds an end to a measured distance; a third one begins another distance. @param {readonly number[]} measured @param {number} index */
+/**
+ * Adds an end to a measured distance; a third one begins another distance.
+ * @param {readonly number[]} measured
+ * @param {number} index
+ */
 const withEnd = (measured, index) => (measured.length === 1 && measured[0] !== index ? [measured[0], index] : [index]);
 
 /** Returns the attributes of one particle that the hover card shows. @param {Columns} columns @param {number} index */

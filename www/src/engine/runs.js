@@ -10,9 +10,15 @@ import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
 
 /**
- * @typedef {import('./sampling/run-state.js').SampleRequest} SampleRequest
- * @typedef {import('./store.js').Store} Store
- * @typedef {{grow?: boolean, fit?: boolean, settings?: import('./types.js').Settings}} RunOptions
+ * @import { Columns } from './columns.js'
+ * @import { Picture } from './sampling/presenter.js'
+ * @import { SampleRequest } from './sampling/run-state.js'
+ * @import { Store } from './store.js'
+ * @import { Settings } from './types.js'
+ */
+
+/**
+ * @typedef {{grow?: boolean, fit?: boolean, settings?: Settings}} RunOptions
  */
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
@@ -26,8 +32,8 @@ export class Runs {
   /**
    * @param {object} parts
    * @param {Store} parts.store
-   * @param {import('./columns.js').Columns} parts.columns
-   * @param {import('./sampling/presenter.js').Picture} parts.picture
+   * @param {Columns} parts.columns
+   * @param {Picture} parts.picture
    * @param {() => void} parts.onReady  called when the core has loaded for the first time
    */
   constructor({ store, columns, picture, onReady }) {

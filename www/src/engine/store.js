@@ -6,7 +6,12 @@
 import { signal } from '@preact/signals-core';
 import { emptyState } from './share/state.js';
 
-/** @typedef {import('./types.js').Progress} Progress */
+/**
+ * @import { BackendName, Description, FieldFault, FieldOk, Hover, LastDrag, Legend, Loading } from './types.js'
+ * @import { LoadingError, MeshAnswer, ModelInfo, Notice, Place, Progress, Report, Reveal, State } from './types.js'
+ * @import { Timing, ViewState } from './types.js'
+ * @import { Signal } from '@preact/signals-core'
+ */
 
 /** @returns {Progress} */
 export const idleProgress = () => ({
@@ -30,35 +35,35 @@ export const idleProgress = () => ({
 /**
  * @template T
  * @param {T} value
- * @returns {import('@preact/signals-core').Signal<T>}
+ * @returns {Signal<T>}
  */
 const cell = (value) => signal(value);
 
 export function createStore() {
   return {
     state: cell(emptyState()),
-    description: cell(/** @type {import('./types.js').Description | null} */ (null)),
-    field: cell(/** @type {import('./types.js').FieldOk | null} */ (null)),
-    fieldError: cell(/** @type {import('./types.js').FieldFault | null} */ (null)),
+    description: cell(/** @type {Description | null} */ (null)),
+    field: cell(/** @type {FieldOk | null} */ (null)),
+    fieldError: cell(/** @type {FieldFault | null} */ (null)),
     progress: cell(idleProgress()),
-    report: cell(/** @type {import('./types.js').Report | null} */ (null)),
-    timing: cell(/** @type {import('./types.js').Timing | null} */ (null)),
-    backend: cell(/** @type {import('./types.js').BackendName} */ ('starting')),
+    report: cell(/** @type {Report | null} */ (null)),
+    timing: cell(/** @type {Timing | null} */ (null)),
+    backend: cell(/** @type {BackendName} */ ('starting')),
     adapter: cell(''),
-    notice: cell(/** @type {import('./types.js').Notice | null} */ (null)),
-    mesh: cell(/** @type {import('./types.js').MeshAnswer | null} */ (null)),
-    hover: cell(/** @type {import('./types.js').Hover | null} */ (null)),
-    spot: cell(/** @type {import('./types.js').Place | null} */ (null)),
-    legend: cell(/** @type {import('./types.js').Legend | null} */ (null)),
-    reveal: cell(/** @type {import('./types.js').Reveal | null} */ (null)),
+    notice: cell(/** @type {Notice | null} */ (null)),
+    mesh: cell(/** @type {MeshAnswer | null} */ (null)),
+    hover: cell(/** @type {Hover | null} */ (null)),
+    spot: cell(/** @type {Place | null} */ (null)),
+    legend: cell(/** @type {Legend | null} */ (null)),
+    reveal: cell(/** @type {Reveal | null} */ (null)),
     busy: cell(false),
     partial: cell(false),
     revision: cell(0),
     empty: cell(false),
-    lastDrag: cell(/** @type {import('./types.js').LastDrag | null} */ (null)),
-    loading: cell(/** @type {import('./types.js').Loading | null} */ (null)),
-    loadingError: cell(/** @type {import('./types.js').LoadingError | null} */ (null)),
-    model: cell(/** @type {import('./types.js').ModelInfo | null} */ (null)),
+    lastDrag: cell(/** @type {LastDrag | null} */ (null)),
+    loading: cell(/** @type {Loading | null} */ (null)),
+    loadingError: cell(/** @type {LoadingError | null} */ (null)),
+    model: cell(/** @type {ModelInfo | null} */ (null)),
     frame: cell(0),
     theme: cell(/** @type {'light' | 'dark'} */ ('light')),
   };
@@ -66,7 +71,7 @@ export function createStore() {
 
 /** @typedef {ReturnType<typeof createStore>} Store */
 
-/** Changes a part of the shareable state. @param {Store} store @param {Partial<import('./types.js').State>} patch */
+/** Changes a part of the shareable state. @param {Store} store @param {Partial<State>} patch */
 export function change({ state }, patch) {
   state.value = { ...state.value, ...patch };
 }
@@ -74,7 +79,7 @@ export function change({ state }, patch) {
 /**
  * Changes a part of the view in the state.
  * @param {Store} store
- * @param {Partial<import('./types.js').ViewState>} patch
+ * @param {Partial<ViewState>} patch
  */
 export function changeView(store, patch) {
   change(store, { view: { ...store.state.value.view, ...patch } });

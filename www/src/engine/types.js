@@ -1,11 +1,18 @@
 /**
  * Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands.
  *
- * The file has JSDoc types and a few constants. Import a type with `@typedef {import('./types.js').State} State`.
+ * The file has JSDoc types and a few constants. Import a type with `@import { State } from './types.js'`.
  * Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
  * otherwise.
  *
  * @module
+ */
+
+/**
+ * @import { Columns } from './columns.js'
+ * @import { Answer, Phase as CorePhase, PointsFault, PointsProgress } from './core-types.js'
+ * @import { Start } from './core-types.js'
+ * @import { Surface } from './lesson/protocol.js'
  */
 
 /**
@@ -19,25 +26,33 @@
 
 /** @typedef {[number, number, number]} Vec3 */
 
-// ---- what the core says and is told: written from its own types (core-types.d.ts) ---------------------------------------
+// ---- what the core says and is told: written from its own types (core-types.d.ts)
+// ---------------------------------------
 
 /** @typedef {import('./core-types.js').Bounds} Bounds */
 /** @typedef {import('./core-types.js').Parameter} Parameter */
 /** @typedef {import('./core-types.js').Description} Description */
 /** @typedef {import('./core-types.js').Limits} Limits */
 /** One entry of the gallery. @typedef {import('./core-types.js').SurfaceEntry} SurfaceInfo */
-/** One setting of the sampler; the interface builds its control from this. @typedef {import('./core-types.js').Setting} SettingInfo */
-/** One row of the report; its keys are paths into {@link Report}, such as `quality.six`. @typedef {import('./core-types.js').ReportRow} ReportRow */
-/** A built-in model from points. Its `id` goes where a gallery surface's does. @typedef {import('./core-types.js').Model} PointModel */
+/**
+ * One setting of the sampler; the interface builds its control from this.
+ * @typedef {import('./core-types.js').Setting} SettingInfo
+ */
+/**
+ * One row of the report; its keys are paths into {@link Report}, such as `quality.six`.
+ * @typedef {import('./core-types.js').ReportRow} ReportRow
+ */
+/**
+ * A built-in model from points. Its `id` goes where a gallery surface's does.
+ * @typedef {import('./core-types.js').Model} PointModel
+ */
 /** What is known of a model from points once it is solved. @typedef {import('./core-types.js').ModelInfo} ModelInfo */
 /** What goes with a solved system to the core. @typedef {import('./core-types.js').SolvedModel} SolvedModel */
 /** @typedef {import('./core-types.js').MathNode} MathNode */
 /** @typedef {import('./core-types.js').Fault} FieldFault */
-/** @typedef {import('./core-types.js').Phase} CorePhase */
 /** What one step of the core answers. @typedef {import('./core-types.js').Progress} CoreProgress */
 /** @typedef {CoreProgress['stop_reason']} StopReason  null while the run goes on */
 /** The figures of a finished run. @typedef {import('./core-types.js').Report} CoreReport */
-/** @typedef {import('./core-types.js').Figures} Quality */
 /** What a mesh adds up to. @typedef {import('./core-types.js').MeshAnswer} MeshAnswer */
 /** @typedef {import('./core-types.js').LessonEvent} LessonEvent */
 /** @typedef {import('./core-types.js').LessonIterate} LessonIterate */
@@ -46,25 +61,34 @@
 /** @typedef {import('./core-types.js').LessonSettings} LessonSettings */
 /** @typedef {import('./lesson/client.js').LessonClient} LessonClient */
 /** @typedef {import('./lesson/protocol.js').Particles} LessonParticles */
-/** A mesh over all particles on the page, three indices a triangle. @typedef {{triangles: Uint32Array, about: MeshAnswer}} Mesh */
+/**
+ * A mesh over all particles on the page, three indices a triangle.
+ * @typedef {{triangles: Uint32Array, about: MeshAnswer}} Mesh
+ */
 
 /**
  * @template T
- * @typedef {import('./core-types.js').Answer<T, FieldFault>} CoreAnswer
+ * @typedef {Answer<T, FieldFault>} CoreAnswer
  */
 /** @typedef {CoreAnswer<import('./core-types.js').FieldAnswer>} FieldAnswer */
-/** @typedef {Extract<FieldAnswer, {ok: true}>} FieldOk  `surface` is of a model its id, of a file {@link FILE_SURFACE} */
-/** @typedef {CoreAnswer<import('./core-types.js').Start>} StartAnswer */
+/**
+ * @typedef {Extract<FieldAnswer, {ok: true}>} FieldOk  `surface` is of a model its id, of a file {@link FILE_SURFACE}
+ */
+/** @typedef {CoreAnswer<Start>} StartAnswer */
 /**
  * @template T
- * @typedef {import('./core-types.js').Answer<T, import('./core-types.js').PointsFault>} SolverAnswer
+ * @typedef {Answer<T, PointsFault>} SolverAnswer
  */
-/** @typedef {SolverAnswer<import('./core-types.js').PointsProgress>} PointsAnswer */
+/** @typedef {SolverAnswer<PointsProgress>} PointsAnswer */
 /** @typedef {SolverAnswer<SolvedModel>} SolvedAnswer */
 
-// ---- what the page adds to it ------------------------------------------------------------------------------------------
+// ---- what the page adds to it
+// ------------------------------------------------------------------------------------------
 
-/** `points` names a solved model; with it only the clip box counts. @typedef {Partial<import('./core-types.js').FieldRequest> & {points?: string}} FieldRequest */
+/**
+ * `points` names a solved model; with it only the clip box counts.
+ * @typedef {Partial<import('./core-types.js').FieldRequest> & {points?: string}} FieldRequest
+ */
 /** By the settings' names; a missing one has its default. @typedef {Record<string, number | string>} Settings */
 /**
  * The progress of the present run, as the page shows it. `phase` has one more value than in the core, `quality`: the
@@ -74,7 +98,8 @@
 /** @typedef {{seeding: number, generation: number, refinement: number, relaxation: number, quality: number}} Seconds */
 /** A report with what the worker measured. @typedef {CoreReport & {seconds: Seconds}} Report */
 
-// ---- the shareable state ----------------------------------------------------------------------------------------------
+// ---- the shareable state
+// ----------------------------------------------------------------------------------------------
 
 /** @typedef {ViewState['grain']} Grain */
 /** @typedef {import('./core-types.js').ColourMode} ColourMode */
@@ -85,7 +110,8 @@
  */
 /** The options of the view. @typedef {import('./share/view.js').ViewState} ViewState */
 /**
- * A plane that hides the part of the picture that its unit normal points to: all p with normal · p > offset. Nothing is sampled anew.
+ * A plane that hides the part of the picture that its unit normal points to: all p with normal · p > offset. Nothing is
+ * sampled anew.
  * @typedef {{normal: Vec3, offset: number}} CuttingPlane
  */
 /**
@@ -99,8 +125,8 @@
  * @property {string} formula
  * @property {Record<string, number>} parameters
  * @property {Parameter[]} declared
- * @property {number | null} centres  how many of the points of a model or a file are fitted; null for the default number, and for a
- *   formula
+ * @property {number | null} centres  how many of the points of a model or a file are fitted; null for the default
+ *   number, and for a formula
  * @property {Bounds | null} bounds  null: the surface's own box, or one that fits the formula
  * @property {CuttingPlane | null} plane
  * @property {Settings} settings
@@ -112,7 +138,8 @@
  * @typedef {Omit<State, 'v' | 'view'>} Shape
  */
 
-// ---- what the engine reports ------------------------------------------------------------------------------------------
+// ---- what the engine reports
+// ------------------------------------------------------------------------------------------
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**
@@ -144,13 +171,13 @@
  * @property {boolean} tapped  it was pressed and stays until the next press, instead of following the pointer
  */
 /**
- * Where a place is in the picture: x and y are CSS pixels within the canvas host, `perPx` is the length in the field's coordinates
- * that is one pixel long there, across the line of sight.
+ * Where a place is in the picture: x and y are CSS pixels within the canvas host, `perPx` is the length in the field's
+ * coordinates that is one pixel long there, across the line of sight.
  * @typedef {{x: number, y: number, perPx: number}} Spot
  */
 /**
- * A place to be pointed out: the positions that are marked by rings of this radius, the direction from which they are seen, and
- * what stands beside them.
+ * A place to be pointed out: the positions that are marked by rings of this radius, the direction from which they are
+ * seen, and what stands beside them.
  * @typedef {{places: Vec3[], radius: number, normal: Vec3, text: string}} Place
  */
 /** A ray from the eye; the direction has length 1. @typedef {{eye: Vec3, direction: Vec3}} Ray */
@@ -170,9 +197,10 @@
  * @property {boolean} [pending]
  */
 /**
- * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation steps alone,
- * which were made after it.
- * @typedef {{steps: number, sampling: number, total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing
+ * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation
+ * steps alone, which were made after it.
+ * @typedef {{steps: number, sampling: number, total: number, seconds: Seconds, us_per_particle: number, particles:
+ *   number, live: boolean}} Timing
  */
 /**
  * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
@@ -221,7 +249,7 @@
  * @property {ReadonlySignal<Place | null>} spot  the place that was pointed out last; null once it no longer applies
  * @property {ReadonlySignal<Legend | null>} legend
  * @property {ReadonlySignal<number>} revision  increases whenever the particles, their fates or their figures change
- * @property {import('./columns.js').Columns} columns  the particles, read-only
+ * @property {Columns} columns  the particles, read-only
  * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
  * @property {ReadonlySignal<boolean>} busy  whether a run is active and can be stopped
  * @property {ReadonlySignal<boolean>} partial  whether the picture shows a run that was stopped or capped
@@ -236,7 +264,8 @@
  */
 /**
  * @typedef {object} EngineCommands
- * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last
+ * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return
+ *   to the file opened last
  * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled,
  *   refused or cancelled
  * @property {(count: number) => void} setCentres  fits another number of the points of the present model or file
@@ -259,48 +288,51 @@
  * @property {(steps: number) => void} relax  relaxes the present particles by that many steps
  * @property {(patch: Partial<ViewState>) => void} setView
  * @property {() => void} fit
- * @property {(place: Place | null, options?: {turns?: boolean}) => void} pointOut  marks a place, or none, and brings it before the
- *   camera unless `turns` is false
+ * @property {(place: Place | null, options?: {turns?: boolean}) => void} pointOut  marks a place, or none, and brings
+ *   it before the camera unless `turns` is false
  * @property {(count: number | null) => void} showFirst  draws only so many particles, the first ones; null for all
- * @property {(normal: Vec3) => void} turnTo  turns the camera to a side of the surface, unless that side is seen already
+ * @property {(normal: Vec3) => void} turnTo  turns the camera to a side of the surface, unless that side is seen
+ *   already
  * @property {() => void} dismissHover  no particle is chosen any more, even if it was pressed
  * @property {(factor: number) => void} zoom  > 1 zooms in
  * @property {(dxRad: number, dyRad: number) => void} orbit
  * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the
  *   canvas host covered by panels; the surface is centred in the rest
- * @property {() => Promise<string>} link  the state as the fragment of an address, with `#`; empty for the default state. Not before
- *   the core has loaded
- * @property {(link: string, options?: {initial?: boolean, patch?: object}) => Promise<void>} openLink  adopts the state of such a
- *   fragment with what `patch` changes; `initial`: what cannot be read is the default state
- * @property {(patch: Record<string, unknown>) => string[]} set  changes a part of the state and samples; returns what of it was not
- *   valid, in words
- * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<ImageData>} picture  without panels;
- *   the surface fills its shorter side as it fills that of the window
+ * @property {() => Promise<string>} link  the state as the fragment of an address, with `#`; empty for the default
+ *   state. Not before the core has loaded
+ * @property {(link: string, options?: {initial?: boolean, patch?: object}) => Promise<void>} openLink  adopts the state
+ *   of such a fragment with what `patch` changes; `initial`: what cannot be read is the default state
+ * @property {(patch: Record<string, unknown>) => string[]} set  changes a part of the state and samples; returns what
+ *   of it was not valid, in words
+ * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<ImageData>} picture
+ *   without panels; the surface fills its shorter side as it fills that of the window
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
  * @property {(format: 'ply' | 'csv') => Promise<Blob>} exportFile
  * @property {(format: MeshFormat) => Promise<Blob>} exportMesh  once no run is left
  * @property {() => void} dismissNotice
  * @property {(x: number, y: number) => number | null} pick  returns the index of the particle under a point of the
  *   canvas host
- * @property {(place: ArrayLike<number>) => Spot | null} project  returns where a place is in the picture; null behind the eye
+ * @property {(place: ArrayLike<number>) => Spot | null} project  returns where a place is in the picture; null behind
+ *   the eye
  * @property {(x: number, y: number) => Ray} rayThrough  returns the ray from the eye through a point of the canvas host
  * @property {(options?: ConstructorParameters<typeof import('./lesson/client.js').LessonClient>[0]) =>
- *   Promise<import('./lesson/client.js').LessonClient>} openLesson  the paper's algorithms, event by event; its worker and its
- *   bundle are loaded with the first run
- * @property {() => import('./lesson/protocol.js').Surface | null} lessonSurface  returns the present surface for such a run
+ *   Promise<import('./lesson/client.js').LessonClient>} openLesson  the paper's algorithms, event by event; its worker
+ *   and its bundle are loaded with the first run
+ * @property {() => Surface | null} lessonSurface  returns the present surface for such a run
  * @property {() => void} destroy  frees all that the engine holds: its workers, its device and its canvas
  */
 /** File formats for a mesh. @typedef {'glb' | 'obj' | 'stl' | 'ply'} MeshFormat */
 /**
  * What tests need of an engine.
  * @typedef {object} EngineDebug
- * @property {(fault: 'panic' | 'overflow' | 'hang') => void} provoke  traps the core in its worker, overflows the worker's stack, or
- *   sends it into an endless loop
+ * @property {(fault: 'panic' | 'overflow' | 'hang') => void} provoke  traps the core in its worker, overflows the
+ *   worker's stack, or sends it into an endless loop
  * @property {(reason?: string) => void} loseDevice
  * @property {(id: number) => void} stale  delivers a message of another run
  * @property {() => Promise<void>} still  resolves once the picture stands still and the state has the camera
  * @property {() => boolean} isOff  whether no sampler is there or coming
- * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number, dimmed: boolean}} counts
+ * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number, dimmed: boolean}}
+ *   counts
  */
 /** @typedef {EngineSignals & EngineCommands & {debug: EngineDebug}} Engine */
 

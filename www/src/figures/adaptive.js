@@ -1,4 +1,7 @@
-/** The tangent plane of an adaptive particle: its free spaces, how a child is pushed into one, and the angles φ and τ (paper §5, Figs 7 and 8). */
+/**
+ * The tangent plane of an adaptive particle: its free spaces, how a child is pushed into one, and the angles φ and τ
+ * (paper §5, Figs 7 and 8).
+ */
 import { formatCount } from '../ui/format.js';
 import { s } from '../ui/svg.js';
 import { childMarks, slotGroup } from './drawings.js';
@@ -7,11 +10,9 @@ import { label, line, ring } from './svg.js';
 import { FATES, inDegrees } from './words.js';
 
 /**
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {import('./geometry.js').Plane} Plane
- * @typedef {import('./moment.js').Moment} Moment
- * @typedef {import('./moment.js').Child} Child
- * @typedef {import('./particle.js').Opened} Opened
+ * @import { Plane, Point } from './geometry.js'
+ * @import { Child, Moment } from './moment.js'
+ * @import { Opened } from './particle.js'
  */
 
 /** Half size of the drawing, in radii of the particle. */
@@ -65,7 +66,11 @@ function wayOf({ pushes }, plane) {
   return places.length > 0 ? [line('way', places), ...places.map((place) => ring('step', place, DOT))] : [];
 }
 
-/** The angle that the child takes, and the free one, which begins where the child's does. @param {Child} child @param {Plane} plane */
+/**
+ * The angle that the child takes, and the free one, which begins where the child's does.
+ * @param {Child} child
+ * @param {Plane} plane
+ */
 function anglesOf({ room, pushes }, plane) {
   const last = pushes.at(-1);
   if (!room || !last) return [];

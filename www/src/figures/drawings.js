@@ -6,11 +6,9 @@ import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
 
 /**
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {import('./moment.js').Moment} Moment
- * @typedef {import('./moment.js').Child} Child
- * @typedef {import('./particle.js').Opened} Opened
- * @typedef {import('./particle.js').Profile} Profile
+ * @import { Plane, Point } from './geometry.js'
+ * @import { Child, Moment } from './moment.js'
+ * @import { Opened, Profile } from './particle.js'
  */
 
 /** Half sizes of the drawings, in radii. */
@@ -56,7 +54,11 @@ export function tangentPlane(opened, moment) {
 /** Marks of a slot, which is found by its number. @param {Child} child @param {Element[]} marks */
 export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
-/** Where the number of a particle stands: outwards, clear of the shape of a fate and of the slot's number. @param {Point} at @returns {Point} */
+/**
+ * Where the number of a particle stands: outwards, clear of the shape of a fate and of the slot's number.
+ * @param {Point} at
+ * @returns {Point}
+ */
 const clear = ([x, y]) => [x, y > 0.5 ? y + 0.58 : y - 0.58];
 
 /** @param {Child} child @param {boolean} isNow */
@@ -72,7 +74,7 @@ function slotMarks({ slot }, isNow) {
 
 /**
  * Draws where a child is, with the shape of its fate, and a line to the particle that it met.
- * @param {Child} child @param {import('./geometry.js').Plane} plane @param {(particle: number) => Point} at
+ * @param {Child} child @param {Plane} plane @param {(particle: number) => Point} at
  */
 export function childMarks({ fate, landed, start, particle, iterates }, plane, at) {
   if (fate === 'parent') return particle === null ? [] : [fateShape(fate, at(particle), SHAPE)];
@@ -134,7 +136,8 @@ export const isSearched = ({ landed, fate }) => landed !== null || fate !== 'ope
  * Draws the places that were tried, where the child landed, and the way of Newton's method from the same start.
  * @param {Child} child @param {Profile} profile
  * @param {(place: ArrayLike<number>) => Point} at
- * @param {{ size: number, distance: boolean }} how  `distance`: with the line from the particle, and one name instead of all
+ * @param {{ size: number, distance: boolean }} how  `distance`: with the line from the particle, and one name instead
+ *   of all
  */
 function searchMarks(child, profile, at, { size, distance }) {
   const { start, iterates, landed } = child;
@@ -166,7 +169,8 @@ const ARC = 1.6;
 const ARC_PARTS = 24;
 
 /**
- * Draws what lies around the landing enlarged, since on a smooth surface the steps are short; null if there is nothing to see.
+ * Draws what lies around the landing enlarged, since on a smooth surface the steps are short; null if there is nothing
+ * to see.
  * @param {Opened} opened @param {Profile} profile @param {Child} child
  */
 export function lens({ subject, place }, profile, child) {

@@ -1,7 +1,10 @@
 /** Places in a plane through a particle, in radii. */
 
 /** @typedef {[number, number]} Point */
-/** Two perpendicular unit vectors at a particle, and its radius. @typedef {{ centre: ArrayLike<number>, right: ArrayLike<number>, up: ArrayLike<number>, radius: number }} Plane */
+/**
+ * Two perpendicular unit vectors at a particle, and its radius.
+ * @typedef {{ centre: ArrayLike<number>, right: ArrayLike<number>, up: ArrayLike<number>, radius: number }} Plane
+ */
 
 /** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -19,7 +22,8 @@ export function inPlane({ centre, right, up, radius }, place) {
 }
 
 /**
- * Returns two unit vectors perpendicular to a unit normal and to each other, the first as near as it can be to a given direction.
+ * Returns two unit vectors perpendicular to a unit normal and to each other, the first as near as it can be to a given
+ * direction.
  * @param {ArrayLike<number>} normal @param {ArrayLike<number>} [towards]  not along the normal
  * @returns {[[number, number, number], [number, number, number]]}
  */
@@ -35,7 +39,11 @@ export function tangentsOf(normal, towards = Math.abs(normal[0]) < 0.7 ? [1, 0, 
   ];
 }
 
-/** Place of a slot's child before its projection, in radii: 2 away at 60° times its number. @param {number} slot @returns {Point} */
+/**
+ * Place of a slot's child before its projection, in radii: 2 away at 60° times its number.
+ * @param {number} slot
+ * @returns {Point}
+ */
 export const slotPlace = (slot) => [2 * Math.cos((slot * Math.PI) / 3), 2 * Math.sin((slot * Math.PI) / 3)];
 
 /** Least span of a lens, in radii: below it there is nothing to be seen. */

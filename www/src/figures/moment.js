@@ -1,12 +1,10 @@
 /**
- * What is known of a particle at one of its events. It is put together from the events up to that one, so a step back gives
- * exactly what was there before.
+ * What is known of a particle at one of its events. It is put together from the events up to that one, so a step back
+ * gives exactly what was there before.
  */
 
-/**
- * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('../engine/types.js').Vec3} Vec3
- */
+/** @import { LessonEvent } from '../engine/types.js' */
+
 /**
  * @template {LessonEvent['type']} T
  * @typedef {Extract<LessonEvent, {type: T}>} Of
@@ -19,7 +17,8 @@
  * @property {Of<'iterate'>[]} iterates
  * @property {Of<'landed'> | null} landed
  * @property {Of<'compared'> | null} compared
- * @property {(Of<'start'> | Of<'push'> | Of<'push_on_circle'>)[]} pushes  the way of an adaptive child in the tangent plane
+ * @property {(Of<'start'> | Of<'push'> | Of<'push_on_circle'>)[]} pushes  the way of an adaptive child in the tangent
+ *   plane
  * @property {Of<'room'> | null} room  the angle that an adaptive child takes, and the free one
  * @property {Of<'fate'>['fate']} fate
  * @property {number | null} particle
@@ -44,7 +43,11 @@ const slotsOf = (events) => events.reduce((most, event) => Math.max(most, (slotO
 /** Whether a particle is treated as §5 of the paper says. @param {readonly LessonEvent[]} events */
 export const isAdaptive = (events) => events.some(({ type }) => type === 'arc');
 
-/** @param {readonly LessonEvent[]} events  of one particle, from `taken` to `done` @param {number} at  @returns {Moment} */
+/**
+ * @param {readonly LessonEvent[]} events  of one particle, from `taken` to `done`
+ * @param {number} at
+ * @returns {Moment}
+ */
 export function momentAt(events, at) {
   /** @type {Moment} */
   const moment = {

@@ -1,21 +1,21 @@
-/** Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots. */
+/**
+ * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
+ */
 import { NO_PARENT } from '../engine/columns.js';
 import { between, inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
 /**
- * @typedef {import('../engine/types.js').LessonClient} LessonClient
- * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('../engine/types.js').LessonIterate} LessonIterate
- * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
- * @typedef {import('../engine/types.js').Vec3} Vec3
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {import('./moment.js').Child} Child
- * @typedef {import('./words.js').Subject} Subject
+ * @import { LessonClient, LessonEvent, LessonIterate, LessonParticles, Vec3 } from '../engine/types.js'
+ * @import { Point } from './geometry.js'
+ * @import { Child } from './moment.js'
+ * @import { Subject } from './words.js'
  */
+
 /**
- * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's method from the
- * place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens is given in radii.
+ * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's
+ * method from the place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens is
+ * given in radii.
  * @typedef {object} Profile
  * @property {Vec3} normal
  * @property {Vec3} direction

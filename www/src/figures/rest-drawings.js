@@ -6,10 +6,9 @@ import { pushWords } from './rest.js';
 import { label, line, ring } from './svg.js';
 
 /**
- * @typedef {import('./geometry.js').Plane} Plane
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {import('./rest.js').Rest} Rest
- * @typedef {import('./words.js').Subject} Subject
+ * @import { Plane, Point } from './geometry.js'
+ * @import { Rest } from './rest.js'
+ * @import { Subject } from './words.js'
  */
 
 /** Half size of the drawing, in radii: particles push each other up to 3r. */
@@ -21,7 +20,10 @@ const HEAD = 0.22;
 const HEAD_WIDTH = 0.5;
 /** Half size of the enlargement, over the longer of the move and the way to the landing. */
 const LENS_ROOM = 1.5;
-/** How much larger a lens with a half size of one radius shows things than the drawing: 7.5 rem for 2r against 16.25 rem. */
+/**
+ * How much larger a lens with a half size of one radius shows things than the drawing: 7.5 rem for 2r against 16.25
+ * rem.
+ */
 const LENS_SCALE = 7.5 / 2 / (16.25 / (2 * HALF));
 /** Below this share of r there is no move to enlarge. */
 const LEAST_MOVE = 1e-6;
@@ -69,7 +71,11 @@ export function restPlane({ particle }, rest, towards) {
   return svg;
 }
 
-/** The move and the landing enlarged, with how many times that is; null if there is no move to see. @param {Rest} rest @param {ArrayLike<number>} [towards] */
+/**
+ * The move and the landing enlarged, with how many times that is; null if there is no move to see.
+ * @param {Rest} rest
+ * @param {ArrayLike<number>} [towards]
+ */
 export function moveLens(rest, towards) {
   const plane = planeOf(rest, towards);
   const [target, landing] = [rest.moved.target, rest.moved.position].map((at) => inPlane(plane, at));

@@ -3,16 +3,12 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { inRadii } from './words.js';
 
 /**
- * @typedef {import('../engine/types.js').LessonChapter} LessonChapter
- * @typedef {import('../engine/types.js').LessonClient} LessonClient
- * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('../engine/types.js').LessonPush} LessonPush
- * @typedef {import('../engine/types.js').Vec3} Vec3
- * @typedef {import('./words.js').Subject} Subject
+ * @import { LessonChapter, LessonClient, LessonEvent, LessonPush, Vec3 } from '../engine/types.js'
  */
+
 /**
- * A step of a particle. `pushes` are of those that push it, the strongest first; `moved` is the event of its move; `radius` its own
- * before the step.
+ * A step of a particle. `pushes` are of those that push it, the strongest first; `moved` is the event of its move;
+ * `radius` its own before the step.
  * @typedef {object} Rest
  * @property {number} step
  * @property {number} steps  of the run
@@ -35,7 +31,10 @@ const triple = (column, i) => [column[3 * i], column[3 * i + 1], column[3 * i + 
 
 /**
  * Fetches a relaxation step of a particle; null if the run has no such step.
- * @param {LessonClient} client @param {readonly LessonChapter[]} chapters @param {number} particle @param {number} step  from 1
+ * @param {LessonClient} client
+ * @param {readonly LessonChapter[]} chapters
+ * @param {number} particle
+ * @param {number} step  from 1
  * @returns {Promise<Rest | null>}
  */
 export async function restOf(client, chapters, particle, step) {
@@ -92,7 +91,10 @@ export function pushWords({ pushes, moved, radius }) {
     : `${plural(pushes.length, 'particle pushes', 'particles push')} it, together by ${sum}`;
 }
 
-/** The move of a step, the way that it lands off the tangent plane, and whether the move was cut short. @param {Rest} rest */
+/**
+ * The move of a step, the way that it lands off the tangent plane, and whether the move was cut short.
+ * @param {Rest} rest
+ */
 function moveOf({ place, moved, size: share }) {
   const way = [0, 1, 2].map((k) => moved.target[k] - place[k]);
   const lands = [0, 1, 2].map((k) => moved.position[k] - place[k]);

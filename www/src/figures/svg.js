@@ -1,10 +1,10 @@
 /** Parts of drawings, in which y points up and lengths are in radii. */
 import { s } from '../ui/svg.js';
 
+/** @import { Point } from './geometry.js' */
+
 /** Writes a coordinate with a length that does not depend on the number. @param {number} value */
 const short = (value) => String(Math.round(value * 1e4) / 1e4);
-
-/** @typedef {import('./geometry.js').Point} Point */
 
 /** @param {string} kind  a class @param {Point} at @param {number} r */
 export const ring = (kind, [x, y], r) => s('circle', { class: kind, cx: short(x), cy: short(-y), r: short(r) });
@@ -29,7 +29,10 @@ export function segments(kind, ends, scale) {
   return s('path', { class: kind, d });
 }
 
-/** Shapes of the fates, around the origin with half size 1, so that they differ without colour. @type {Record<string, string>} */
+/**
+ * Shapes of the fates, around the origin with half size 1, so that they differ without colour.
+ * @type {Record<string, string>}
+ */
 const SHAPES = {
   open: 'M-.7 0a.7.7 0 1 0 1.4 0a.7.7 0 1 0-1.4 0z',
   parent: 'M-.8-.8h1.6v1.6h-1.6z',

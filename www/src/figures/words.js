@@ -2,10 +2,14 @@
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 
 /**
- * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('./moment.js').Moment} Moment
+ * @import { LessonEvent } from '../engine/types.js'
+ * @import { Moment } from './moment.js'
  */
-/** Whose events are told. `parent` is null for a seed; `levels` is the last level of the run. @typedef {{ particle: number, level: number, levels?: number, parent: number | null, radius: number }} Subject */
+
+/**
+ * Whose events are told. `parent` is null for a seed; `levels` is the last level of the run.
+ * @typedef {{ particle: number, level: number, levels?: number, parent: number | null, radius: number }} Subject
+ */
 
 /** A length in radii. @param {number} length @param {number} radius @param {number} [digits] */
 export const inRadii = (length, radius, digits = 3) => `${formatFixed(length / radius, digits)}\u00a0r`;
@@ -53,7 +57,10 @@ export const ALGORITHM = [
   { depth: 1, text: 'Mark p as done', of: ['done'] },
 ];
 
-/** The same for particles of many sizes (§5), whose children are pushed into the free spaces around them. @type {typeof ALGORITHM} */
+/**
+ * The same for particles of many sizes (§5), whose children are pushed into the free spaces around them.
+ * @type {typeof ALGORITHM}
+ */
 export const ADAPTIVE = [
   { depth: 0, text: 'While particles wait: take the next one, p', of: ['taken'] },
   { depth: 1, text: 'Gather the particles around p (Fig. 8a)', of: ['gathered'] },
@@ -73,7 +80,11 @@ export const ADAPTIVE = [
   { depth: 1, text: 'Mark p as done', of: ['done'] },
 ];
 
-/** Index of the line of an algorithm that an event belongs to; −1 for none. @param {LessonEvent} event @param {typeof ALGORITHM} [lines] */
+/**
+ * Index of the line of an algorithm that an event belongs to; −1 for none.
+ * @param {LessonEvent} event
+ * @param {typeof ALGORITHM} [lines]
+ */
 export function lineOf(event, lines = ALGORITHM) {
   const name = event.type === 'fate' ? `fate:${event.fate}` : event.type;
   return lines.findIndex(({ of }) => of.includes(name));
@@ -149,7 +160,8 @@ function tellComparison({ slot, against, distance, limit, corresponds }, radius)
 }
 
 /**
- * @param {Extract<LessonEvent, {type: 'arc' | 'start' | 'push' | 'push_on_circle' | 'room'}>} event @param {number} radius
+ * @param {Extract<LessonEvent, {type: 'arc' | 'start' | 'push' | 'push_on_circle' | 'room'}>} event
+ * @param {number} radius
  */
 function tellPush(event, radius) {
   switch (event.type) {

@@ -2,8 +2,12 @@
 import { PARTICLES } from './lab.js';
 
 /**
- * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('../engine/lesson/protocol.js').LessonSettings['law']} Law
+ * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { Lab, Run } from './lab.js'
+ */
+
+/**
+ * @typedef {LessonSettings['law']} Law
  */
 
 /** The laws in words. @type {readonly { value: Law, label: string }[]} */
@@ -17,12 +21,12 @@ const [LEAST, LARGEST] = [0.5, 2.2];
 const MOST_TRIALS = 4;
 const CLOSE = 0.15;
 
-/** @type {WeakMap<Lab, Map<string, Promise<import('./lab.js').Run>>>} */
+/** @type {WeakMap<Lab, Map<string, Promise<Run>>>} */
 const found = new WeakMap();
 
 /**
  * Returns an adaptive run by a law, scaled so that it has about as many particles as the others.
- * @param {Lab} lab @param {Law} law @param {Partial<import('../engine/lesson/protocol.js').LessonSettings>} [change]
+ * @param {Lab} lab @param {Law} law @param {Partial<LessonSettings>} [change]
  * @param {number} [particles]
  */
 export function adaptiveRun(lab, law, change = {}, particles = PARTICLES) {
@@ -34,7 +38,7 @@ export function adaptiveRun(lab, law, change = {}, particles = PARTICLES) {
   return run;
 }
 
-/** @param {Lab} lab @param {Law} law @param {Partial<import('../engine/lesson/protocol.js').LessonSettings>} change @param {number} particles */
+/** @param {Lab} lab @param {Law} law @param {Partial<LessonSettings>} change @param {number} particles */
 async function scaled(lab, law, change, particles) {
   const radius = await lab.radiusFor(particles);
   // The gap is a length, of the second order in the radius; the other laws scale with a pure number.

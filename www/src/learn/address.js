@@ -1,6 +1,6 @@
 /**
- * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&mode=present`. A stop alone is
- * an ordinary anchor, which works without scripts.
+ * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&mode=present`.
+ * A stop alone is an ordinary anchor, which works without scripts.
  */
 
 /** Parts that a fragment may have beside the stop. */
@@ -39,8 +39,8 @@ export function writeAddress({ stop, parts }) {
 }
 
 /**
- * Returns the stop that a name means: the one of this name, else the one whose name is nearest to it by the letters that have to be
- * changed; null for an empty name.
+ * Returns the stop that a name means: the one of this name, else the one whose name is nearest to it by the letters
+ * that have to be changed; null for an empty name.
  * @param {string} name @param {readonly string[]} stops  at least one
  */
 export function nearestStop(name, stops) {

@@ -1,6 +1,6 @@
 /**
- * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. What a learner answers is
- * saved with both runs as one file; nothing is sent.
+ * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. What a learner
+ * answers is saved with both runs as one file; nothing is sent.
  */
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { download } from '../ui/share.js';
@@ -12,13 +12,13 @@ import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.
 import { WHAT_IFS } from './whatifs.js';
 
 /**
- * @typedef {import('./whatifs.js').Setup} Setup
- * @typedef {import('./whatifs.js').Control} Control
- * @typedef {import('./task.js').Task} Task
- * @typedef {import('./task.js').Work} Work
- * @typedef {import('./lab.js').Lab} Lab
+ * @import { Lab, Run } from './lab.js'
+ * @import { Stops } from './predict.js'
+ * @import { Task, Work } from './task.js'
+ * @import { Control, Setup } from './whatifs.js'
  */
-/** A run as plain numbers. @param {string} label @param {import('./lab.js').Run} run */
+
+/** A run as plain numbers. @param {string} label @param {Run} run */
 const recordOf = (label, run) => ({
   label,
   settings: run.settings,
@@ -33,7 +33,7 @@ const recordOf = (label, run) => ({
 
 /**
  * Puts the assignment before the first chapter.
- * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: import('./predict.js').Stops }} context
+ * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: Stops }} context
  */
 export function mountAssignment(host, task, { lab, surface, stops }) {
   const id = uniqueId('assignment');
@@ -80,7 +80,10 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   lockParts(document.body, task.locks);
 }
 
-/** The dialog in which a teacher makes an assignment. @param {{ setup: () => Setup, linkOf: (task: string) => string }} about */
+/**
+ * The dialog in which a teacher makes an assignment.
+ * @param {{ setup: () => Setup, linkOf: (task: string) => string }} about
+ */
 export function createMaker({ setup, linkOf }) {
   const title = h('input', { class: 'box wide', id: uniqueId('title'), maxlength: LONGEST_TITLE });
   const questions = h('textarea', { class: 'answer-box', id: uniqueId('questions'), rows: 4 });

@@ -5,9 +5,8 @@ import { createSelect } from './parts.js';
 import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
 /**
- * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('./whatifs.js').Control} Control
- * @typedef {import('./whatifs.js').Setup} Setup
+ * @import { Lab } from './lab.js'
+ * @import { Control, Setup } from './whatifs.js'
  */
 
 /** Stops of the bench in the address: one for each choice. */
@@ -15,7 +14,9 @@ export const STOP = 'what-if';
 export const stopsOfBench = WHAT_IFS.map(({ id }) => `${STOP}-${id}`);
 
 /**
- * @param {HTMLElement} host @param {Lab} lab @param {{ setup?: Setup, locks?: readonly Control[] }} [how]  `locks`: controls that stay as they are
+ * @param {HTMLElement} host
+ * @param {Lab} lab
+ * @param {{ setup?: Setup, locks?: readonly Control[] }} [how]  `locks`: controls that stay as they are
  */
 export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id), locks = [] } = {}) {
   const pair = createPair(lab);
@@ -57,7 +58,11 @@ export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id),
   return { show, pair, setup: () => setup };
 }
 
-/** The values to choose from, with one that was found otherwise. @param {readonly { value: string, label: string }[]} values @param {string} own */
+/**
+ * The values to choose from, with one that was found otherwise.
+ * @param {readonly { value: string, label: string }[]} values
+ * @param {string} own
+ */
 const withOwn = (values, own) =>
   values.some(({ value }) => value === own) ? values : [...values, { value: own, label: own }];
 

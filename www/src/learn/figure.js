@@ -1,11 +1,17 @@
-/** Puts a live figure in the place of its still, once it comes near the window, and says what is missing if it cannot be made. */
+/**
+ * Puts a live figure in the place of its still, once it comes near the window, and says what is missing if it cannot be
+ * made.
+ */
 import { h } from '../ui/dom.js';
 import { NoSurface } from './lab.js';
 
 /** How far from the window a figure begins, in pixels. */
 const AHEAD_PX = 500;
 
-/** `ready` is fulfilled once it is live, and never if it cannot be made. @typedef {{ stage: HTMLElement, load: () => Promise<void>, ready: Promise<void> }} Figure */
+/**
+ * `ready` is fulfilled once it is live, and never if it cannot be made.
+ * @typedef {{ stage: HTMLElement, load: () => Promise<void>, ready: Promise<void> }} Figure
+ */
 
 /**
  * @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure}

@@ -1,19 +1,24 @@
 /**
- * The hand-out: the article on paper, with blanks for the predictions and their answers on the last page. The answers come from the run,
- * and a browser does not wait for one when it prints: so they are asked for as their figures come to life, and the page's own button
- * and the keys for printing wait for the rest.
+ * The hand-out: the article on paper, with blanks for the predictions and their answers on the last page. The answers
+ * come from the run, and a browser does not wait for one when it prints: so they are asked for as their figures come to
+ * life, and the page's own button and the keys for printing wait for the rest.
  */
 import { fill, h } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 import { PREDICTIONS } from './predictions.js';
+
+/**
+ * @import { Figure } from './figure.js'
+ * @import { Lab } from './lab.js'
+ */
 
 const UNKNOWN = 'The run has not been asked yet. Print from the page’s own button to have the answer here.';
 
 /**
  * @param {HTMLElement} host  the last page
  * @param {object} about
- * @param {readonly import('./figure.js').Figure[]} about.figures
- * @param {Promise<import('./lab.js').Lab>} about.lab
+ * @param {readonly Figure[]} about.figures
+ * @param {Promise<Lab>} about.lab
  * @param {() => Promise<void>} about.compare  shows the comparison that stands on the bench
  * @param {(words: string) => void} about.say
  */

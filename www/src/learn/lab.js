@@ -1,20 +1,19 @@
 /**
- * Runs the paper's algorithms for the figures. Runs with different settings are kept apart: each has a worker of its own while its
- * events may still be asked for, and a run that is only looked at leaves its particles and frees the worker.
+ * Runs the paper's algorithms for the figures. Runs with different settings are kept apart: each has a worker of its
+ * own while its events may still be asked for, and a run that is only looked at leaves its particles and frees the
+ * worker.
  */
 import { RESIDUAL } from '../figures/particle.js';
 
 /**
- * @typedef {import('../engine/types.js').LessonClient} LessonClient
- * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
- * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
- * @typedef {import('../engine/lesson/protocol.js').LessonChapter} LessonChapter
- * @typedef {import('../engine/lesson/protocol.js').LessonProgress} LessonProgress
- * @typedef {import('../ui/surface-link.js').FormulaSurface} FormulaSurface
+ * @import { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { LessonClient, LessonParticles } from '../engine/types.js'
+ * @import { FormulaSurface } from '../ui/surface-link.js'
  */
+
 /**
- * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after the last;
- * `placing` counts the evaluations of f until then.
+ * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after the
+ * last; `placing` counts the evaluations of f until then.
  * @typedef {object} Run
  * @property {LessonClient} client  closed if the run was not to be kept
  * @property {Partial<LessonSettings>} settings
@@ -39,7 +38,10 @@ const TRIAL = 1 / 30;
 const CLOSE = 0.12;
 const MOST_TRIALS = 4;
 
-/** What the figures run unless they say otherwise: Algorithm 2 child by child, and ten steps. @type {Partial<LessonSettings>} */
+/**
+ * What the figures run unless they say otherwise: Algorithm 2 child by child, and ten steps.
+ * @type {Partial<LessonSettings>}
+ */
 export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', relax_steps: 10, residual: RESIDUAL };
 
 /** Why a surface has no figures. */
@@ -54,7 +56,10 @@ export class Lab {
     this.runs = new Map();
     /** @type {Map<number, Promise<number>>} */
     this.radii = new Map();
-    /** Runs follow one another, so that a page of figures keeps one processor busy and not all. @type {Promise<unknown>} */
+    /**
+     * Runs follow one another, so that a page of figures keeps one processor busy and not all.
+     * @type {Promise<unknown>}
+     */
     this.last = Promise.resolve();
   }
 
@@ -65,7 +70,11 @@ export class Lab {
     return done;
   }
 
-  /** The radius with which the surface has about so many particles. @param {number} particles @returns {Promise<number>} */
+  /**
+   * The radius with which the surface has about so many particles.
+   * @param {number} particles
+   * @returns {Promise<number>}
+   */
   radiusFor(particles) {
     const known = this.radii.get(particles);
     if (known) return known;
@@ -98,8 +107,8 @@ export class Lab {
   /**
    * Returns a run, which is made once for the same settings.
    * @param {Partial<LessonSettings>} change  of the usual settings
-   * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius is given; `keep`: events
-   *   will be asked for
+   * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius
+   *   is given; `keep`: events will be asked for
    * @returns {Promise<Run>}
    */
   async run(change, { particles = PARTICLES, keep = false } = {}) {
@@ -115,8 +124,8 @@ export class Lab {
   }
 
   /**
-   * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a seed: where
-   * the surface ends beside it, it has fewer.
+   * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a
+   * seed: where the surface ends beside it, it has fewer.
    * @returns {Promise<Run>}
    */
   async coarse() {
@@ -149,7 +158,9 @@ export class Lab {
   }
 }
 
-/** Events that are looked at for the last particle that was done: more than one particle and the filling of gaps have. */
+/**
+ * Events that are looked at for the last particle that was done: more than one particle and the filling of gaps have.
+ */
 const LOOK_BACK = 400;
 
 /**

@@ -1,4 +1,7 @@
-/** Locks controls of the lesson's page that an assignment names. Those of its own comparison are locked where they are made. */
+/**
+ * Locks controls of the lesson's page that an assignment names. Those of its own comparison are locked where they are
+ * made.
+ */
 
 /** What may be locked beside the comparison of the assignment, and where it is. @type {Record<string, string>} */
 const PARTS = {

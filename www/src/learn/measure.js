@@ -3,13 +3,13 @@ import { NO_PARENT } from '../engine/columns.js';
 import { between, createGrid } from '../ui/neighbours.js';
 
 /**
- * @typedef {import('./lab.js').Run} Run
- * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
+ * @import { LessonParticles } from '../engine/types.js'
+ * @import { Run } from './lab.js'
  */
 
 /**
- * Distance of each particle to its nearest one, over the sum of their radii: 1 where two discs touch. Infinite if there is none
- * within two and a half of the largest radius.
+ * Distance of each particle to its nearest one, over the sum of their radii: 1 where two discs touch. Infinite if there
+ * is none within two and a half of the largest radius.
  * @param {LessonParticles} particles
  */
 export function nearestDistances({ positions, radii }) {
@@ -23,7 +23,11 @@ export function nearestDistances({ positions, radii }) {
   });
 }
 
-/** Distance of each particle to its parent over 2r, as placed; 1 for a seed. @param {LessonParticles} placed @param {number} radius */
+/**
+ * Distance of each particle to its parent over 2r, as placed; 1 for a seed.
+ * @param {LessonParticles} placed
+ * @param {number} radius
+ */
 export const parentDistances = ({ positions, parents }, radius) =>
   Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
@@ -54,7 +58,10 @@ export function stepOfRest(energies) {
   return Math.max(1, at);
 }
 
-/** The child and its parent between which the surface bends most; null if there is no child. @param {LessonParticles} placed */
+/**
+ * The child and its parent between which the surface bends most; null if there is no child.
+ * @param {LessonParticles} placed
+ */
 export function sharpestBend({ normals, parents }) {
   let [child, least] = [-1, 2];
   for (let i = 0; i < parents.length; i += 1) {
@@ -66,7 +73,10 @@ export function sharpestBend({ normals, parents }) {
   return child < 0 ? null : { child, parent: parents[child] };
 }
 
-/** Particles of one size that would cover the same area as these with the least of their radii. @param {ArrayLike<number>} radii */
+/**
+ * Particles of one size that would cover the same area as these with the least of their radii.
+ * @param {ArrayLike<number>} radii
+ */
 export function asFineEverywhere(radii) {
   const all = Array.from(radii);
   const least = Math.min(...all);

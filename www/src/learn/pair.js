@@ -8,17 +8,19 @@ import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 
-/**
- * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('./lab.js').Run} Run
- */
+/** @import { Lab, Run } from './lab.js' */
+
 /** How the two pictures are coloured. @typedef {'level' | 'parent' | 'nearest' | 'radius'} Colouring */
 /** @typedef {{ label: string, make: (lab: Lab) => Promise<Run> }} Side */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
 
-/** @param {Run} run @param {Colouring} colouring @param {[number, number]} radii  the smallest and the largest of both runs */
+/**
+ * @param {Run} run
+ * @param {Colouring} colouring
+ * @param {[number, number]} radii  the smallest and the largest of both runs
+ */
 function sceneOf(run, colouring, [least, most]) {
   // The distance to the parent is what placing gave; the others are as the run ended.
   const particles = colouring === 'parent' ? run.placed : run.end;

@@ -6,7 +6,8 @@ import { s } from '../ui/svg.js';
 
 /**
  * A native range with its name and its value in words.
- * @param {{ name: string, max: number, value?: number, say: (value: number) => string, change: (value: number) => void }} about
+ * @param {{ name: string, max: number, value?: number, say: (value: number) => string, change: (value: number) => void
+ *   }} about
  */
 export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
@@ -92,7 +93,8 @@ export function createBars({ values, words }) {
 
 /**
  * A select with its name.
- * @param {{ name: string, choices: readonly { value: string, label: string }[], value?: string, change: (value: string) => void }} about
+ * @param {{ name: string, choices: readonly { value: string, label: string }[], value?: string, change: (value: string)
+ *   => void }} about
  */
 export function createSelect({ name, choices, value, change }) {
   const id = uniqueId('select');

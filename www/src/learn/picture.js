@@ -1,6 +1,6 @@
 /**
- * A picture of particles, drawn by the page's own 2-D painter at twice its size, so that the browser smooths the edges. A page of
- * figures would run out of contexts of the graphics card.
+ * A picture of particles, drawn by the page's own 2-D painter at twice its size, so that the browser smooths the edges.
+ * A page of figures would run out of contexts of the graphics card.
  */
 import { signal } from '@preact/signals-core';
 import { ballOf, Camera, projected, viewOf } from '../engine/view/camera.js';
@@ -10,11 +10,15 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
- * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
- * @typedef {import('../engine/types.js').Vec3} Vec3
- * @typedef {import('../engine/view/palettes.js').Palette} Palette
+ * @import { Bounds, LessonParticles, Vec3 } from '../engine/types.js'
+ * @import { View } from '../engine/view/camera.js'
+ * @import { Palette } from '../engine/view/palettes.js'
  */
-/** A place that is marked, if its side is in view. @typedef {{ place: ArrayLike<number>, normal: ArrayLike<number>, radius: number, kind: 'ring' | 'cross' }} Mark */
+
+/**
+ * A place that is marked, if its side is in view.
+ * @typedef {{ place: ArrayLike<number>, normal: ArrayLike<number>, radius: number, kind: 'ring' | 'cross' }} Mark
+ */
 /**
  * What a picture shows. `count`: the first so many particles; `colours`: one for each, of this theme's palette.
  * @typedef {object} Scene
@@ -49,7 +53,7 @@ addEventListener('afterprint', () => {
 
 /** A camera that one or several pictures share. */
 export class Orbit {
-  /** @param {import('../engine/types.js').Bounds} bounds */
+  /** @param {Bounds} bounds */
   constructor(bounds) {
     this.ball = ballOf(bounds);
     this.camera = new Camera();
@@ -95,7 +99,8 @@ export class Orbit {
 export class Picture {
   /**
    * @param {Orbit} orbit
-   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: what the picture shows, for those who do not see it
+   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: what the picture shows, for those who
+   *   do not see it
    */
   constructor(orbit, { name, onPick }) {
     this.orbit = orbit;
@@ -179,7 +184,7 @@ export class Picture {
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }
 
-  /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {import('../engine/view/camera.js').View} view */
+  /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {View} view */
   drawMarks(context, marks, view) {
     const { width, height } = this.size.peek();
     const style = getComputedStyle(this.element);
@@ -285,7 +290,12 @@ const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye
 export const byLevel = ({ levels }) =>
   once((palette) => Uint32Array.from(levels, (level) => palette.levels[level % CYCLE]));
 
-/** Colours by a number for each particle, from `low` to `high`. @param {ArrayLike<number>} values @param {number} low @param {number} high */
+/**
+ * Colours by a number for each particle, from `low` to `high`.
+ * @param {ArrayLike<number>} values
+ * @param {number} low
+ * @param {number} high
+ */
 export const byValue = (values, low, high) =>
   once((palette) =>
     Uint32Array.from(values, (value) => {
@@ -294,7 +304,11 @@ export const byValue = (values, low, high) =>
     }),
   );
 
-/** Some particles in a strong colour, the others plain. @param {number} count @param {(particle: number) => boolean} isMarked */
+/**
+ * Some particles in a strong colour, the others plain.
+ * @param {number} count
+ * @param {(particle: number) => boolean} isMarked
+ */
 export const byMark = (count, isMarked) =>
   once((palette) =>
     Uint32Array.from({ length: count }, (_, i) => (isMarked(i) ? palette.fate.trouble : palette.plain)),

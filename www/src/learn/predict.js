@@ -1,14 +1,20 @@
 /**
- * Predictions: a question, a guess, and the answer that the run itself gives. Nothing is scored or sent; a prediction may be skipped.
+ * Predictions: a question, a guess, and the answer that the run itself gives. Nothing is scored or sent; a prediction
+ * may be skipped.
  */
 import { signal } from '@preact/signals-core';
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 
 /**
- * @typedef {import('./lab.js').Lab} Lab
+ * @import { Lab } from './lab.js'
+ * @import { Signal } from '@preact/signals-core'
  */
-/** `right` is compared with the guess; `words` say it in a sentence. @typedef {{ right: string | number, words: string }} Answer */
+
+/**
+ * `right` is compared with the guess; `words` say it in a sentence.
+ * @typedef {{ right: string | number, words: string }} Answer
+ */
 /**
  * `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it.
  * @typedef {object} Prediction
@@ -19,18 +25,24 @@ import { reasonOf } from './figure.js';
  * @property {(lab: Lab, guess: string | number | null) => Promise<Answer>} answer
  * @property {(guess: string | number, right: string | number) => string} [judge]
  */
-/** What a learner has guessed and what the run said. @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Outcome */
+/**
+ * What a learner has guessed and what the run said.
+ * @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Outcome
+ */
 
 /** Which predictions are out. Figures show what would give the answer away only then. */
 export class Stops {
   constructor() {
-    /** @type {Map<string, import('@preact/signals-core').Signal<boolean>>} */
+    /** @type {Map<string, Signal<boolean>>} */
     this.open = new Map();
-    /** @type {Map<string, import('@preact/signals-core').Signal<number | null>>} */
+    /** @type {Map<string, Signal<number | null>>} */
     this.picks = new Map();
     /** @type {Map<string, Outcome>} */
     this.outcomes = new Map();
-    /** What a learner has entered so far, by the stop. @type {Map<string, { question: string, get: () => string | number | null }>} */
+    /**
+     * What a learner has entered so far, by the stop.
+     * @type {Map<string, { question: string, get: () => string | number | null }>}
+     */
     this.entries = new Map();
   }
 
@@ -123,7 +135,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
 /** @param {string | number} guess @param {string | number} right */
 const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'It is not so.');
 
-/** @param {Prediction} prediction @param {string} question @param {import('@preact/signals-core').Signal<number | null>} picked */
+/** @param {Prediction} prediction @param {string} question @param {Signal<number | null>} picked */
 function inputOf(prediction, question, picked) {
   const { kind } = prediction;
   if (kind === 'pick')

@@ -11,7 +11,7 @@ import { widestHole } from './chapters/rest.js';
 import { NoSurface } from './lab.js';
 import { asFineEverywhere, energiesOf, ringsOf, stepOfRest } from './measure.js';
 
-/** @typedef {import('./predict.js').Prediction} Prediction */
+/** @import { Prediction } from './predict.js' */
 
 /** The ring that is asked for. */
 const RING = 12;

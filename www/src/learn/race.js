@@ -13,9 +13,10 @@ import { createSelect } from './parts.js';
 import { byValue, Orbit, Picture } from './picture.js';
 
 /**
- * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
- * @typedef {import('../engine/lesson/race.js').Lane} Lane
+ * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { Lane } from '../engine/lesson/race.js'
+ * @import { LessonParticles } from '../engine/types.js'
+ * @import { Lab } from './lab.js'
  */
 
 /** Particles of the front: enough to see the difference, few enough to wait for the other. */
@@ -25,7 +26,10 @@ const PICTURE_MS = 250;
 /** Distances over the ideal one span this range of colours. */
 const [NEAR, FAR] = [0.7, 1.15];
 
-/** How many times as long as the front the other method took in Table 1 of the paper, for each pair of its ellipsoids. @type {Record<string, readonly { ratio: number, words: string }[]>} */
+/**
+ * How many times as long as the front the other method took in Table 1 of the paper, for each pair of its ellipsoids.
+ * @type {Record<string, readonly { ratio: number, words: string }[]>}
+ */
 const OF_THE_PAPER = {
   uniform: [
     { ratio: 219.63 / 19.8, words: '13,923 particles against 10,633' },
@@ -81,7 +85,7 @@ function createLane(orbit, name) {
           ? 'It is done.'
           : 'It ended without coming to rest.';
     },
-    /** @param {import('../engine/types.js').LessonParticles} particles */
+    /** @param {LessonParticles} particles */
     show(particles) {
       picture.show({ particles, colours: byValue(nearestDistances(particles), NEAR, FAR) });
     },
@@ -182,7 +186,7 @@ export function mountRace(host, lab) {
   lay();
 }
 
-/** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly import('../engine/types.js').LessonParticles[]} ends */
+/** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly LessonParticles[]} ends */
 function resultOf(names, lanes, ends) {
   const even = ends.map((particles) => spread(nearestDistances(particles)));
   const of = (/** @type {(k: number) => string} */ write) => [0, 1].map(write);

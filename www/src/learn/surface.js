@@ -1,7 +1,8 @@
 /** The surface of the lesson: the learner's own, or the ellipsoid. */
 import { unpackCarried } from '../ui/surface-link.js';
 
-/** @typedef {import('../ui/surface-link.js').FormulaSurface} FormulaSurface */
+/** @import { FormulaSurface } from '../ui/surface-link.js' */
+
 /** @typedef {{ surface: FormulaSurface, isOwn: boolean, from: string, notice: string }} Subject */
 
 /** @type {FormulaSurface} */

@@ -3,16 +3,24 @@ import { packed, unpacked } from '../ui/surface-link.js';
 import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 
 /**
- * @typedef {import('./whatifs.js').Setup} Setup
- * @typedef {import('./whatifs.js').Control} Control
+ * @import { Outcome } from './predict.js'
+ * @import { Control, Setup } from './whatifs.js'
  */
+
 /** @typedef {{ title: string, setup: Setup, locks: Control[], questions: string[] }} Task */
-/** What a learner hands in. @typedef {{ assignment: string, surface: string, answers: { question: string, answer: string }[], predictions: import('./predict.js').Outcome[], runs: object[] }} Work */
+/**
+ * What a learner hands in.
+ * @typedef {{ assignment: string, surface: string, answers: { question: string, answer: string }[], predictions:
+ *   Outcome[], runs: object[] }} Work
+ */
 
 export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;
 const MOST_QUESTIONS = 20;
-/** What may be locked; `words` name it to a learner, `usual` is locked unless the teacher says otherwise. @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]} */
+/**
+ * What may be locked; `words` name it to a learner, `usual` is locked unless the teacher says otherwise.
+ * @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]}
+ */
 export const CONTROLS = [
   { value: 'what', label: 'What changes', words: 'what is compared here', usual: true },
   { value: 'left', label: 'Left', words: 'the picture on the left', usual: true },
@@ -36,7 +44,11 @@ export const lockedWords = (locks) => {
 /** @param {Task} task */
 export const packTask = (task) => packed(task);
 
-/** Reads an assignment from an address, where anything may stand; null if it is none. @param {string} text @returns {Task | null} */
+/**
+ * Reads an assignment from an address, where anything may stand; null if it is none.
+ * @param {string} text
+ * @returns {Task | null}
+ */
 export function unpackTask(text) {
   const raw = unpacked(text);
   if (typeof raw !== 'object' || raw === null || !Array.isArray(raw.questions)) return null;

@@ -2,12 +2,15 @@
 import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
- * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('./pair.js').Side} Side
- * @typedef {import('./pair.js').Colouring} Colouring
- * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
+ * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { Lab, Run } from './lab.js'
+ * @import { Colouring, Side } from './pair.js'
  */
-/** What an assignment may lock: on its bench, then on the rest of the page. @typedef {'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race'} Control */
+
+/**
+ * What an assignment may lock: on its bench, then on the rest of the page.
+ * @typedef {'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race'} Control
+ */
 /** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
 /**
  * One choice. `make` is given a value and makes the run; the first two values are shown first.
@@ -17,10 +20,13 @@ import { adaptiveRun, LAWS } from './adaptive.js';
  * @property {string} look  what to look for
  * @property {Colouring} colouring
  * @property {readonly { value: string, label: string }[]} values
- * @property {(lab: Lab, value: string) => Promise<import('./lab.js').Run>} make
+ * @property {(lab: Lab, value: string) => Promise<Run>} make
  */
 
-/** Runs whose particles are counted and drawn, and not asked for events. @param {(value: string) => Partial<LessonSettings>} settings */
+/**
+ * Runs whose particles are counted and drawn, and not asked for events.
+ * @param {(value: string) => Partial<LessonSettings>} settings
+ */
 const even = (settings) => (/** @type {Lab} */ lab, /** @type {string} */ value) => lab.run(settings(value));
 
 /** How a seed that was pressed is named: its place. */

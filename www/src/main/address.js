@@ -5,10 +5,12 @@
  */
 import { effect } from '@preact/signals-core';
 
+/** @import { Engine } from '../engine/types.js' */
+
 /** Delay between a change and its write. Browsers refuse more than about 100 address changes in 30 seconds. */
 const ADDRESS_MS = 500;
 
-/** @param {import('../engine/types.js').Engine} engine */
+/** @param {Engine} engine */
 export function keepAddress(engine) {
   /** The fragment last written by the page. Any other fragment comes from the user. */
   let own = location.hash;

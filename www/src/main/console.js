@@ -8,10 +8,10 @@ import { MEASURED } from '../engine/columns.js';
 import { createEngine } from '../engine/index.js';
 
 /**
- * @typedef {import('../engine/types.js').Engine} Engine
- * @typedef {import('../engine/types.js').Report} Report
- * @typedef {import('../engine/types.js').State} State
+ * @import { Columns, Figures } from '../engine/columns.js'
+ * @import { Engine, Report, State } from '../engine/types.js'
  */
+
 /**
  * @typedef {object} Console
  * @property {string} version  of the core; empty until the core has loaded
@@ -25,18 +25,21 @@ import { createEngine } from '../engine/index.js';
  * @property {() => Report | null} report
  * @property {() => Particles} particles
  * @property {() => object} status
- * @property {(width: number, height: number, transparent?: boolean) => Promise<{width: number, height: number, pixels: Uint8Array}>} pixels
+ * @property {(width: number, height: number, transparent?: boolean) => Promise<{width: number, height: number, pixels:
+ *   Uint8Array}>} pixels
  * @property {() => Promise<string>} link  the address that restores the present state
  * @property {(options: Parameters<typeof createEngine>[0]) => Engine} create  another engine, in another element
  * @property {Engine} engine
  * @property {Omit<Engine['debug'], 'provoke' | 'isOff'> & Record<'panic' | 'overflow' | 'hang', () => void>} debug
  */
-/** @typedef {import('../engine/columns.js').Figures} Figures */
-/** The columns of the report, null before it has arrived. @typedef {{[K in keyof Figures]: Figures[K] | null}} Measured */
 /**
- * Copies of the columns: index i of each belongs to particle i. `exact`: the positions in double precision, in a box far from the
- * origin; `curvature`: two per particle, only while they are shown.
- * @typedef {Measured & Pick<import('../engine/columns.js').Columns, 'count' | 'positions' | 'normals' | 'radii' | 'levels' | 'parents' | 'slots'>
+ * The columns of the report, null before it has arrived.
+ * @typedef {{[K in keyof Figures]: Figures[K] | null}} Measured
+ */
+/**
+ * Copies of the columns: index i of each belongs to particle i. `exact`: the positions in double precision, in a box
+ * far from the origin; `curvature`: two per particle, only while they are shown.
+ * @typedef {Measured & Pick<Columns, 'count' | 'positions' | 'normals' | 'radii' | 'levels' | 'parents' | 'slots'>
  *   & {exact: Float64Array | null, curvature: Float32Array | null}} Particles
  */
 
@@ -72,11 +75,11 @@ async function settled(engine) {
   return report;
 }
 
-/** Copies of the columns of the report. @param {import('../engine/columns.js').Columns} columns */
+/** Copies of the columns of the report. @param {Columns} columns */
 const measuredOf = (columns) =>
   /** @type {Measured} */ (Object.fromEntries(MEASURED.map((name) => [name, columns[name]?.slice() ?? null])));
 
-/** @param {import('../engine/columns.js').Columns} columns @returns {Particles} */
+/** @param {Columns} columns @returns {Particles} */
 function copyOf(columns) {
   const count = columns.stale ? 0 : columns.count;
   return {

@@ -1,4 +1,7 @@
-/** Entry point of the page: creates the engine, connects it to the address and the console, and mounts the interface on it. */
+/**
+ * Entry point of the page: creates the engine, connects it to the address and the console, and mounts the interface on
+ * it.
+ */
 import '../ui/trusted.js';
 import { createEngine } from '../engine/index.js';
 import { BACKENDS } from '../engine/view/backends.js';
@@ -19,9 +22,9 @@ const mount = () => {
   if (!mounted) keepOffline(engine, mountInterface(engine));
   mounted = true;
 };
-// The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has loaded.
-// If the style sheet fails, the window's load event starts the interface. (A top-level await would make the bundler split
-// the entry into many small files.)
+// The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has
+// loaded. If the style sheet fails, the window's load event starts the interface. (A top-level await would make the
+// bundler split the entry into many small files.)
 const link = /** @type {HTMLLinkElement | null} */ (document.querySelector('link[rel="stylesheet"]'));
 if (!link || link.sheet || document.readyState === 'complete') {
   mount();

@@ -1,16 +1,21 @@
 /**
- * Makes the page work without a network, and says when there is a new version of it. The service worker fetches all files of the
- * site, so it starts when the first surface is there and nothing else is to be done.
+ * Makes the page work without a network, and says when there is a new version of it. The service worker fetches all
+ * files of the site, so it starts when the first surface is there and nothing else is to be done.
  */
 import { effect } from '@preact/signals-core';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {import('../ui/toasts.js').Toast} Toast */
+/**
+ * @import { Engine } from '../engine/types.js'
+ * @import { Toast } from '../ui/toasts.js'
+ */
 
 const SCRIPT = './service-worker.js';
 /** Longest time for which an idle moment is awaited. */
 const PATIENCE_MS = 10_000;
-/** Time after which a page that is looked at again asks for a new version. A browser asks by itself whenever a page is loaded. */
+/**
+ * Time after which a page that is looked at again asks for a new version. A browser asks by itself whenever a page is
+ * loaded.
+ */
 const ASK_MS = 3_600_000;
 
 /** @param {Engine} engine @param {Toast} toast */

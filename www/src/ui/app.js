@@ -18,9 +18,17 @@ import { createLegend } from './view/legend.js';
 import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../engine/types.js'
+ * @import { Dialog } from './dialog.js'
+ * @import { Timeline, Told } from './levels/timeline.js'
+ * @import { Motion } from './motion.js'
+ * @import { Shortcut } from './shortcuts.js'
+ * @import { Toast } from './toasts.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
-/** @param {Engine} engine @returns {import('./toasts.js').Toast}  shows a notice of the page */
+/** @param {Engine} engine @returns {Toast}  shows a notice of the page */
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
@@ -49,10 +57,10 @@ export function mountInterface(engine) {
     engine,
     computed(() => motion.playing.value !== null || motion.filming.value),
   );
-  /** @type {import('./levels/timeline.js').Timeline | null} */
+  /** @type {Timeline | null} */
   let timeline = null;
   /** The generation level chosen on the timeline, in words. */
-  const told = signal(/** @type {import('./levels/timeline.js').Told | null} */ (null));
+  const told = signal(/** @type {Told | null} */ (null));
   const { picture, print } = pictureOf(engine, motion, toast);
   const shortcuts = mountShortcuts(
     shortcutsOf(engine, {
@@ -121,7 +129,10 @@ export function mountInterface(engine) {
   return toast;
 }
 
-/** Has the link to the lesson carry the surface over. Without that it leads to the lesson all the same. @param {Engine} engine */
+/**
+ * Has the link to the lesson carry the surface over. Without that it leads to the lesson all the same.
+ * @param {Engine} engine
+ */
 function linkLesson(engine) {
   const link = /** @type {HTMLAnchorElement} */ (byId('lesson-link'));
   import('./lesson/link.js').then(
@@ -141,7 +152,7 @@ function nameTab(engine) {
 
 /**
  * Returns what loads the panel that follows particles, when it is first asked for; its promise is null if that fails.
- * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement }} parts @param {import('./toasts.js').Toast} toast
+ * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement }} parts @param {Toast} toast
  */
 function lessonOf(engine, { shell, stage }, toast) {
   return async (/** @type {(text: string) => void} */ say) => {
@@ -176,15 +187,16 @@ function followTheme(engine) {
 }
 
 /**
- * Returns what opens the dialog that takes the picture away, and what prints it. Both are loaded when they are first asked for.
+ * Returns what opens the dialog that takes the picture away, and what prints it. Both are loaded when they are first
+ * asked for.
  * @param {Engine} engine
- * @param {import('./motion.js').Motion} motion
- * @param {import('./toasts.js').Toast} toast
+ * @param {Motion} motion
+ * @param {Toast} toast
  */
 function pictureOf(engine, motion, toast) {
   const failed = () =>
     toast({ id: 'save', kind: 'error', text: 'A part of the page could not be loaded. Load it again.' });
-  /** @type {Promise<import('./dialog.js').Dialog> | null} */
+  /** @type {Promise<Dialog> | null} */
   let dialog = null;
   return {
     picture() {
@@ -210,12 +222,12 @@ function pictureOf(engine, motion, toast) {
  * @param {Engine} engine
  * @param {object} page
  * @param {ReturnType<typeof createHistory>} page.history
- * @param {import('./motion.js').Motion} page.motion
+ * @param {Motion} page.motion
  * @param {() => void} page.print
- * @param {() => import('./levels/timeline.js').Timeline | null} page.timeline
+ * @param {() => Timeline | null} page.timeline
  * @param {() => void} page.hide  hides or shows the panels
  * @param {() => void} page.open  opens the list of the shortcuts
- * @returns {import('./shortcuts.js').Shortcut[]}
+ * @returns {Shortcut[]}
  */
 const shortcutsOf = (engine, { history, motion, print, timeline, hide, open }) => [
   { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
@@ -289,7 +301,7 @@ function goButton(engine) {
  * @param {'undo' | 'redo'} name
  * @param {string} label
  * @param {string} keys
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} can
+ * @param {ReadonlySignal<boolean>} can
  * @param {() => void} act
  */
 function historyButton(name, label, keys, can, act) {

@@ -1,9 +1,7 @@
 /** What is said and done where the clip box cuts the surface, and how the box changes. */
 import { clamp } from './scale.js';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {import('../engine/types.js').Bounds} Bounds */
-/** @typedef {import('../engine/types.js').Report} Report */
+/** @import { Bounds, Engine, Report } from '../engine/types.js' */
 
 /** Returns a box of twice the size around the same middle. @param {Bounds} bounds @returns {Bounds} */
 export function doubled({ min, max }) {
@@ -51,7 +49,11 @@ export function cutOf(report) {
   return { text: `The box cuts the surface: ${of} at its border.`, canFit: true };
 }
 
-/** Returns whether the box is drawn: where it is asked for, and where it holds no surface but the field has one elsewhere. @param {Engine} engine */
+/**
+ * Returns whether the box is drawn: where it is asked for, and where it holds no surface but the field has one
+ * elsewhere.
+ * @param {Engine} engine
+ */
 export const isBoxDrawn = (engine) =>
   engine.state.value.view.box || (engine.empty.value && engine.field.value?.reach !== 'nowhere');
 

@@ -3,9 +3,11 @@
 import { h, uniqueId } from './dom.js';
 import { icon } from './icons.js';
 
+/** @import { Child } from './dom.js' */
+
 /**
  * @param {string} title
- * @param {...import('./dom.js').Child} content
+ * @param {...Child} content
  */
 export function createDialog(title, ...content) {
   const id = uniqueId('dialog');

@@ -5,20 +5,31 @@
 import { effect } from '@preact/signals-core';
 
 /** @typedef {Node | string | number | null | undefined | false} Child */
-/** What an element may be given: itself, or a function of signals whose text is kept up to date. @typedef {Child | (() => Child)} Given */
+/**
+ * What an element may be given: itself, or a function of signals whose text is kept up to date.
+ * @typedef {Child | (() => Child)} Given
+ */
 /** @typedef {{ [name: string]: any }} Props */
 
 /** What ends with a node. @type {WeakMap<Node, (() => void)[]>} */
 const endings = new WeakMap();
 
-/** Has `end` called once the node is taken out of the page by {@link fill} or {@link release}. @param {Node} node @param {() => void} end */
+/**
+ * Has `end` called once the node is taken out of the page by {@link fill} or {@link release}.
+ * @param {Node} node
+ * @param {() => void} end
+ */
 export function endsWith(node, end) {
   const ends = endings.get(node);
   if (ends) ends.push(end);
   else endings.set(node, [end]);
 }
 
-/** Runs `act` now and after every change of the signals that it reads, as long as the node lasts. @param {Node} node @param {() => void} act */
+/**
+ * Runs `act` now and after every change of the signals that it reads, as long as the node lasts.
+ * @param {Node} node
+ * @param {() => void} act
+ */
 export const live = (node, act) => endsWith(node, effect(act));
 
 /** Ends what belongs to a node and to all within it. @param {Node} node */
@@ -31,9 +42,10 @@ export function release(node) {
 /**
  * Creates an element.
  *
- * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All others are
- * attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A function in the place of an attribute, a
- * data attribute or a child is read anew after every change of the signals that it reads, as long as the element lasts.
+ * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All
+ * others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A function in the
+ * place of an attribute, a data attribute or a child is read anew after every change of the signals that it reads, as
+ * long as the element lasts.
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
@@ -83,7 +95,10 @@ function append(parent, children) {
   }
 }
 
-/** Returns a text that is kept equal to what `read` returns. The node is only changed when the text changes. @param {() => Child} read */
+/**
+ * Returns a text that is kept equal to what `read` returns. The node is only changed when the text changes.
+ * @param {() => Child} read
+ */
 function textOf(read) {
   const node = document.createTextNode('');
   live(node, () => {

@@ -101,8 +101,8 @@ export function place(element, anchor, side = 'below') {
  * Attaches an explanation to `target`.
  * @param {Element} target hovered or focused
  * @param {() => Explanation | null} read
- * @param {{ tap?: boolean, side?: Side, focus?: boolean }} [options] with `tap`, a press toggles it (for elements that do nothing
- *   else); without `focus` it is there for the pointer alone, where Escape has another use
+ * @param {{ tap?: boolean, side?: Side, focus?: boolean }} [options] with `tap`, a press toggles it (for elements that
+ *   do nothing else); without `focus` it is there for the pointer alone, where Escape has another use
  */
 export function explain(target, read, options = {}) {
   const open = () => {

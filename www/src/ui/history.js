@@ -5,9 +5,10 @@
  */
 import { effect, signal } from '@preact/signals-core';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {import('../engine/types.js').State} State */
-/** @typedef {import('../engine/types.js').Shape} Shape */
+/**
+ * @import { Engine, Shape, State } from '../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 export const MOST_ENTRIES = 100;
 /** Largest pause between changes of the same value that are recorded as one. */
@@ -101,7 +102,7 @@ export class History {
 /**
  * Records the changes of the engine's state.
  * @param {Engine} engine
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} moves  whether values change by themselves, which is recorded
+ * @param {ReadonlySignal<boolean>} moves  whether values change by themselves, which is recorded
  *   once it has ended
  */
 export function createHistory(engine, moves) {

@@ -10,8 +10,14 @@ const NARROW = '(max-width: 67.45em)';
 /** Width of a phone in portrait orientation, with panels and tabs below the picture. */
 const COMPACT = '(max-width: 44.95em)';
 
-/** What is hidden: `panels` leaves the picture with caption and timeline, to be presented. @typedef {'nothing' | 'panels' | 'all'} Hidden */
-/** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
+/**
+ * What is hidden: `panels` leaves the picture with caption and timeline, to be presented.
+ * @typedef {'nothing' | 'panels' | 'all'} Hidden
+ */
+/**
+ * A panel with a `head` can be folded.
+ * @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel
+ */
 
 /**
  * @param {object} parts

@@ -1,6 +1,6 @@
 /** Builds MathML elements from the core's expression tree. */
 
-/** @typedef {import('../engine/types.js').MathNode} MathNode */
+/** @import { MathNode } from '../engine/types.js' */
 
 const NAMESPACE = 'http://www.w3.org/1998/Math/MathML';
 

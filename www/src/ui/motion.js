@@ -1,12 +1,20 @@
 /**
- * Moves by itself what the user otherwise drags: one parameter between the ends of its slider, and the surface on a turntable.
+ * Moves by itself what the user otherwise drags: one parameter between the ends of its slider, and the surface on a
+ * turntable.
  */
 import { signal } from '@preact/signals-core';
 import { snap } from './scale.js';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {Pick<import('../engine/types.js').Parameter, 'name' | 'min' | 'max' | 'step'>} Range */
-/** `bounce`: to the end and back; `loop`: to the end, and again from the beginning. @typedef {'bounce' | 'loop'} Course */
+/**
+ * @import { Engine, Parameter } from '../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
+
+/** @typedef {Pick<Parameter, 'name' | 'min' | 'max' | 'step'>} Range */
+/**
+ * `bounce`: to the end and back; `loop`: to the end, and again from the beginning.
+ * @typedef {'bounce' | 'loop'} Course
+ */
 
 /** Seconds in which a parameter crosses its range, and in which the turntable turns once, at the usual speed. */
 export const CROSSING_S = 6;
@@ -70,8 +78,8 @@ export function createMotion(engine, stage) {
   });
   return {
     /** Name of the parameter that moves. */
-    playing: /** @type {import('@preact/signals-core').ReadonlySignal<string | null>} */ (playing),
-    turning: /** @type {import('@preact/signals-core').ReadonlySignal<boolean>} */ (turning),
+    playing: /** @type {ReadonlySignal<string | null>} */ (playing),
+    turning: /** @type {ReadonlySignal<boolean>} */ (turning),
     /** Whether a film is made, for which parameters and camera are moved. */
     filming,
     course,

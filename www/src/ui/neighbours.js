@@ -1,11 +1,18 @@
 /** Neighbours of particles, and statistics of what is measured between them. */
 
-/** A number for a cell. Two cells may share one: then some particles are compared in vain. @param {number} x @param {number} y @param {number} z */
+/**
+ * A number for a cell. Two cells may share one: then some particles are compared in vain.
+ * @param {number} x
+ * @param {number} y
+ * @param {number} z
+ */
 const keyOf = (x, y, z) => (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) >>> 0;
 
 /**
  * Sorts some particles into the cells of a grid.
- * @param {ArrayLike<number>} positions @param {Iterable<number>} chosen  their numbers @param {number} cell  side of a cell
+ * @param {ArrayLike<number>} positions
+ * @param {Iterable<number>} chosen  their numbers
+ * @param {number} cell  side of a cell
  */
 export function createGrid(positions, chosen, cell) {
   const cellOf = (/** @type {number} */ i) => [0, 1, 2].map((k) => Math.floor(positions[3 * i + k] / cell));
@@ -18,7 +25,11 @@ export function createGrid(positions, chosen, cell) {
     else cells.set(keyOf(x, y, z), [i]);
   }
   return {
-    /** Goes through the particles of the cells that are `ring` cells away from that of a particle. @param {number} i @param {number} ring */
+    /**
+     * Goes through the particles of the cells that are `ring` cells away from that of a particle.
+     * @param {number} i
+     * @param {number} ring
+     */
     *around(i, ring) {
       const [x, y, z] = cellOf(i);
       for (let dx = -ring; dx <= ring; dx += 1)

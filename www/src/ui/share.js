@@ -1,8 +1,10 @@
 /** Copies a link or exports a file. */
 import { FILE_SURFACE } from '../engine/types.js';
 
-/** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {import('./toasts.js').Toast} Toast */
+/**
+ * @import { Engine, MeshFormat } from '../engine/types.js'
+ * @import { Toast } from './toasts.js'
+ */
 
 /** @param {Engine} engine @param {Toast} toast */
 export async function copyLink(engine, toast) {
@@ -28,7 +30,7 @@ export async function copyLink(engine, toast) {
 export const exportFile = (engine, toast, format) =>
   exported(engine, toast, 'particles', () => engine.exportFile(format), `${stem(engine)}.${format}`);
 
-/** @param {Engine} engine @param {Toast} toast @param {import('../engine/types.js').MeshFormat} format */
+/** @param {Engine} engine @param {Toast} toast @param {MeshFormat} format */
 export const exportMesh = (engine, toast, format) =>
   exported(engine, toast, 'mesh', () => engine.exportMesh(format), `${stem(engine)}-mesh.${format}`);
 

@@ -1,12 +1,13 @@
 /**
- * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a double
- * click resets the value. The number can be typed and stepped.
+ * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a
+ * double click resets the value. The number can be typed and stepped.
  */
 import { h, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
 import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 
-/** @typedef {import('./scale.js').Scale} Scale */
+/** @import { Scale } from './scale.js' */
+
 /**
  * @typedef {object} SliderOptions
  * @property {string} name accessible name
@@ -122,7 +123,11 @@ class Model {
   }
 }
 
-/** Rounds to two digits beyond the grid, which keeps values that were typed or set with Shift. @param {Scale} scale @param {number} value */
+/**
+ * Rounds to two digits beyond the grid, which keeps values that were typed or set with Shift.
+ * @param {Scale} scale
+ * @param {number} value
+ */
 function exact(scale, value) {
   if (scale.integer) return value;
   if (scale.scale === 'log') return Number(value.toPrecision(5));

@@ -1,9 +1,9 @@
 /** Computes directions, extents and sections in the space of the surface, for controls and for marks on the picture. */
 
-/** @typedef {import('../engine/types.js').Vec3} Vec3 */
-/** @typedef {import('../engine/types.js').Bounds} Bounds */
-/** @typedef {import('../engine/types.js').CuttingPlane} CuttingPlane */
-/** @typedef {import('../engine/types.js').Ray} Ray */
+/**
+ * @import { Columns } from '../engine/columns.js'
+ * @import { Bounds, CuttingPlane, Ray, Vec3 } from '../engine/types.js'
+ */
 
 export const AXES = /** @type {const} */ (['x', 'y', 'z']);
 
@@ -19,21 +19,38 @@ export const axisVector = (axis, sign = 1) => /** @type {Vec3} */ ([0, 1, 2].map
 /** @param {Bounds} bounds @returns {Vec3} */
 export const centreOf = ({ min, max }) => /** @type {Vec3} */ (min.map((low, k) => (low + max[k]) / 2));
 
-/** Returns a corner of a box; bit k of `index` chooses the larger end along axis k. @param {Bounds} bounds @param {number} index @returns {Vec3} */
+/**
+ * Returns a corner of a box; bit k of `index` chooses the larger end along axis k.
+ * @param {Bounds} bounds
+ * @param {number} index
+ * @returns {Vec3}
+ */
 export const cornerOf = ({ min, max }, index) =>
   /** @type {Vec3} */ (min.map((low, k) => ((index >> k) & 1 ? max[k] : low)));
 
-/** Returns the direction from the camera's target to its eye. @param {{yaw: number, pitch: number}} camera @returns {Vec3} */
+/**
+ * Returns the direction from the camera's target to its eye.
+ * @param {{yaw: number, pitch: number}} camera
+ * @returns {Vec3}
+ */
 export const towardEye = ({ yaw, pitch }) => directionOf(yaw, pitch);
 
-/** Returns the unit vector at an azimuth in the xy plane, from x towards y, and an elevation above it. @param {number} azimuth @param {number} elevation @returns {Vec3} */
+/**
+ * Returns the unit vector at an azimuth in the xy plane, from x towards y, and an elevation above it.
+ * @param {number} azimuth
+ * @param {number} elevation
+ * @returns {Vec3}
+ */
 export const directionOf = (azimuth, elevation) => [
   Math.cos(azimuth) * Math.cos(elevation),
   Math.sin(azimuth) * Math.cos(elevation),
   Math.sin(elevation),
 ];
 
-/** Returns the azimuth and the elevation of a unit vector. The azimuth of a vertical one is 0. @param {readonly number[]} direction */
+/**
+ * Returns the azimuth and the elevation of a unit vector. The azimuth of a vertical one is 0.
+ * @param {readonly number[]} direction
+ */
 export function anglesOf([x, y, z]) {
   const across = Math.hypot(x, y);
   return { azimuth: across > 1e-9 ? Math.atan2(y, x) : 0, elevation: Math.atan2(z, across) };
@@ -42,7 +59,10 @@ export function anglesOf([x, y, z]) {
 /** Largest other component of a unit vector that counts as being along an axis. Links hold six digits. */
 const STRAIGHT = 1e-5;
 
-/** Returns the axis along which a unit vector lies, and its sign; null for a free direction. @param {ArrayLike<number>} direction */
+/**
+ * Returns the axis along which a unit vector lies, and its sign; null for a free direction.
+ * @param {ArrayLike<number>} direction
+ */
 export function axisOf(direction) {
   for (const axis of [0, 1, 2]) {
     const others = [0, 1, 2].filter((k) => k !== axis);
@@ -51,7 +71,12 @@ export function axisOf(direction) {
   return null;
 }
 
-/** Returns the smallest and the largest value of direction · p in a box. @param {Bounds} bounds @param {ArrayLike<number>} direction @returns {[number, number]} */
+/**
+ * Returns the smallest and the largest value of direction · p in a box.
+ * @param {Bounds} bounds
+ * @param {ArrayLike<number>} direction
+ * @returns {[number, number]}
+ */
 export function extentOf({ min, max }, direction) {
   let [low, high] = [0, 0];
   for (const k of [0, 1, 2]) {
@@ -147,7 +172,12 @@ export function niceStep(least) {
   return Number((factor * power).toPrecision(1));
 }
 
-/** Returns the multiples of a step within a range, in order. @param {number} low @param {number} high @param {number} step */
+/**
+ * Returns the multiples of a step within a range, in order.
+ * @param {number} low
+ * @param {number} high
+ * @param {number} step
+ */
 export function ticksIn(low, high, step) {
   const slack = 1e-9 * step;
   const first = Math.ceil((low - slack) / step);
@@ -157,7 +187,7 @@ export function ticksIn(low, high, step) {
 
 /**
  * Returns what is measured between two particles: their straight distance in units, and over the sum of their radii.
- * @param {import('../engine/columns.js').Columns} columns
+ * @param {Columns} columns
  * @param {readonly number[]} pair
  */
 export function separation({ positions, radii, adaptive }, [i, j]) {

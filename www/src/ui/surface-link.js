@@ -1,17 +1,15 @@
 /**
- * A surface in the address of the lesson's page: its formula, its parameters and its box, and the way back to the page from which it
- * comes. What is read from an address may be anything, so every part of it is checked.
+ * A surface in the address of the lesson's page: its formula, its parameters and its box, and the way back to the page
+ * from which it comes. What is read from an address may be anything, so every part of it is checked.
  */
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 
-/**
- * @typedef {import('../engine/types.js').Bounds} Bounds
- * @typedef {import('../engine/types.js').Parameter} Parameter
- */
+/** @import { Bounds, Parameter } from '../engine/types.js' */
+
 /** @typedef {{ formula: string, parameters: Parameter[], bounds: Bounds }} FormulaSurface */
 /**
- * What is carried over. `surface` is null if it comes from points, which no address can hold; `from` is the fragment of the page's
- * own address.
+ * What is carried over. `surface` is null if it comes from points, which no address can hold; `from` is the fragment of
+ * the page's own address.
  * @typedef {{ surface: FormulaSurface | null, from: string }} Carried
  */
 

@@ -3,14 +3,15 @@ import { effect } from '@preact/signals-core';
 import { fill, h } from './dom.js';
 import { icon } from './icons.js';
 
-/** @typedef {import('../engine/types.js').Notice} Notice */
+/** @import { Engine, Notice } from '../engine/types.js' */
+
 /** @typedef {(notice: Notice) => void} Toast */
 
 const STAY_MS = 6000;
 
 /**
  * @param {HTMLElement} host
- * @param {import('../engine/types.js').Engine} engine
+ * @param {Engine} engine
  * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
  * @returns {Toast}
  */

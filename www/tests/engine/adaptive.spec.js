@@ -2,10 +2,12 @@
 import { expect, test } from '@playwright/test';
 import { expectCanvasShown, open, picture, spots, status } from './browser.js';
 
-/** @param {import('@playwright/test').Page} page @param {object} patch @returns {Promise<any>} */
+/** @import { Page } from '@playwright/test' */
+
+/** @param {Page} page @param {object} patch @returns {Promise<any>} */
 const set = (page, patch) => page.evaluate((p) => /** @type {any} */ (window).marchingParticles.set(p), patch);
 
-/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+/** @param {Page} page @returns {Promise<any>} */
 const legend = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.legend.value);
 
 /** Some 900 particles, of which the largest are several times the smallest. */

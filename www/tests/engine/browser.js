@@ -1,7 +1,7 @@
 /** What the browser tests share: opening the page with an eye on its requests and errors, and looking at its pixels. */
 import { expect } from '@playwright/test';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
 /** A link to a state. @param {object} state */
 export const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
@@ -43,8 +43,8 @@ export const counts = (page) => page.evaluate(() => /** @type {any} */ (window).
 export const atRest = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
 
 /**
- * What is in the picture: the share of pixels that differ from its corner and of those that have a colour, and how many of 12 hues
- * there are.
+ * What is in the picture: the share of pixels that differ from its corner and of those that have a colour, and how many
+ * of 12 hues there are.
  * @param {Page} page
  * @param {number} [width] @param {number} [height]
  */
@@ -120,8 +120,8 @@ export async function expectCanvasShown(page) {
 }
 
 /**
- * The separate spots in the picture, their areas in pixels and how far their middles lie from the picture's, largest first; and how
- * many pixels are nearly black and nearly white.
+ * The separate spots in the picture, their areas in pixels and how far their middles lie from the picture's, largest
+ * first; and how many pixels are nearly black and nearly white.
  * @param {Page} page
  * @param {number} [width] @param {number} [height]
  */
@@ -169,7 +169,8 @@ export function spots(page, width = 600, height = 450) {
 }
 
 /**
- * Expects that a plane is darker and greyer from behind than from the front, and stands out from the ground on both sides.
+ * Expects that a plane is darker and greyer from behind than from the front, and stands out from the ground on both
+ * sides.
  * @param {Page} page @param {'discs' | 'mesh'} draw
  */
 export async function expectInside(page, draw) {

@@ -10,14 +10,22 @@ import {
   viewOf,
 } from '../../src/engine/view/camera.js';
 
-/** @typedef {import('../../src/engine/types.js').Vec3} Vec3 */
-/** @typedef {import('../../src/engine/view/camera.js').View} View */
+/**
+ * @import { Vec3 } from '../../src/engine/types.js'
+ * @import { View } from '../../src/engine/view/camera.js'
+ */
 
 const scene = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 2 };
 const size = /** @type {const} */ ([800, 600]);
 const state = { target: /** @type {Vec3} */ ([0.3, -0.2, 0.1]), distance: 6, yaw: 0.7, pitch: 0.3, fit: false };
 
-/** Pixel and depth of a world point. @param {View} view @param {readonly number[]} p @param {number} w @param {number} h */
+/**
+ * Pixel and depth of a world point.
+ * @param {View} view
+ * @param {readonly number[]} p
+ * @param {number} w
+ * @param {number} h
+ */
 function project(view, p, w = size[0], h = size[1]) {
   const m = view.clipFromWorld;
   const c = [0, 1, 2, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);

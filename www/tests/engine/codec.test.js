@@ -4,7 +4,7 @@ import { clampSettings, defaultState, fieldRequest, sanitize } from '../../src/e
 import { FILE_SURFACE } from '../../src/engine/types.js';
 import { description } from './description.js';
 
-/** @typedef {import('../../src/engine/types.js').State} State */
+/** @import { State } from '../../src/engine/types.js' */
 
 /** @returns {State} */
 const elaborate = () => ({

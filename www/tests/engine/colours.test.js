@@ -64,7 +64,8 @@ describe.each(themes)('the palettes, %s', (theme) => {
     expect(Math.max(...lightness) - Math.min(...lightness)).toBeLessThan(0.006);
   });
 
-  // A just noticeable difference in OKLab is about 0.02 for patches side by side. Tritanopia, one eye in 10,000, is near it.
+  // A just noticeable difference in OKLab is about 0.02 for patches side by side. Tritanopia, one eye in 10,000, is
+  // near it.
   test.each(
     /** @type {const} */ ([
       ['ordinary', 0.055],

@@ -135,7 +135,12 @@ describe('columns', () => {
 
 describe('picking', () => {
   const columns = sphere(2000);
-  /** The definition: every disc of such a size, one by one. @param {number[]} eye @param {number[]} ray @param {number} scale */
+  /**
+   * The definition: every disc of such a size, one by one.
+   * @param {number[]} eye
+   * @param {number[]} ray
+   * @param {number} scale
+   */
   function oracle(eye, ray, scale) {
     let best = null;
     let bestT = Infinity;

@@ -1,8 +1,9 @@
 /** A description as the core gives it, cut down to what the engine's tests need. */
 
+/** @import { Description, SettingInfo } from '../../src/engine/types.js' */
+
 /**
- * @typedef {import('../../src/engine/types.js').SettingInfo} SettingInfo
- * @typedef {import('../../src/engine/types.js').Description['columns'][number]} Column
+ * @typedef {Description['columns'][number]} Column
  */
 
 /** @param {string} name @param {Partial<SettingInfo>} change @returns {SettingInfo} */
@@ -26,7 +27,7 @@ const setting = (name, change) => ({
 /** @param {string} name @param {Column['kind']} kind @returns {Column} */
 const column = (name, kind, measured = false) => ({ name, kind, measured });
 
-/** @type {import('../../src/engine/types.js').Description} */
+/** @type {Description} */
 export const description = {
   version: '0.1.0',
   default_surface: 'ellipsoid',

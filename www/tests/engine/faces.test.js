@@ -4,6 +4,8 @@ import { FaceUpload, marksOf, valencesOf } from '../../src/engine/view/faces.js'
 import { PALETTES } from '../../src/engine/view/palettes.js';
 import { firstLook } from '../../src/engine/view/style.js';
 
+/** @import { Mesh } from '../../src/engine/types.js' */
+
 const TETRAHEDRON = Uint32Array.of(0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2);
 /** `n` triangles around vertex 0. @param {number} n */
 const fanOf = (n) => Uint32Array.from(Array.from({ length: n }, (_, k) => [0, 1 + k, 1 + ((k + 1) % n)]).flat());
@@ -23,7 +25,7 @@ function columnsOf(n) {
   return columns;
 }
 
-/** @param {Uint32Array} triangles @returns {import('../../src/engine/types.js').Mesh} */
+/** @param {Uint32Array} triangles @returns {Mesh} */
 const meshOf = (triangles) => ({
   triangles,
   about: { triangles: triangles.length / 3, components: [], unfilled: 0, left_out: 0 },

@@ -1,11 +1,16 @@
 /**
- * A core of a few lines for the tests of the job loop: a surface whose front grows by one particle per work unit and whose
- * relaxation moves every particle once per step. Time passes only through `clock`.
+ * A core of a few lines for the tests of the job loop: a surface whose front grows by one particle per work unit and
+ * whose relaxation moves every particle once per step. Time passes only through `clock`.
  */
 
 /**
- * @param {string} formula @param {import('../../src/engine/types.js').Bounds} bounds
- * @returns {import('../../src/engine/types.js').FieldAnswer}
+ * @import { Bounds, CoreProgress, CoreReport, FieldAnswer, FieldRequest } from '../../src/engine/types.js'
+ * @import { MeshAnswer, Settings, SolvedModel, StartAnswer, StopReason } from '../../src/engine/types.js'
+ */
+
+/**
+ * @param {string} formula @param {Bounds} bounds
+ * @returns {FieldAnswer}
  */
 const field = (formula, bounds) => ({
   ok: true,
@@ -27,7 +32,8 @@ const field = (formula, bounds) => ({
  * @param {number} [options.usPerUnit]
  * @param {number} [options.slices]  of a measurement
  * @param {number} [options.usPerSlice]
- * @param {number} [options.refined_levels]  of a refinement after the front, of which each level has four times as many particles
+ * @param {number} [options.refined_levels]  of a refinement after the front, of which each level has four times as many
+ *   particles
  * @param {number} [options.fitSlices]  of the search for a box
  */
 export function fakeCore({
@@ -46,13 +52,13 @@ export function fakeCore({
   let step = 0;
   let steps = relax_steps;
   let target = particles;
-  /** @type {import('../../src/engine/types.js').StopReason} */
+  /** @type {StopReason} */
   let stop = null;
   let moves = 0;
   let measured = 0;
   let joined = 0;
   let refined = 0;
-  /** @returns {import('../../src/engine/types.js').CoreProgress} */
+  /** @returns {CoreProgress} */
   const progress = (moved = false) => ({
     phase: stop ? 'done' : count < target ? 'generation' : refined_levels ? 'refinement' : 'relaxation',
     particles: count,
@@ -76,7 +82,7 @@ export function fakeCore({
   return {
     clock,
     calls,
-    /** @param {import('../../src/engine/types.js').FieldRequest} request @returns {import('../../src/engine/types.js').FieldAnswer} */
+    /** @param {FieldRequest} request @returns {FieldAnswer} */
     set_field({ formula }) {
       calls.push('set_field');
       if (formula === 'x^2+')
@@ -94,7 +100,7 @@ export function fakeCore({
         };
       return field(formula ?? '', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
-    /** @param {Uint8Array} bytes @param {import('../../src/engine/types.js').SolvedModel} about @returns {import('../../src/engine/types.js').FieldAnswer} */
+    /** @param {Uint8Array} bytes @param {SolvedModel} about @returns {FieldAnswer} */
     set_points(bytes, { info, bounds }) {
       calls.push(`set_points ${bytes.length}`);
       return {
@@ -111,8 +117,8 @@ export function fakeCore({
       };
     },
     /**
-     * @param {import('../../src/engine/types.js').Settings} _settings @param {boolean} _onlyGrows @param {number} budget
-     * @returns {import('../../src/engine/types.js').FieldAnswer | undefined}
+     * @param {Settings} _settings @param {boolean} _onlyGrows @param {number} budget
+     * @returns {FieldAnswer | undefined}
      */
     fit(_settings, _onlyGrows, budget) {
       const n = Math.min(budget, fitSlices - fitted);
@@ -122,7 +128,7 @@ export function fakeCore({
       fitted = 0;
       return field('x', { min: [-2, -2, -2], max: [2, 2, 2] });
     },
-    /** @param {import('../../src/engine/types.js').Settings} settings @returns {import('../../src/engine/types.js').StartAnswer} */
+    /** @param {Settings} settings @returns {StartAnswer} */
     start(settings) {
       calls.push('start');
       if (settings.count) target = Number(settings.count);
@@ -190,9 +196,9 @@ export function fakeCore({
       measured += n;
       clock.ms += (n * usPerSlice) / 1000;
       if (measured < slices) return undefined;
-      return /** @type {import('../../src/engine/types.js').CoreReport} */ ({ count, digest: 'd' });
+      return /** @type {CoreReport} */ ({ count, digest: 'd' });
     },
-    /** @param {number} budget @returns {import('../../src/engine/types.js').MeshAnswer | undefined} */
+    /** @param {number} budget @returns {MeshAnswer | undefined} */
     join(budget) {
       calls.push('join');
       const n = Math.min(budget, slices - joined);

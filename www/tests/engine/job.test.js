@@ -4,8 +4,10 @@ import { runJob } from '../../src/engine/sampling/job.js';
 import { Jobs } from '../../src/engine/sampling/jobs.js';
 import { fakeCore } from './fake-core.js';
 
-/** @typedef {import('../../src/engine/sampling/protocol.js').FromWorker} FromWorker */
-/** @typedef {import('../../src/engine/sampling/protocol.js').SampleJob} SampleJob */
+/**
+ * @import { Memory } from '../../src/engine/sampling/job.js'
+ * @import { FromWorker, Job, SampleJob } from '../../src/engine/sampling/protocol.js'
+ */
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
 const sampleJob = (part = {}) => ({
@@ -24,8 +26,9 @@ const sampleJob = (part = {}) => ({
 /**
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
- * @param {import('../../src/engine/sampling/protocol.js').Job} job
- * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, mesh?: boolean, memory?: import('../../src/engine/sampling/job.js').Memory}} [options]
+ * @param {Job} job
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean,
+ *   curvature?: (posted: FromWorker[]) => boolean, mesh?: boolean, memory?: Memory}} [options]
  */
 async function run(
   core,
@@ -59,7 +62,12 @@ async function run(
   return { posted, memory };
 }
 
-/** @template {FromWorker['type']} T @param {FromWorker[]} posted @param {T} type @returns {Extract<FromWorker, {type: T}>[]} */
+/**
+ * @template {FromWorker['type']} T
+ * @param {FromWorker[]} posted
+ * @param {T} type
+ * @returns {Extract<FromWorker, {type: T}>[]}
+ */
 const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type === type));
 
 describe('a job', () => {
@@ -421,7 +429,12 @@ async function work(core, first, meanwhile = () => {}) {
 }
 
 describe('a job that comes while another is under way', () => {
-  /** Adds it once so many messages of a kind are there. @param {SampleJob} job @param {FromWorker['type']} type @param {number} n */
+  /**
+   * Adds it once so many messages of a kind are there.
+   * @param {SampleJob} job
+   * @param {FromWorker['type']} type
+   * @param {number} n
+   */
   const once = (job, type, n) => {
     let added = false;
     return (/** @type {Jobs} */ jobs, /** @type {FromWorker[]} */ posted) => {

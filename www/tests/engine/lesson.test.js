@@ -2,9 +2,7 @@ import { describe, expect, test, vi } from 'vitest';
 import { LessonClient, LessonError } from '../../src/engine/lesson/client.js';
 import { follow } from '../../src/engine/lesson/follow.js';
 
-/** @typedef {import('../../src/engine/lesson/protocol.js').FromLesson} FromLesson */
-/** @typedef {import('../../src/engine/lesson/protocol.js').ToLesson} ToLesson */
-/** @typedef {import('../../src/engine/lesson/protocol.js').LessonProgress} LessonProgress */
+/** @import { FromLesson, LessonProgress, ToLesson } from '../../src/engine/lesson/protocol.js' */
 
 const bounds = {
   min: /** @type {[number, number, number]} */ ([-1, -1, -1]),

@@ -1,8 +1,10 @@
-/** The generation levels in the picture: what is hidden, muted and picked, and what it costs to go from one to another. */
+/**
+ * The generation levels in the picture: what is hidden, muted and picked, and what it costs to go from one to another.
+ */
 import { expect, test } from '@playwright/test';
 import { atRest, coarse, counts, link, open, picture } from './browser.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
 /**
  * Shows a level, and waits for what is drawn of the surface to come.
@@ -17,7 +19,10 @@ async function show(page, level) {
   });
 }
 
-/** Faces the seed, so that the first levels are in front, and holds the camera, which would frame them. @param {Page} page */
+/**
+ * Faces the seed, so that the first levels are in front, and holds the camera, which would frame them.
+ * @param {Page} page
+ */
 const faceSeed = (page) =>
   page.evaluate(() => {
     const p = /** @type {any} */ (window).marchingParticles;

@@ -2,9 +2,12 @@
 import { expect, test } from '@playwright/test';
 import { atRest, coarse, expectInside, link, open, picture, status } from './browser.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/**
+ * @import { ViewState } from '../../src/engine/types.js'
+ * @import { Page } from '@playwright/test'
+ */
 
-/** @param {Page} page @param {Partial<import('../../src/engine/types.js').ViewState>} view */
+/** @param {Page} page @param {Partial<ViewState>} view */
 async function look(page, view) {
   await page.evaluate((v) => /** @type {any} */ (window).marchingParticles.engine.setView(v), view);
   await expect.poll(async () => (await status(page)).mesh !== null).toBe(view.draw !== 'discs');

@@ -3,7 +3,9 @@ import { readFileSync } from 'node:fs';
 import { expect, test } from '@playwright/test';
 import { atRest, coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
 
-/** @param {import('@playwright/test').Page} page @param {string} expression  of `p`, the console interface */
+/** @import { Page, Route } from '@playwright/test' */
+
+/** @param {Page} page @param {string} expression  of `p`, the console interface */
 const on = (page, expression) =>
   page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
 
@@ -199,7 +201,11 @@ test.describe('links', () => {
     await expect.poll(async () => /** @type {any} */ (await on(page, 'p.state')).surface).toBe('torus');
   });
 
-  /** What the page says of a link. On a slow machine it is gone before the surface is there, for which this waits. @param {import('@playwright/test').Page} page @param {string} address */
+  /**
+   * What the page says of a link. On a slow machine it is gone before the surface is there, for which this waits.
+   * @param {Page} page
+   * @param {string} address
+   */
   async function noticeOf(page, address) {
     await page.goto(address);
     const notice = await page.waitForFunction(() => {
@@ -542,7 +548,7 @@ test.describe('files', () => {
 });
 
 test.describe('a sampler that does not load', () => {
-  /** @type {[string, (route: import('@playwright/test').Route) => Promise<void>, RegExp][]} */
+  /** @type {[string, (route: Route) => Promise<void>, RegExp][]} */
   const faults = [
     ['is missing', (route) => route.fulfill({ status: 404, body: 'not found' }), /404/],
     ['is blocked', (route) => route.abort('blockedbyclient'), /could not be fetched/],

@@ -2,7 +2,10 @@
 import { expect, test } from '@playwright/test';
 import { atRest, link, open, status } from './browser.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/**
+ * @import { CuttingPlane } from '../../src/engine/types.js'
+ * @import { Page } from '@playwright/test'
+ */
 
 /** Seen from +x with z up: +y is on the right. */
 const camera = { target: [0, 0, 0], distance: 6, yaw: 0, pitch: 0, fit: false };
@@ -19,7 +22,7 @@ const halves = (page) =>
     return seen;
   });
 
-/** @param {Page} page @param {import('../../src/engine/types.js').CuttingPlane | null} plane */
+/** @param {Page} page @param {CuttingPlane | null} plane */
 async function cut(page, plane) {
   await page.evaluate((p) => /** @type {any} */ (window).marchingParticles.engine.setPlane(p), plane);
   await atRest(page);

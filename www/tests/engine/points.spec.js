@@ -2,7 +2,7 @@
 import { expect, test } from '@playwright/test';
 import { counts, expectCanvasShown, expectSurface, link, open, spots, status } from './browser.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
 /** @param {Page} page @param {string} expression  of `p`, the console interface */
 const on = (page, expression) =>
@@ -23,7 +23,13 @@ function spherePly(n, radius) {
   const names = ['x', 'y', 'z', 'nx', 'ny', 'nz'].map((name) => `property float ${name}`);
   return ['ply', 'format ascii 1.0', `element vertex ${n}`, ...names, 'end_header', ...rows, ''].join('\n');
 }
-/** Opens a file by the console interface and gives the report. @param {Page} page @param {string} name @param {string} text @returns {Promise<any>} */
+/**
+ * Opens a file by the console interface and gives the report.
+ * @param {Page} page
+ * @param {string} name
+ * @param {string} text
+ * @returns {Promise<any>}
+ */
 const openFile = (page, name, text) =>
   page.evaluate(
     ([file, content]) => /** @type {any} */ (window).marchingParticles.open(new File([content], file)),

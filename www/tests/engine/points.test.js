@@ -7,14 +7,17 @@ import { createStore } from '../../src/engine/store.js';
 import { FILE_SURFACE } from '../../src/engine/types.js';
 import { description } from './description.js';
 
-/** @typedef {import('../../src/engine/points/protocol.js').FromPoints} FromPoints */
-/** @typedef {import('../../src/engine/points/protocol.js').Solved} Solved */
+/**
+ * @import { FromPoints, Order, Solved } from '../../src/engine/points/protocol.js'
+ * @import { PointsLike } from '../../src/engine/points/solve.js'
+ * @import { ModelInfo } from '../../src/engine/types.js'
+ */
 
 const bounds = {
   min: /** @type {[number, number, number]} */ ([-1, -1, -1]),
   max: /** @type {[number, number, number]} */ ([1, 1, 1]),
 };
-const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
+const info = /** @type {ModelInfo} */ ({
   name: 'Bunny',
   credit: 'Stanford',
   points: 200,
@@ -36,7 +39,7 @@ const begun = { stage: stages[0], label: 'x', fraction: 0, done: false };
 
 /**
  * A solver in three stages that refuses names with “broken” in them.
- * @returns {import('../../src/engine/points/solve.js').PointsLike}
+ * @returns {PointsLike}
  */
 function fakePoints() {
   let steps = 0;
@@ -66,7 +69,7 @@ function fakePoints() {
     centres: () => Float32Array.of(0, 0, 1),
   };
 }
-/** @param {import('../../src/engine/points/protocol.js').Order} order */
+/** @param {Order} order */
 async function answers(order) {
   /** @type {FromPoints[]} */
   const posted = [];

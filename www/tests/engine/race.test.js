@@ -8,7 +8,10 @@ const bounds = {
 const surface = { formula: 'x^2 + y^2 + z^2 = 1', parameters: [], bounds };
 const ours = { radius: 0.1 };
 
-/** Workers whose turns take `workMs`, and which are done after `turns` of them. @param {{workMs: number, turns: number}[]} lanes */
+/**
+ * Workers whose turns take `workMs`, and which are done after `turns` of them.
+ * @param {{workMs: number, turns: number}[]} lanes
+ */
 function fakeWorkers(lanes) {
   let spawned = 0;
   return () => {

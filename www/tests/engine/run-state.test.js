@@ -11,9 +11,9 @@ import {
 import { description } from './description.js';
 
 /**
- * @typedef {import('../../src/engine/sampling/run-state.js').RunEvent} RunEvent
- * @typedef {import('../../src/engine/sampling/run-state.js').RunState} RunState
- * @typedef {import('../../src/engine/sampling/run-state.js').SampleRequest} SampleRequest
+ * @import { Outcome } from '../../src/engine/sampling/protocol.js'
+ * @import { RunEvent, RunState, SampleRequest } from '../../src/engine/sampling/run-state.js'
+ * @import { Bounds } from '../../src/engine/types.js'
  */
 
 const { bounds } = description.surfaces[0];
@@ -40,10 +40,13 @@ const relax = (of, steps) => ({
 const accepted = (id) => ({ type: 'accepted', id, bounds });
 /** @type {RunEvent} */
 const particles = { type: 'particles', description };
-/** @param {import('../../src/engine/sampling/protocol.js').Outcome} outcome @param {number} n @param {boolean} [reportFollows] @returns {RunEvent} */
+/** @param {Outcome} outcome @param {number} n @param {boolean} [reportFollows] @returns {RunEvent} */
 const done = (outcome, n, reportFollows = false) => ({ type: 'done', outcome, particles: n, reportFollows });
 
-/** What has come of these events. No state is changed: each is frozen before the next event. @param {RunEvent[]} events */
+/**
+ * What has come of these events. No state is changed: each is frozen before the next event.
+ * @param {RunEvent[]} events
+ */
 const stateAfter = (...events) => events.reduce((state, event) => Object.freeze(reduce(state, event)), IDLE);
 
 /** A whole run of x, with its report. */
@@ -53,7 +56,7 @@ const afterWhole = (...more) => stateAfter(.../** @type {RunEvent[]} */ (whole()
 
 describe('a run', () => {
   test('has the box that was found for it, and not that of its field before', () => {
-    /** @type {import('../../src/engine/types.js').Bounds} */
+    /** @type {Bounds} */
     const found = { min: [-9, -9, -9], max: [9, 9, 9] };
     expect(stateAfter({ type: 'boxed', bounds: found }).current).toBeNull();
     const state = stateAfter(sent(wish('x')), accepted(1), { type: 'boxed', bounds: found });

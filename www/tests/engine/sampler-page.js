@@ -5,7 +5,7 @@ import { Sampler } from '../../src/engine/sampling/sampler.js';
 import { createStore } from '../../src/engine/store.js';
 import { description } from './description.js';
 
-/** @typedef {import('../../src/engine/sampling/run-state.js').SampleRequest} SampleRequest */
+/** @import { SampleRequest } from '../../src/engine/sampling/run-state.js' */
 
 /** @type {any[]} */
 export let workers = [];
@@ -87,7 +87,8 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
 
 /**
  * `say` posts a message of the worker, `accept` its answer to a field, `complete` all that ends a run of n particles.
- * @returns {{sampler: Sampler, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
+ * @returns {{sampler: Sampler, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void,
+ *   accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
  */
 export function page() {
   const store = createStore();

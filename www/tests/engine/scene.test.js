@@ -4,7 +4,9 @@ import { ballOf } from '../../src/engine/view/camera.js';
 import { Dimmer } from '../../src/engine/view/dimmer.js';
 import { Scene } from '../../src/engine/view/scene.js';
 
-/** @returns {import('../../src/engine/types.js').Bounds} */
+/** @import { Bounds } from '../../src/engine/types.js' */
+
+/** @returns {Bounds} */
 const cube = (/** @type {number} */ side) => ({ min: [-side, -side, -side], max: [side, side, side] });
 
 describe('a fit', () => {

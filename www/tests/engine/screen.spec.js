@@ -1,8 +1,12 @@
-/** A screen that changes under the picture: hidden tab, resized window, another pixel ratio, a size beyond the device. */
+/**
+ * A screen that changes under the picture: hidden tab, resized window, another pixel ratio, a size beyond the device.
+ */
 import { expect, test } from '@playwright/test';
 import { coarse, counts, expectCanvasShown, expectSurface, open, picture, status } from './browser.js';
 
-/** Sizes of the canvas: its pixels, and what it covers of the page. @param {import('@playwright/test').Page} page */
+/** @import { Page } from '@playwright/test' */
+
+/** Sizes of the canvas: its pixels, and what it covers of the page. @param {Page} page */
 const canvas = (page) =>
   page.evaluate(() => {
     const element = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
@@ -20,7 +24,7 @@ function believe(hidden) {
   document.dispatchEvent(new Event('visibilitychange'));
 }
 
-/** @param {import('@playwright/test').Page} page @param {boolean} hidden */
+/** @param {Page} page @param {boolean} hidden */
 const hide = (page, hidden) => page.evaluate(believe, hidden);
 
 test('a hidden tab draws nothing and samples on; shown again it has the new surface', async ({ page }) => {

@@ -1,24 +1,26 @@
 /**
- * Hours in a few seconds: after many resamplings the page holds no more memory than after the first ones. `SOAK` sets their number:
- * `SOAK=5000 npx playwright test tests/engine/soak.spec.js` takes half an hour and more.
+ * Hours in a few seconds: after many resamplings the page holds no more memory than after the first ones. `SOAK` sets
+ * their number: `SOAK=5000 npx playwright test tests/engine/soak.spec.js` takes half an hour and more.
  */
 import { expect, test } from '@playwright/test';
 import { open } from './browser.js';
 
 const TIMES = Number(process.env.SOAK ?? 40);
 /**
- * Resamplings before the first look: buffers have grown to their sizes then. In a long soak there are more, so that V8 has compiled what
- * is called often, and the wasm memory has seen most of the moments at which a run can be given up.
+ * Resamplings before the first look: buffers have grown to their sizes then. In a long soak there are more, so that V8
+ * has compiled what is called often, and the wasm memory has seen most of the moments at which a run can be given up.
  */
 const WARM = Math.max(60, TIMES / 5);
 /**
- * What the page and its tools may hold more than before, in bytes. Without a long beginning 5,000 resamplings leave 1.1 MB more: heap
- * snapshots show that 0.8 MB of it is machine code, which comes within the first 1,000, and no objects are.
+ * What the page and its tools may hold more than before, in bytes. Without a long beginning 5,000 resamplings leave 1.1
+ * MB more: heap snapshots show that 0.8 MB of it is machine code, which comes within the first 1,000, and no objects
+ * are.
  */
 const MOST_HEAP = 4e6;
 /**
- * The wasm memory may grow by this many bytes. It never shrinks, so its size is the peak of all runs, which depends on where runs are
- * given up: it was between 17.4 and 18.0 MB after the first 60 resamplings, and 17.6 and 18.3 MB after 5,000.
+ * The wasm memory may grow by this many bytes. It never shrinks, so its size is the peak of all runs, which depends on
+ * where runs are given up: it was between 17.4 and 18.0 MB after the first 60 resamplings, and 17.6 and 18.3 MB after
+ * 5,000.
  */
 const MOST_WASM = 1e6;
 

@@ -1,14 +1,23 @@
-/** Fingers on the picture: a tap chooses a particle, two fingers zoom and carry the surface, and the page itself stays as it is. */
+/**
+ * Fingers on the picture: a tap chooses a particle, two fingers zoom and carry the surface, and the page itself stays
+ * as it is.
+ */
 import { expect, test } from '@playwright/test';
 import { open } from './browser.js';
 
+/** @import { Page } from '@playwright/test' */
+
 test.use({ hasTouch: true, viewport: { width: 480, height: 640 } });
 
-/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+/** @param {Page} page @returns {Promise<any>} */
 const camera = (page) =>
   page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.state.value.view.camera);
 
-/** A place of the picture that no panel covers and where a particle is. @param {import('@playwright/test').Page} page @returns {Promise<[number, number]>} */
+/**
+ * A place of the picture that no panel covers and where a particle is.
+ * @param {Page} page
+ * @returns {Promise<[number, number]>}
+ */
 const place = (page) =>
   page.evaluate(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
@@ -30,8 +39,11 @@ const place = (page) =>
 
 /**
  * Two fingers, from and to these distances from the middle, in steps.
- * @param {import('@playwright/test').Page} page
- * @param {[number, number]} at @param {number} fromPx @param {number} toPx @param {[number, number]} [carry]  way of the middle
+ * @param {Page} page
+ * @param {[number, number]} at
+ * @param {number} fromPx
+ * @param {number} toPx
+ * @param {[number, number]} [carry]  way of the middle
  */
 async function pinch(page, at, fromPx, toPx, carry = [0, 0]) {
   const session = await page.context().newCDPSession(page);

@@ -2,7 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { coarse, link, open } from './browser.js';
 
-/** @param {import('@playwright/test').Page} page @param {string} expression  of p, the console @returns {Promise<any>} */
+/** @import { Page } from '@playwright/test' */
+
+/** @param {Page} page @param {string} expression  of p, the console @returns {Promise<any>} */
 const on = (page, expression) =>
   page.evaluate(
     (body) => new Function('p', `return (${body})`)(/** @type {any} */ (window).marchingParticles),

@@ -4,6 +4,8 @@ import { Reveal } from '../../src/engine/view/reveal.js';
 import { firstLook } from '../../src/engine/view/style.js';
 import { ParticleUpload } from '../../src/engine/view/upload.js';
 
+/** @import { ColourMode } from '../../src/engine/types.js' */
+
 const nowS = 10;
 
 /** Columns of so many particles, of growing radius and two to a level. @param {number} n */
@@ -35,7 +37,7 @@ function device() {
   return { renderer, told };
 }
 
-/** @param {import('../../src/engine/types.js').ColourMode} colour */
+/** @param {ColourMode} colour */
 const look = (colour) => ({ ...firstLook(/** @type {any} */ ({ colour, size: 1 })) });
 const present = () => ({ reveal: new Reveal(), calm: true, nowS });
 

@@ -1,6 +1,7 @@
 /**
  * A core of the browser tests in the browser that `ENGINE` names: `firefox`, from `FIREFOX_PATH`, or `webkit`, from
- * `WEBKIT_DRIVER` and `WEBKIT_BROWSER`. They drive the page by its console, as the browsers differ in nothing that it hides.
+ * `WEBKIT_DRIVER` and `WEBKIT_BROWSER`. They drive the page by its console, as the browsers differ in nothing that it
+ * hides.
  */
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -8,7 +9,7 @@ import { after, before, test } from 'node:test';
 import { createSite } from '../server.js';
 import { firefox, webkit } from './drivers.js';
 
-/** @typedef {import('./drivers.js').Tab} Tab */
+/** @import { Tab } from './drivers.js' */
 
 const PORT = 4519;
 const SITE = `http://localhost:${PORT}/sub/path/`;

@@ -3,6 +3,8 @@ import AxeBuilder from '@axe-core/playwright';
 import { expect } from '@playwright/test';
 import { packCarried } from '../../src/ui/surface-link.js';
 
+/** @import { Locator, Page } from '@playwright/test' */
+
 /** A torus, as the first page hands it over. */
 export const TORUS = packCarried({
   surface: {
@@ -15,7 +17,7 @@ export const TORUS = packCarried({
 
 /**
  * Opens the lesson. Errors and violations of the content security policy fail the test.
- * @param {import('@playwright/test').Page} page
+ * @param {Page} page
  * @param {{ hash?: string, width?: number, height?: number, place?: string }} [how]
  */
 export async function openLesson(page, { hash = '', width = 1280, height = 800, place = './' } = {}) {
@@ -33,7 +35,7 @@ export async function openLesson(page, { hash = '', width = 1280, height = 800, 
   return { clean: () => expect(faults).toEqual([]) };
 }
 
-/** Waits until a figure has come to an end, whatever it is. @param {import('@playwright/test').Page} page @param {string} name */
+/** Waits until a figure has come to an end, whatever it is. @param {Page} page @param {string} name */
 export async function settled(page, name) {
   const stage = page.locator(`[data-figure="${name}"]`);
   await stage.scrollIntoViewIfNeeded();
@@ -41,24 +43,24 @@ export async function settled(page, name) {
   return stage;
 }
 
-/** @param {import('@playwright/test').Page} page @param {string} name */
+/** @param {Page} page @param {string} name */
 export async function live(page, name) {
   const stage = await settled(page, name);
   await expect(stage).toHaveAttribute('data-state', 'live');
   return stage;
 }
 
-/** The width by which the page can be scrolled sideways. @param {import('@playwright/test').Page} page */
+/** The width by which the page can be scrolled sideways. @param {Page} page */
 export const overflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-/** @param {import('@playwright/test').Page} page */
+/** @param {Page} page */
 export const scan = (page) =>
   new AxeBuilder({ page })
     .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'])
     .analyze();
 
-/** A number that stands for what a picture shows. @param {import('@playwright/test').Locator} picture */
+/** A number that stands for what a picture shows. @param {Locator} picture */
 export const fingerprint = (picture) =>
   picture.locator('canvas').evaluate((element) => {
     const canvas = /** @type {HTMLCanvasElement} */ (element);

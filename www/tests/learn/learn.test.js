@@ -7,6 +7,8 @@ import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
 import { seedAt } from '../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
+/** @import { Control } from '../../src/learn/whatifs.js' */
+
 const SURFACE = {
   formula: 'x^2 + y^2 = a − é',
   parameters: [{ name: 'a', label: 'a', value: -2.5, min: -2.5, max: 1, step: 0.01 }],
@@ -16,7 +18,11 @@ const SURFACE = {
   },
 };
 
-/** @param {number[][]} places @param {Partial<Record<'levels' | 'parents' | 'fronts', number[]>>} [more] @returns {any} */
+/**
+ * @param {number[][]} places
+ * @param {Partial<Record<'levels' | 'parents' | 'fronts', number[]>>} [more]
+ * @returns {any}
+ */
 const particles = (places, { levels = [], parents = [], fronts = [] } = {}) => ({
   positions: Float32Array.from(places.flat()),
   normals: Float32Array.from(places.flat()),
@@ -117,7 +123,7 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
   const task = {
     title: 'Seams',
     setup: { what: 'tolerance', left: '0.7', right: '0.95' },
-    locks: /** @type {import('../../src/learn/whatifs.js').Control[]} */ (['what', 'right', 'figures', 'race']),
+    locks: /** @type {Control[]} */ (['what', 'right', 'figures', 'race']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);

@@ -1,7 +1,11 @@
-/** The lesson as an article: its figures, its questions, its comparisons, and what it does where something is missing. */
+/**
+ * The lesson as an article: its figures, its questions, its comparisons, and what it does where something is missing.
+ */
 import { expect, test } from '@playwright/test';
 import { createSite } from '../server.js';
 import { fingerprint, live, openLesson, overflow, scan, settled, TORUS } from './helpers.js';
+
+/** @import { AddressInfo } from 'node:net' */
 
 const FIGURES = ['why', 'cost', 'six', 'circle', 'first', 'rings', 'order', 'seams', 'rest', 'sizes'];
 
@@ -181,7 +185,7 @@ test.describe('stored', () => {
   test('after one visit the lesson needs no network', async ({ page }) => {
     const server = createSite();
     await new Promise((done) => server.listen(0, 'localhost', () => done(undefined)));
-    const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
+    const { port } = /** @type {AddressInfo} */ (server.address());
     await page.goto(`http://localhost:${port}/sub/path/learn/`);
     await page.waitForFunction(() => navigator.serviceWorker.controller?.state === 'activated');
     server.closeAllConnections();

@@ -1,8 +1,9 @@
 /**
- * Takes the still pictures of the lesson from its own figures, from the built site: `npm run pictures:lesson [-- address]`.
+ * Takes the still pictures of the lesson from its own figures, from the built site: `npm run pictures:lesson [--
+ * address]`.
  *
- * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot be; and a still of
- * each comparison, for paper and for readers without JavaScript.
+ * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot
+ * be; and a still of each comparison, for paper and for readers without JavaScript.
  */
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -11,7 +12,10 @@ import { WHAT_IFS } from '../../src/learn/whatifs.js';
 
 const [base = 'http://localhost:4517/'] = process.argv.slice(2);
 const folder = fileURLToPath(new URL('../../learn/stills/', import.meta.url));
-/** What is not of the picture. The bars of the costs are shown, since their still is for readers without JavaScript alone. */
+/**
+ * What is not of the picture. The bars of the costs are shown, since their still is for readers without JavaScript
+ * alone.
+ */
 const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, figcaption { display: none !important }
   .told { min-height: 0 !important } .cost { display: table !important }`;
 

@@ -1,7 +1,9 @@
 import { expect, test } from '@playwright/test';
 import { open, report, settled, state, typeFormula } from './helpers.js';
 
-const cut = (/** @type {import('@playwright/test').Page} */ page) => page.locator('.cut');
+/** @import { Page } from '@playwright/test' */
+
+const cut = (/** @type {Page} */ page) => page.locator('.cut');
 
 test('a sphere typed letter by letter over the ellipsoid is whole', async ({ page }) => {
   const { clean } = await open(page);

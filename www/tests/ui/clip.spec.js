@@ -1,17 +1,25 @@
-/** The cutting plane and the handles of the clip box: by pointer, by finger, by keyboard, in links and in the history. */
+/**
+ * The cutting plane and the handles of the clip box: by pointer, by finger, by keyboard, in links and in the history.
+ */
 import { expect, test } from '@playwright/test';
 import { atRest, open, scan, settled, state } from './helpers.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Locator, Page } from '@playwright/test' */
 
-/** Middle of an element in the window. @param {import('@playwright/test').Locator} element @returns {Promise<[number, number]>} */
+/** Middle of an element in the window. @param {Locator} element @returns {Promise<[number, number]>} */
 async function middle(element) {
   const box = await element.boundingBox();
   if (!box) throw new Error('the element has no box');
   return [box.x + box.width / 2, box.y + box.height / 2];
 }
 
-/** Drags an element by some pixels. @param {Page} page @param {import('@playwright/test').Locator} element @param {number} dx @param {number} dy */
+/**
+ * Drags an element by some pixels.
+ * @param {Page} page
+ * @param {Locator} element
+ * @param {number} dx
+ * @param {number} dy
+ */
 async function drag(page, element, dx, dy) {
   const [x, y] = await middle(element);
   await page.mouse.move(x, y);

@@ -1,7 +1,9 @@
 import { describe, expect, it } from 'vitest';
 import { beginsFunction, changeBetween, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
 
-/** @type {import('../../src/engine/types.js').FieldFault} */
+/** @import { FieldFault } from '../../src/engine/types.js' */
+
+/** @type {FieldFault} */
 const fault = {
   kind: 'unknown_name',
   message: 'Unknown name foo.',

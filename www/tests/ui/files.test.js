@@ -5,8 +5,10 @@ import { carriesFiles, describeLoadingError, FORMATS, LIMIT, listOf } from '../.
 import { storyOf } from '../../src/ui/field/story.js';
 import { setLocale } from '../../src/ui/format.js';
 
+/** @import { ModelInfo } from '../../src/engine/types.js' */
+
 beforeAll(() => setLocale('en'));
-const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
+const info = /** @type {ModelInfo} */ ({
   name: 'dragon.ply',
   credit: '',
   points: 5205,

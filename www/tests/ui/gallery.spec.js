@@ -1,9 +1,10 @@
 import { expect, test } from '@playwright/test';
 import { open, settled, state } from './helpers.js';
 
-const tile = (/** @type {import('@playwright/test').Page} */ page, /** @type {string} */ id) =>
-  page.locator(`.tile[data-surface="${id}"]`);
-const group = (/** @type {import('@playwright/test').Page} */ page, /** @type {string} */ name) =>
+/** @import { Page } from '@playwright/test' */
+
+const tile = (/** @type {Page} */ page, /** @type {string} */ id) => page.locator(`.tile[data-surface="${id}"]`);
+const group = (/** @type {Page} */ page, /** @type {string} */ name) =>
   page.getByRole('group', { name: 'Groups of surfaces' }).getByRole('button', { name, exact: true });
 
 test('one group of surfaces is shown, that of the surface on the page, and keys alone choose in another', async ({

@@ -2,12 +2,14 @@
 import AxeBuilder from '@axe-core/playwright';
 import { expect } from '@playwright/test';
 
+/** @import { Page } from '@playwright/test' */
+
 /** The panels are tested without a graphics device: software rendering of large windows is slow. */
 const ADDRESS = './?backend=canvas2d';
 
 /**
  * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.
- * @param {import('@playwright/test').Page} page
+ * @param {Page} page
  * @param {{ width?: number, height?: number, hash?: string }} [options]
  */
 export async function open(page, { width = 1280, height = 800, hash = '' } = {}) {
@@ -36,7 +38,7 @@ export async function open(page, { width = 1280, height = 800, hash = '' } = {})
   };
 }
 
-/** Waits until nothing runs and the figures are there. @param {import('@playwright/test').Page} page */
+/** Waits until nothing runs and the figures are there. @param {Page} page */
 export async function settled(page) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.waitForFunction(() => {
@@ -53,7 +55,7 @@ export async function settled(page) {
 
 /**
  * Waits until nothing fades or glides any more and the camera has told where it is.
- * @param {import('@playwright/test').Page} page
+ * @param {Page} page
  */
 export async function atRest(page) {
   await page.waitForFunction(() => {
@@ -64,7 +66,7 @@ export async function atRest(page) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
 }
 
-/** What axe has to say; nothing is scanned half-way through a fade. @param {import('@playwright/test').Page} page */
+/** What axe has to say; nothing is scanned half-way through a fade. @param {Page} page */
 export async function scan(page) {
   await atRest(page);
   return new AxeBuilder({ page })
@@ -72,15 +74,15 @@ export async function scan(page) {
     .analyze();
 }
 
-/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+/** @param {Page} page @returns {Promise<any>} */
 export const report = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report());
 
-/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+/** @param {Page} page @returns {Promise<any>} */
 export const state = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.state);
 
 /**
  * Types a formula into the editor in place of the one there.
- * @param {import('@playwright/test').Page} page
+ * @param {Page} page
  * @param {string} text
  */
 export async function typeFormula(page, text) {

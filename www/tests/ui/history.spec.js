@@ -1,10 +1,10 @@
 import { expect, test } from '@playwright/test';
 import { open, settled, state, typeFormula } from './helpers.js';
 
-const undo = (/** @type {import('@playwright/test').Page} */ page) =>
-  page.getByRole('button', { name: 'Undo', exact: true });
-const redo = (/** @type {import('@playwright/test').Page} */ page) =>
-  page.getByRole('button', { name: 'Redo', exact: true });
+/** @import { Page } from '@playwright/test' */
+
+const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Undo', exact: true });
+const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
 test('surface, formula and settings are undone and redone, by buttons and by keys', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });

@@ -9,7 +9,10 @@ import { circleAround } from '../../src/ui/lesson/mark.js';
 import { alikeIn } from '../../src/ui/lesson/run.js';
 import { heightsOf, stretchesOf } from '../../src/ui/lesson/tracks.js';
 
-/** @typedef {import('../../src/engine/types.js').LessonEvent} LessonEvent */
+/**
+ * @import { LessonEvent } from '../../src/engine/types.js'
+ * @import { Rest } from '../../src/figures/rest.js'
+ */
 
 beforeAll(() => setLocale('en'));
 
@@ -200,7 +203,10 @@ describe('the particle that stands for another', () => {
   });
 });
 
-/** An adaptive particle with two children: one is pushed into place and added, for the other there is no room. @type {LessonEvent[]} */
+/**
+ * An adaptive particle with two children: one is pushed into place and added, for the other there is no room.
+ * @type {LessonEvent[]}
+ */
 const sized = [
   { type: 'taken', particle: 5 },
   { type: 'gathered', particle: 5, reach: 0.37, neighbours: [{ particle: 2, distance: 0.2 }] },
@@ -283,7 +289,7 @@ describe('a relaxation step of a particle', () => {
     radius: 0.1,
     is_kept: false,
   });
-  /** @type {import('../../src/figures/rest.js').Rest} */
+  /** @type {Rest} */
   const rest = {
     step: 2,
     steps: 10,

@@ -2,7 +2,7 @@
 import { expect, test } from '@playwright/test';
 import { open, scan, settled, state } from './helpers.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
 /** @param {Page} page */
 const level = async (page) => (await state(page)).view.level;
@@ -222,7 +222,7 @@ test('distances to the nearest are those of what is shown, and neighbours those 
   await clean();
 });
 
-/** Cosine between the normal of the first particle and the direction to the eye. @param {import('@playwright/test').Page} page */
+/** Cosine between the normal of the first particle and the direction to the eye. @param {Page} page */
 const facing = (page) =>
   page.evaluate(() => {
     const { state, particles } = /** @type {any} */ (window).marchingParticles;

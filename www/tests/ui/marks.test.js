@@ -3,7 +3,7 @@ import { withFace } from '../../src/ui/box.js';
 import { separation } from '../../src/ui/space.js';
 import { outerEdge, outward } from '../../src/ui/view/marks/edges.js';
 
-/** @typedef {import('../../src/engine/types.js').Bounds} Bounds */
+/** @import { Bounds } from '../../src/engine/types.js' */
 
 describe('a face of the clip box', () => {
   /** @type {Bounds} */

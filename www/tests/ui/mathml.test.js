@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { partsOfMath } from '../../src/ui/mathml.js';
 
-/** @typedef {import('../../src/engine/types.js').MathNode} MathNode */
+/** @import { MathNode } from '../../src/engine/types.js' */
 
 /** @param {'mi' | 'mn' | 'mo'} tag @returns {(text: string) => MathNode} */
 const token = (tag) => (text) => ({ tag, text });

@@ -4,7 +4,10 @@ import { wordsOf } from '../../src/ui/view/mesh-words.js';
 
 beforeAll(() => setLocale('en'));
 
-/** @param {[number, number][]} components  Euler number and open edges @param {{unfilled?: number, left_out?: number}} [more] */
+/**
+ * @param {[number, number][]} components  Euler number and open edges
+ * @param {{unfilled?: number, left_out?: number}} [more]
+ */
 const mesh = (components, more) => ({
   triangles: 0,
   components: components.map(([euler, open]) => ({ triangles: 0, euler, open_edges: open })),

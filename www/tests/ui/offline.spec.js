@@ -1,7 +1,15 @@
-/** The page without a network, and the change from one version of it to the next. Each test has a server of its own to shut down. */
+/**
+ * The page without a network, and the change from one version of it to the next. Each test has a server of its own to
+ * shut down.
+ */
 import { expect, test } from '@playwright/test';
 import { createSite } from '../server.js';
 import { settled, state } from './helpers.js';
+
+/**
+ * @import { Page } from '@playwright/test'
+ * @import { AddressInfo } from 'node:net'
+ */
 
 test.use({ serviceWorkers: 'allow' });
 
@@ -26,7 +34,7 @@ async function host() {
     return content;
   });
   await new Promise((done) => server.listen(0, 'localhost', () => done(undefined)));
-  const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
+  const { port } = /** @type {AddressInfo} */ (server.address());
   return {
     address: `http://localhost:${port}/`,
     asked,
@@ -41,14 +49,14 @@ async function host() {
   };
 }
 
-/** Opens the page and waits until all of it is stored. @param {import('@playwright/test').Page} page @param {string} address */
+/** Opens the page and waits until all of it is stored. @param {Page} page @param {string} address */
 async function openStored(page, address) {
   await page.goto(address);
   await settled(page);
   await page.waitForFunction(() => navigator.serviceWorker.controller?.state === 'activated');
 }
 
-/** @param {import('@playwright/test').Page} page */
+/** @param {Page} page */
 const isSecond = (page) => page.locator('meta[name="version"]').count();
 
 for (const place of ['', 'sub/path/']) {

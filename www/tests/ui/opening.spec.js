@@ -2,7 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { atRest, open, state } from './helpers.js';
 
-/** Cosine of the angle at which the seed is seen, in every frame of the opening. @param {import('@playwright/test').Page} page */
+/** @import { Page } from '@playwright/test' */
+
+/** Cosine of the angle at which the seed is seen, in every frame of the opening. @param {Page} page */
 const watch = (page) =>
   page.addInitScript(() => {
     const seen = /** @type {number[]} */ ([]);

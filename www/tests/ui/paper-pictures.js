@@ -1,5 +1,6 @@
 /**
- * Turns the figures that `cargo xtask paper` has drawn into files for a page: uncompressed pixels to WebP, drawings as they are.
+ * Turns the figures that `cargo xtask paper` has drawn into files for a page: uncompressed pixels to WebP, drawings as
+ * they are.
  *
  * Usage: node tests/ui/paper-pictures.js FROM TO
  */

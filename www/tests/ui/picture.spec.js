@@ -4,7 +4,7 @@ import { expect, test } from '@playwright/test';
 import { unzipSync } from 'fflate';
 import { atRest, open, report, scan, settled, state } from './helpers.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
 /** @param {Page} page */
 async function openDialog(page) {
@@ -14,7 +14,11 @@ async function openDialog(page) {
   return dialog;
 }
 
-/** What is in a PNG file: its size, whether its corner is ground, and its dark and its opaque share. @param {Page} page @param {Buffer} png */
+/**
+ * What is in a PNG file: its size, whether its corner is ground, and its dark and its opaque share.
+ * @param {Page} page
+ * @param {Buffer} png
+ */
 const look = (page, png) =>
   page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));

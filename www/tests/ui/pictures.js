@@ -2,8 +2,8 @@
  * Draws the pictures of the gallery and the poster with the program itself, from the built site:
  * `npm run pictures [-- address [surface …]]`; with surfaces only theirs.
  *
- * Writes public/gallery/*.webp (one per surface and model, transparent) and public/poster.svg (the default surface as dots,
- * what the page shows while it loads).
+ * Writes public/gallery/*.webp (one per surface and model, transparent) and public/poster.svg (the default surface as
+ * dots, what the page shows while it loads).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';

@@ -2,7 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { atRest, open, scan, state } from './helpers.js';
 
-/** @param {import('@playwright/test').Page} page */
+/** @import { Page } from '@playwright/test' */
+
+/** @param {Page} page */
 const places = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report().places);
 
 test('the closest pair, the crowded pairs and the largest hole are brought before the camera', async ({ page }) => {

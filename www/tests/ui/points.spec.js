@@ -1,9 +1,14 @@
 import { expect, test } from '@playwright/test';
 import { open, report, scan, settled, state } from './helpers.js';
 
-/** @typedef {import('@playwright/test').Page} Page */
+/** @import { Page } from '@playwright/test' */
 
-/** A drag with a file, or with text. @param {Page} page @param {string} type @param {{ name: string, text?: string, bytes?: number } | null} file */
+/**
+ * A drag with a file, or with text.
+ * @param {Page} page
+ * @param {string} type
+ * @param {{ name: string, text?: string, bytes?: number } | null} file
+ */
 const drag = (page, type, file) =>
   page.evaluate(
     ({ type, file }) => {

@@ -1,13 +1,15 @@
 /**
  * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
  *
- * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models from
- * points), readme/meshes-{light,dark}.webp (refined runs as meshes) and readme/levels-{light,dark}.webp (generation levels
- * growing).
+ * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
+ * from points), readme/meshes-{light,dark}.webp (refined runs as meshes) and readme/levels-{light,dark}.webp
+ * (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { chromium } from '@playwright/test';
+
+/** @import { Page } from '@playwright/test' */
 
 const PAGE_PX = { width: 1440, height: 840 };
 /** The page is shown with so many device pixels per pixel, and kept at that. */
@@ -37,7 +39,10 @@ const SIZES = [
   },
 ];
 
-/** What the strip of meshes shows: the same count by both methods, where the front's grains meet in seams; then two refined runs. */
+/**
+ * What the strip of meshes shows: the same count by both methods, where the front's grains meet in seams; then two
+ * refined runs.
+ */
 const MESH_VIEW = { colour: 'valence', draw: 'mesh', faces: 'smooth', edges: true, marks: true, points: false };
 const MESH_SETTINGS = { size_mode: 'count', count: 3000 };
 const MESHES = [
@@ -69,7 +74,11 @@ async function write(name, bytes) {
   console.log(`${name} ${bytes.length} bytes`);
 }
 
-/** Compresses pictures side by side, in a page without a content security policy. @param {Buffer[]} pngs @param {number} quality */
+/**
+ * Compresses pictures side by side, in a page without a content security policy.
+ * @param {Buffer[]} pngs
+ * @param {number} quality
+ */
 async function webp(pngs, quality) {
   const page = await browser.newPage();
   const bytes = await page.evaluate(
@@ -99,7 +108,7 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await page.close();
 }
 
-/** Leaves nothing of the page but the picture. @param {import('@playwright/test').Page} page */
+/** Leaves nothing of the page but the picture. @param {Page} page */
 const onlyThePicture = (page) =>
   page.evaluate(() => {
     for (

@@ -15,10 +15,12 @@ import {
 import { wantsSlider } from '../../src/ui/scale.js';
 import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 
+/** @import { ReportRow } from '../../src/engine/types.js' */
+
 beforeAll(() => setLocale('en'));
 /**
- * @param {Partial<import('../../src/engine/types.js').ReportRow>} [change]
- * @returns {import('../../src/engine/types.js').ReportRow}
+ * @param {Partial<ReportRow>} [change]
+ * @returns {ReportRow}
  */
 const row = (change) => ({
   key: 'quality.six',

@@ -2,6 +2,8 @@ import { expect, test } from '@playwright/test';
 import { link } from '../engine/browser.js';
 import { atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
+/** @import { Page } from '@playwright/test' */
+
 test('the settings are those that the core describes, each with its help', async ({ page }) => {
   await open(page);
   const settings = await page.evaluate(
@@ -20,7 +22,7 @@ test('the settings are those that the core describes, each with its help', async
   }
 });
 
-/** @param {import('@playwright/test').Page} page */
+/** @param {Page} page */
 const shownSettings = (page) =>
   page.locator('.setting:visible').evaluateAll((all) => all.map((one) => one.getAttribute('data-setting')));
 

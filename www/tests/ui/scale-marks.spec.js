@@ -2,7 +2,9 @@
 import { expect, test } from '@playwright/test';
 import { atRest, open, scan, state } from './helpers.js';
 
-/** @param {import('@playwright/test').Page} page @param {object} view */
+/** @import { Page } from '@playwright/test' */
+
+/** @param {Page} page @param {object} view */
 async function look(page, view) {
   await page.evaluate((v) => /** @type {any} */ (window).marchingParticles.engine.setView(v), view);
   await atRest(page);

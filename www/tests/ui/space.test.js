@@ -14,9 +14,11 @@ import {
   ticksIn,
 } from '../../src/ui/space.js';
 
-/** @type {import('../../src/engine/types.js').Bounds} */
+/** @import { Bounds, Vec3 } from '../../src/engine/types.js' */
+
+/** @type {Bounds} */
 const box = { min: [-1, -2, -3], max: [1, 2, 3] };
-/** @returns {import('../../src/engine/types.js').Vec3} */
+/** @returns {Vec3} */
 const unit = (/** @type {number[]} */ v) => {
   const length = Math.hypot(...v);
   return /** @type {any} */ (v.map((c) => c / length));

@@ -6,12 +6,17 @@
 import { completeSettings } from '../share/state.js';
 import { description, showAll } from '../store.js';
 
+/**
+ * @import { Parts } from '../index.js'
+ * @import { EngineCommands } from '../types.js'
+ */
+
 /** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */
+/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */
 
-/** @param {import('../index.js').Parts} parts @returns {RunCommands} */
+/** @param {Parts} parts @returns {RunCommands} */
 export function runCommands({ store, runs }) {
   return {
     run() {

@@ -7,17 +7,25 @@ import { decode, encode } from '../share/codec.js';
 import { mergeState, surfaceOf } from '../share/state.js';
 import { description } from '../store.js';
 
+/**
+ * @import { Parts } from '../index.js'
+ * @import { EngineCommands, FieldRequest } from '../types.js'
+ */
+
 /** Largest width or height of a saved picture. */
 const LARGEST_PICTURE_PX = 8192;
 
 /** Fetches the code that writes files. The first picture does not need it, so it loads after the sampler. */
 export const fetchExports = () => import('../share/exports.js');
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'link' | 'openLink' | 'set' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh'>} ShareCommands */
+/**
+ * @typedef {Pick<EngineCommands, 'link' | 'openLink' | 'set' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh'>}
+ *   ShareCommands
+ */
 
-/** @param {import('../index.js').Parts} parts @returns {ShareCommands} */
+/** @param {Parts} parts @returns {ShareCommands} */
 export function shareCommands({ store, columns, picture: { viewer }, runs, adopt }) {
-  /** @type {import('../types.js').EngineCommands['picture']} */
+  /** @type {EngineCommands['picture']} */
   async function picture({ width, height, transparent = false } = {}) {
     const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
       Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
@@ -65,7 +73,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     },
   };
 
-  /** Returns a description of a field for the header of a file. @param {import('../types.js').FieldRequest} field */
+  /** Returns a description of a field for the header of a file. @param {FieldRequest} field */
   function titleOf(field) {
     const model = field.points && runs.loader.client.get(field.points)?.info.info;
     if (model) return `${model.name}, interpolated from ${model.centres} of ${model.points} points`;

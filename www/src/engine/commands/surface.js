@@ -17,17 +17,28 @@ import {
 import { change, description, showAll } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
+/**
+ * @import { Parts } from '../index.js'
+ * @import { EngineCommands, Shape } from '../types.js'
+ */
+
 /** Pause in typing after which a name counts as finished, although it could be the beginning of a longer one. */
 const NAME_MS = 1000;
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'setCentres' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands */
+/**
+ * @typedef {Pick<EngineCommands, 'setSurface' | 'openFile' | 'setCentres' | 'cancelLoading' | 'setFormula' |
+ *   'restore'>} SurfaceCommands
+ */
+/**
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setPlane' |
+ *   'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ */
 
-/** Returns what of a state is sampled, as a text to compare. @param {import('../types.js').Shape} shape */
+/** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
 const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, settings }) =>
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, settings]);
 
-/** @param {import('../index.js').Parts} parts @returns {SurfaceCommands} */
+/** @param {Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, runs, framing }) {
   const { state } = store;
   return {
@@ -72,7 +83,7 @@ export function surfaceCommands({ store, runs, framing }) {
   };
 }
 
-/** @param {import('../index.js').Parts} parts @returns {InputCommands} */
+/** @param {Parts} parts @returns {InputCommands} */
 export function inputCommands({ store, runs }) {
   const { state } = store;
   /** @param {boolean} live */

@@ -6,9 +6,17 @@
 import { validView } from '../share/view.js';
 import { change } from '../store.js';
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */
+/**
+ * @import { Parts } from '../index.js'
+ * @import { EngineCommands } from '../types.js'
+ */
 
-/** @param {import('../index.js').Parts} parts @returns {ViewCommands} */
+/**
+ * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' |
+ *   'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands
+ */
+
+/** @param {Parts} parts @returns {ViewCommands} */
 export function viewCommands({ store, picture }) {
   const { viewer } = picture;
   return {

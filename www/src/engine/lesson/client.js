@@ -1,5 +1,6 @@
 /**
- * The page's side of the lesson: starts runs of the paper's algorithms in a worker of their own and asks for their events.
+ * The page's side of the lesson: starts runs of the paper's algorithms in a worker of their own and asks for their
+ * events.
  *
  * ```js
  * const lesson = new LessonClient({ spawn: spawnLesson });
@@ -12,15 +13,8 @@
  * @module
  */
 
-/**
- * @typedef {import('./protocol.js').FromLesson} FromLesson
- * @typedef {import('./protocol.js').ToLesson} ToLesson
- * @typedef {import('./protocol.js').Surface} Surface
- * @typedef {import('./protocol.js').Questions} Questions
- * @typedef {import('./protocol.js').LessonProgress} LessonProgress
- * @typedef {import('./protocol.js').LessonSettings} LessonSettings
- * @typedef {import('./protocol.js').Fault} Fault
- */
+/** @import { Fault, FromLesson, LessonProgress, LessonSettings, Questions, Surface, ToLesson } from './protocol.js' */
+
 /**
  * The part of the worker interface that the client uses. Tests pass a scripted worker.
  * @typedef {object} WorkerLike
@@ -30,8 +24,9 @@
  * @property {((event: {message?: string}) => void) | null} onerror
  */
 /**
- * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's `fault`;
- * `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error; `bundle`: it did not load.
+ * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's
+ * `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error;
+ * `bundle`: it did not load.
  * @typedef {'refused' | 'given_up' | 'crashed' | 'bundle'} LessonErrorKind
  */
 
@@ -70,9 +65,10 @@ export class LessonClient {
   }
 
   /**
-   * Begins a run and goes to its end, or to where it is stopped. The run before is given up. While it goes on, questions are
-   * answered about the part that there is.
-   * @param {Surface} surface @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
+   * Begins a run and goes to its end, or to where it is stopped. The run before is given up. While it goes on,
+   * questions are answered about the part that there is.
+   * @param {Surface} surface
+   * @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
    * @param {boolean} [holds]  the run only begins, and goes on as far as `ask('advance', …)` says
    * @returns {Promise<LessonProgress>}
    */

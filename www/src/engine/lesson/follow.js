@@ -1,17 +1,14 @@
 /**
- * Follows runs in the worker: goes on with the present one in slices, and answers questions in between. The bundle's class, the
- * clock and the pause are parameters, so that tests can run it without a worker.
+ * Follows runs in the worker: goes on with the present one in slices, and answers questions in between. The bundle's
+ * class, the clock and the pause are parameters, so that tests can run it without a worker.
  *
  * @module
  */
 import { nextBudget } from '../bundle/budget.js';
 
 /**
- * @typedef {import('./protocol.js').ToLesson} ToLesson
- * @typedef {import('./protocol.js').FromLesson} FromLesson
- * @typedef {import('./protocol.js').Particles} Particles
- * @typedef {import('./protocol.js').Advanced} Advanced
- * @typedef {import('../../wasm/lesson/lesson.js').Lesson} Lesson
+ * @import { Lesson } from '../../wasm/lesson/lesson.js'
+ * @import { Advanced, FromLesson, Particles, ToLesson } from './protocol.js'
  */
 
 /** Target duration of a slice, so that a question does not wait long. */
@@ -20,7 +17,8 @@ const FIRST_BUDGET = 64;
 
 /**
  * @param {Lesson} lesson
- * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromLesson, transfer?: Transferable[]) => void}} env
+ * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromLesson, transfer?: Transferable[]) =>
+ *   void}} env
  */
 export function follow(lesson, env) {
   /** Number of the present run; 0 for none. */

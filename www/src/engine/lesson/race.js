@@ -1,8 +1,8 @@
 /**
  * Two methods side by side on one surface, each in a worker of its own.
  *
- * They work in turn: always the one whose clock is behind, so that no one takes time from the other and both have worked equally
- * long at every moment, until one is done. Each ends by its own rules.
+ * They work in turn: always the one whose clock is behind, so that no one takes time from the other and both have
+ * worked equally long at every moment, until one is done. Each ends by its own rules.
  *
  * ```js
  * const race = new Race({ onLane: (k, lane) => show(k, lane.workMs, lane.progress) });
@@ -17,11 +17,10 @@ import { nextBudget } from '../bundle/budget.js';
 import { LessonClient, LessonError, spawnLesson } from './client.js';
 
 /**
- * @typedef {import('./protocol.js').Surface} Surface
- * @typedef {import('./protocol.js').LessonSettings} LessonSettings
- * @typedef {import('./protocol.js').LessonProgress} LessonProgress
- * @typedef {import('./client.js').WorkerLike} WorkerLike
+ * @import { WorkerLike } from './client.js'
+ * @import { LessonProgress, LessonSettings, Surface } from './protocol.js'
  */
+
 /**
  * One of the two: how far it is, and the milliseconds that it has worked.
  * @typedef {{progress: LessonProgress | null, workMs: number}} Lane
@@ -31,7 +30,11 @@ import { LessonClient, LessonError, spawnLesson } from './client.js';
 const TURN_MS = 12;
 const FIRST_UNITS = 64;
 
-/** The settings of the method that the paper compares this one with (Table 1), for the same sizes. @param {Partial<LessonSettings>} settings @returns {Partial<LessonSettings>} */
+/**
+ * The settings of the method that the paper compares this one with (Table 1), for the same sizes.
+ * @param {Partial<LessonSettings>} settings
+ * @returns {Partial<LessonSettings>}
+ */
 export const opponentOf = (settings) => ({
   ...settings,
   method: settings.sampling === 'adaptive' ? 'forces' : 'witkin_heckbert',
@@ -58,8 +61,8 @@ export class Race {
   }
 
   /**
-   * Begins a race and goes to its end. The race before is given up: its promise is rejected with a `LessonError`, as it is if a
-   * surface or a setting is refused.
+   * Begins a race and goes to its end. The race before is given up: its promise is rejected with a `LessonError`, as it
+   * is if a surface or a setting is refused.
    * @param {Surface} surface @param {[Partial<LessonSettings>, Partial<LessonSettings>]} settings
    */
   async start(surface, settings) {

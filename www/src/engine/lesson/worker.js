@@ -8,10 +8,7 @@ import wasmUrl from '../../wasm/lesson/lesson_bg.wasm?url';
 import { loadModule, words } from '../bundle/load.js';
 import { follow } from './follow.js';
 
-/**
- * @typedef {import('./protocol.js').FromLesson} FromLesson
- * @typedef {import('./protocol.js').ToLesson} ToLesson
- */
+/** @import { FromLesson, ToLesson } from './protocol.js' */
 
 /** @param {FromLesson} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

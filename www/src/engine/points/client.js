@@ -5,11 +5,8 @@
  * @module
  */
 
-/**
- * @typedef {import('./protocol.js').FromPoints} FromPoints
- * @typedef {import('./protocol.js').Order} Order
- * @typedef {import('./protocol.js').Solved} Solved
- */
+/** @import { FromPoints, Order, Solved } from './protocol.js' */
+
 /**
  * The part of the worker interface that the client uses. Tests pass a scripted worker.
  * @typedef {object} WorkerLike
@@ -27,8 +24,8 @@
 /** Time that the worker's script may take to load, on a slow connection. */
 export const LOADING_MS = 30_000;
 /**
- * Silence after which a worker that was heard counts as dead. A step takes some tens of milliseconds, on a slow machine some tenths of
- * a second, and the worker beats while it loads and reads.
+ * Silence after which a worker that was heard counts as dead. A step takes some tens of milliseconds, on a slow machine
+ * some tenths of a second, and the worker beats while it loads and reads.
  */
 export const SILENCE_MS = 4000;
 /**

@@ -11,12 +11,12 @@ import { FILE_SURFACE, LARGEST_FILE_BYTES } from '../types.js';
 import { PointsClient } from './client.js';
 
 /**
- * @typedef {import('../store.js').Store} Store
- * @typedef {import('../types.js').State} State
- * @typedef {import('./client.js').Refusal} Refusal
- * @typedef {import('./client.js').WorkerLike} WorkerLike
- * @typedef {import('./protocol.js').Order} Order
+ * @import { Store } from '../store.js'
+ * @import { State } from '../types.js'
+ * @import { Refusal, WorkerLike } from './client.js'
+ * @import { Order } from './protocol.js'
  */
+
 /**
  * The part of the state that determines the surface.
  * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'centres' | 'bounds' | 'plane'>} Shape
@@ -118,7 +118,10 @@ export class ModelLoader {
     if (nothing) this.sample(options);
   }
 
-  /** Returns what is to be solved for the state; null for a formula. @returns {{id: string, name: string, order: Order} | null} */
+  /**
+   * Returns what is to be solved for the state; null for a formula.
+   * @returns {{id: string, name: string, order: Order} | null}
+   */
   wanted() {
     const { surface, centres } = this.store.state.value;
     const model = modelOf(this.store.description.value, surface);

@@ -5,14 +5,11 @@
  * @module
  */
 
-/**
- * @typedef {import('../types.js').ModelInfo} ModelInfo
- * @typedef {import('../types.js').Bounds} Bounds
- * @typedef {import('../types.js').Loading} Loading
- */
+/** @import { Bounds, Loading, ModelInfo } from '../types.js' */
 
 /**
- * A request for a built-in model, by its id, or for a file, of whose points so many are to be fitted; null for the default number.
+ * A request for a built-in model, by its id, or for a file, of whose points so many are to be fitted; null for the
+ * default number.
  * @typedef {({model: string} | {file: File}) & {centres: number | null}} Order
  */
 /**

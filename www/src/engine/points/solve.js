@@ -8,17 +8,18 @@ import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
 
 /**
- * @typedef {import('./protocol.js').Order} Order
- * @typedef {import('./protocol.js').FromPoints} FromPoints
+ * @import { PointsAnswer, SolvedAnswer } from '../types.js'
+ * @import { FromPoints, Order } from './protocol.js'
  */
+
 /**
  * The part of the bundle's class that the loop uses.
  * @typedef {object} PointsLike
- * @property {(id: string, centres: number) => import('../types.js').PointsAnswer} model
- * @property {(name: string, bytes: Uint8Array, centres: number) => import('../types.js').PointsAnswer} file
- * @property {(budget: number) => import('../types.js').PointsAnswer} step
+ * @property {(id: string, centres: number) => PointsAnswer} model
+ * @property {(name: string, bytes: Uint8Array, centres: number) => PointsAnswer} file
+ * @property {(budget: number) => PointsAnswer} step
  * @property {() => Uint8Array} field
- * @property {() => import('../types.js').SolvedAnswer} info
+ * @property {() => SolvedAnswer} info
  * @property {() => Float32Array} centres
  */
 
@@ -31,7 +32,8 @@ const USUAL_CENTRES = 0;
 /**
  * @param {PointsLike} points
  * @param {Order} order
- * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) => void}} env
+ * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) =>
+ *   void}} env
  */
 export async function solve(points, order, env) {
   /** @param {{kind: string, message: string, line?: number | null}} error */

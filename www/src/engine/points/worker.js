@@ -9,10 +9,7 @@ import { loadModule, words } from '../bundle/load.js';
 import { BEAT_MS } from './protocol.js';
 import { solve } from './solve.js';
 
-/**
- * @typedef {import('./protocol.js').FromPoints} FromPoints
- * @typedef {import('./protocol.js').Order} Order
- */
+/** @import { FromPoints, Order } from './protocol.js' */
 
 /** @param {FromPoints} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

@@ -1,15 +1,17 @@
 /**
- * Talks with the sampler's worker: sends it jobs and wishes, hands its messages on, and repeats to a new worker what the page wants.
+ * Talks with the sampler's worker: sends it jobs and wishes, hands its messages on, and repeats to a new worker what
+ * the page wants.
  *
  * @module
  */
 import { Supervisor } from './supervisor.js';
 
 /**
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./supervisor.js').Crash} Crash
- * @typedef {import('./supervisor.js').WorkerLike} WorkerLike
+ * @import { MeshFormat } from '../types.js'
+ * @import { FromWorker, ToWorker } from './protocol.js'
+ * @import { Clock, Crash, WorkerLike } from './supervisor.js'
  */
+
 /**
  * What the client reports.
  * @typedef {object} ClientEvents
@@ -22,12 +24,15 @@ import { Supervisor } from './supervisor.js';
 export class SamplingClient {
   /** What the page shows, which a new worker is told again. */
   #wishes = { curvature: false, mesh: false };
-  /** Those who wait for a file, by the number of the request. @type {Map<number, (bytes: Uint8Array<ArrayBuffer> | null) => void>} */
+  /**
+   * Those who wait for a file, by the number of the request.
+   * @type {Map<number, (bytes: Uint8Array<ArrayBuffer> | null) => void>}
+   */
   #files = new Map();
   #lastFile = 0;
   #isBusy = false;
 
-  /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: import('./supervisor.js').Clock}} options */
+  /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
   constructor({ spawn, clock, onMessage, onRestart, onSafeMode, onLoadFailed }) {
     this.onMessage = onMessage;
     this.onLoadFailed = onLoadFailed;
@@ -64,14 +69,14 @@ export class SamplingClient {
     this.supervisor.stop();
   }
 
-  /** @param {import('./protocol.js').ToWorker} message */
+  /** @param {ToWorker} message */
   post(message) {
     this.supervisor.post(message);
   }
 
   /**
-   * Asks for the curvature or for the mesh while it is shown. The curvature costs second derivatives and the mesh a triangulation, so
-   * neither is sent otherwise.
+   * Asks for the curvature or for the mesh while it is shown. The curvature costs second derivatives and the mesh a
+   * triangulation, so neither is sent otherwise.
    * @param {'curvature' | 'mesh'} what @param {boolean} on
    */
   wish(what, on) {
@@ -82,7 +87,7 @@ export class SamplingClient {
 
   /**
    * Returns the mesh of the particles that the worker holds, as a file.
-   * @param {import('../types.js').MeshFormat} format
+   * @param {MeshFormat} format
    * @returns {Promise<Uint8Array<ArrayBuffer>>}
    * @throws if the worker does not hold the particles
    */

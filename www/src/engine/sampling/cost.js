@@ -4,10 +4,7 @@
  * @module
  */
 
-/**
- * @typedef {import('../types.js').Seconds} Seconds
- * @typedef {import('../types.js').Settings} Settings
- */
+/** @import { FieldRequest, Seconds, Settings } from '../types.js' */
 
 /** Largest latency at which the picture still seems to follow the slider. */
 export const LIVE_MS = 60;
@@ -20,8 +17,9 @@ const FEWEST = 500;
 
 /**
  * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude, and so do
- * adaptive and uniform runs, and the two methods. Each radius law relates the number of particles to a length of its own.
- * @param {import('../types.js').FieldRequest} field @param {Settings} settings
+ * adaptive and uniform runs, and the two methods. Each radius law relates the number of particles to a length of its
+ * own.
+ * @param {FieldRequest} field @param {Settings} settings
  */
 export const costKey = (field, settings) =>
   [
@@ -138,7 +136,11 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
 
 /**
  * Returns the size settings for a number of particles, which is `fewer` times smaller than the present one.
- * @param {Settings} settings @param {number} diagonal @param {CostModel} cost @param {number} particles @param {number} fewer
+ * @param {Settings} settings
+ * @param {number} diagonal
+ * @param {CostModel} cost
+ * @param {number} particles
+ * @param {number} fewer
  * @returns {Settings}
  */
 function coarser(settings, diagonal, cost, particles, fewer) {

@@ -5,9 +5,9 @@
  */
 
 /**
- * @typedef {import('../types.js').Notice} Notice
- * @typedef {import('./run-state.js').RunRequest} RunRequest
- * @typedef {import('./supervisor.js').Crash} Crash
+ * @import { Notice } from '../types.js'
+ * @import { RunRequest } from './run-state.js'
+ * @import { Crash } from './supervisor.js'
  */
 
 /**
@@ -27,7 +27,13 @@ export function restartNotice(crash, lost, { again, version }) {
   };
 }
 
-/** @param {Crash} crash @param {RunRequest | null} lost @param {string} version @param {() => void} run @returns {Notice} */
+/**
+ * @param {Crash} crash
+ * @param {RunRequest | null} lost
+ * @param {string} version
+ * @param {() => void} run
+ * @returns {Notice}
+ */
 export const safeModeNotice = (crash, lost, version, run) => ({
   id: 'safe-mode',
   kind: 'error',

@@ -11,13 +11,12 @@ import { join } from './joining.js';
 import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
 
 /**
- * @typedef {import('../../wasm/core/core.js').Core} Core
- * @typedef {import('./protocol.js').Job} Job
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./protocol.js').DoneMessage} DoneMessage
- * @typedef {import('../types.js').CoreProgress} CoreProgress
- * @typedef {import('../types.js').Seconds} Seconds
+ * @import { Core } from '../../wasm/core/core.js'
+ * @import { Figures } from '../columns.js'
+ * @import { CoreProgress, CoreReport, Seconds } from '../types.js'
+ * @import { ColumnsMessage, DoneMessage, FromWorker, Job, Mesh } from './protocol.js'
  */
+
 /**
  * @typedef {object} Env
  * @property {() => number} nowMs
@@ -30,7 +29,8 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  */
 
 /**
- * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page has.
+ * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
+ * has.
  * @typedef {{held: number, meshed: number}} Memory
  */
 
@@ -44,7 +44,11 @@ const FIRST_SLICES = 32;
 /** Shortest interval between column messages: about a frame at 60 Hz. */
 const PICTURE_MS = 15;
 
-/** Returns the entry of the times to which a phase of the core counts. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
+/**
+ * Returns the entry of the times to which a phase of the core counts.
+ * @param {CoreProgress['phase']} phase
+ * @returns {keyof Seconds}
+ */
 function clockOf(phase) {
   return phase === 'generation' || phase === 'refinement' || phase === 'relaxation' ? phase : 'seeding';
 }
@@ -52,7 +56,7 @@ function clockOf(phase) {
 /**
  * Returns a message without columns, about particles that the page already has.
  * @param {Core} core @param {number} id
- * @returns {import('./protocol.js').ColumnsMessage}
+ * @returns {ColumnsMessage}
  */
 const bare = (core, id) => ({
   type: 'columns',
@@ -75,7 +79,7 @@ const bare = (core, id) => ({
 /**
  * Returns a message with the curvature of all particles, which the page already has.
  * @param {Core} core @param {number} id
- * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
+ * @returns {[ColumnsMessage, Transferable[]]}
  */
 export function curvatureColumn(core, id) {
   const curvature = core.curvature(0);
@@ -84,8 +88,8 @@ export function curvatureColumn(core, id) {
 
 /**
  * Returns a message with the mesh over all particles, which the page already has.
- * @param {Core} core @param {number} id @param {import('./protocol.js').Mesh} mesh
- * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
+ * @param {Core} core @param {number} id @param {Mesh} mesh
+ * @returns {[ColumnsMessage, Transferable[]]}
  */
 export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mesh.triangles.buffer]];
 
@@ -289,7 +293,7 @@ class JobRun {
     return sent.stale || core.count() > sent.count;
   }
 
-  /** @param {CoreProgress} progress @param {import('./protocol.js').Mesh | null} [mesh] */
+  /** @param {CoreProgress} progress @param {Mesh | null} [mesh] */
   sendColumns(progress, mesh = null) {
     const { core, env, sent } = this;
     const total = core.count();
@@ -322,7 +326,8 @@ class JobRun {
   }
 
   /**
-   * Sends what the page lacks after the last step: particles, final fates of slots, curvature, and the mesh if it is drawn.
+   * Sends what the page lacks after the last step: particles, final fates of slots, curvature, and the mesh if it is
+   * drawn.
    * @param {CoreProgress} last @param {Memory} memory
    * @returns {Promise<boolean>} false if another job replaces this one meanwhile
    */
@@ -363,7 +368,7 @@ class JobRun {
   async measure() {
     const { core, env, seconds } = this;
     let slices = FIRST_SLICES;
-    /** @type {import('../types.js').CoreReport | undefined} */
+    /** @type {CoreReport | undefined} */
     let report;
     do {
       await env.pause();
@@ -376,9 +381,7 @@ class JobRun {
       slices = nextBudget(slices, took);
       this.beat();
     } while (report === undefined);
-    const figures = /** @type {import('../columns.js').Figures} */ (
-      Object.fromEntries(MEASURED.map((name) => [name, core[name]()]))
-    );
+    const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
     env.post(
       { type: 'report', id: this.job.id, report: { ...report, seconds: { ...seconds } }, ...figures },
       Object.values(figures).map((c) => c.buffer),

@@ -7,17 +7,18 @@
  */
 
 /**
- * @typedef {import('./protocol.js').Job} Job
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('../../wasm/core/core.js').Core} Core
+ * @import { Core } from '../../wasm/core/core.js'
+ * @import { FieldAnswer } from '../types.js'
+ * @import { FromWorker, Job, SampleJob } from './protocol.js'
  */
+
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
  * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
  * which model the core holds would cost more.
- * @param {Core} core @param {import('./protocol.js').SampleJob} job
- * @returns {import('../types.js').FieldAnswer}
+ * @param {Core} core @param {SampleJob} job
+ * @returns {FieldAnswer}
  */
 function setField(core, { field, points }) {
   if (!points) return core.set_field(field);

@@ -6,12 +6,16 @@
 import { nextBudget } from '../bundle/budget.js';
 import { BEAT_MS } from './protocol.js';
 
+/**
+ * @import { Core } from '../../wasm/core/core.js'
+ * @import { Mesh } from './protocol.js'
+ */
+
 /** First budgets, in slices of up to a tenth of a millisecond, and of a millisecond for files. */
 const FIRST_SLICES = 32;
 const FIRST_ROWS = 4;
 
 /**
- * @typedef {import('../../wasm/core/core.js').Core} Core
  * @typedef {Pick<import('./job.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
  */
 
@@ -44,7 +48,7 @@ async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
  * Returns the mesh, or null if another job replaces the particles before it is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
  * @param {Env} env
- * @returns {Promise<import('./protocol.js').Mesh | null>}
+ * @returns {Promise<Mesh | null>}
  */
 export async function join(core, env) {
   const about = await inSlices((budget) => core.join(budget), FIRST_SLICES, env);
@@ -52,8 +56,8 @@ export async function join(core, env) {
 }
 
 /**
- * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces the particles
- * before it is.
+ * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces
+ * the particles before it is.
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {string} format
  * @param {Env} env

@@ -6,13 +6,10 @@
 import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
- * @typedef {import('../types.js').Seconds} Seconds
- * @typedef {import('../types.js').Settings} Settings
- * @typedef {import('../types.js').Timing} Timing
- * @typedef {import('./run-state.js').Run} Run
- * @typedef {import('./run-state.js').RunRequest} RunRequest
- * @typedef {import('./run-state.js').SampleRequest} SampleRequest
+ * @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js'
+ * @import { Run, RunRequest, SampleRequest } from './run-state.js'
  */
+
 /**
  * The measurements of a finished run.
  * @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Outcome
@@ -60,7 +57,7 @@ export class Pace {
    * Updates the cost model and the drag from a finished run.
    * @param {Run} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
    * @param {Outcome} outcome
-   * @returns {import('../types.js').LastDrag | null} the state of the drag that the run belongs to, if any
+   * @returns {LastDrag | null} the state of the drag that the run belongs to, if any
    */
   record({ request, sinceMs }, sampled, outcome) {
     const { particles } = outcome;
@@ -126,7 +123,7 @@ export function timingOfReport({ seconds, count }, steps) {
 /**
  * Returns the length to which the cost of a run is related (see {@link sizeOf}), or NaN if it is unknown. A uniform run
  * that is set by a count reports the radius it has found.
- * @param {Settings} settings @param {number} radius @param {import('../types.js').Bounds | undefined} bounds
+ * @param {Settings} settings @param {number} radius @param {Bounds | undefined} bounds
  */
 export function sizeOfRun(settings, radius, bounds) {
   if (settings.sampling !== 'adaptive') return radius;

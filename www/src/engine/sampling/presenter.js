@@ -10,17 +10,17 @@ import { timingOf, timingOfReport } from './pace.js';
 import { MOST_REMEMBERED } from './protocol.js';
 
 /**
- * @typedef {import('./protocol.js').ColumnsMessage} ColumnsMessage
- * @typedef {import('./protocol.js').DoneMessage} DoneMessage
- * @typedef {import('./protocol.js').PastMessage} PastMessage
- * @typedef {import('./run-state.js').Run} Run
- * @typedef {import('./run-state.js').RunRequest} RunRequest
- * @typedef {import('../types.js').FieldAnswer} FieldAnswer
+ * @import { Columns } from '../columns.js'
+ * @import { Store } from '../store.js'
+ * @import { Bounds, CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
+ * @import { ColumnsMessage, DoneMessage, PastMessage, ReportMessage } from './protocol.js'
+ * @import { Run, RunRequest } from './run-state.js'
  */
+
 /**
  * The part of the viewer that the presenter uses.
  * @typedef {object} Picture
- * @property {(options: {grow: boolean, fit: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a
+ * @property {(options: {grow: boolean, fit: boolean, bounds: Bounds | null}) => void} begin  a
  *   new surface replaces the old one
  * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns of particles first … last are
  *   new
@@ -32,7 +32,7 @@ import { MOST_REMEMBERED } from './protocol.js';
  */
 
 export class Presenter {
-  /** @param {{store: import('../store.js').Store, columns: import('../columns.js').Columns, picture: Picture}} page */
+  /** @param {{store: Store, columns: Columns, picture: Picture}} page */
   constructor({ store, columns, picture }) {
     this.store = store;
     this.columns = columns;
@@ -40,8 +40,8 @@ export class Presenter {
   }
 
   /**
-   * Shows that the worker has started another job. That the last one found no surface says nothing of this one. Runs of a
-   * drag are so short that the words would flicker; they stand until particles are counted.
+   * Shows that the worker has started another job. That the last one found no surface says nothing of this one. Runs of
+   * a drag are so short that the words would flicker; they stand until particles are counted.
    * @param {number} id @param {RunRequest} request
    */
   begin(id, request) {
@@ -50,16 +50,16 @@ export class Presenter {
     this.store.progress.value = { ...idleProgress(), run: id, live: request.live, phase };
   }
 
-  /** @param {import('../types.js').CoreProgress} progress @param {Run} run */
+  /** @param {CoreProgress} progress @param {Run} run */
   progress(progress, { id, request }) {
     if (progress.particles > 0) this.store.empty.value = false;
     this.store.progress.value = { ...progress, run: id, live: request.live };
   }
 
   /**
-   * Shows that no run is active. The progress then describes the particles on the page, unless they are those of a surface
-   * after which a run has found none.
-   * @param {Partial<import('../types.js').Progress>} [more]
+   * Shows that no run is active. The progress then describes the particles on the page, unless they are those of a
+   * surface after which a run has found none.
+   * @param {Partial<Progress>} [more]
    */
   idle(more = {}) {
     const { columns, store } = this;
@@ -68,7 +68,7 @@ export class Presenter {
 
   /**
    * Shows a field that the core has accepted.
-   * @param {import('../types.js').FieldRequest} field
+   * @param {FieldRequest} field
    * @param {Extract<FieldAnswer, {ok: true}>} answer
    */
   field(field, answer) {
@@ -179,7 +179,7 @@ export class Presenter {
     if (outcome === 'refused') this.store.notice.value = refusalNotice(message);
   }
 
-  /** @param {import('./protocol.js').ReportMessage} message */
+  /** @param {ReportMessage} message */
   report({ report, ...figures }) {
     const { store, columns } = this;
     columns.writeFigures(figures);

@@ -9,27 +9,27 @@
  */
 
 /**
- * @typedef {import('../types.js').FieldRequest} FieldRequest
- * @typedef {import('../types.js').FieldAnswer} FieldAnswer
- * @typedef {import('../types.js').Settings} Settings
- * @typedef {import('../types.js').CoreProgress} CoreProgress
- * @typedef {import('../types.js').Report} Report
- * @typedef {import('../types.js').Seconds} Seconds
- * @typedef {import('../types.js').Description} Description
+ * @import { Figures } from '../columns.js'
+ * @import { Solved } from '../points/protocol.js'
+ * @import { CoreProgress, Description, FieldAnswer, FieldOk, FieldRequest, MeshFormat, Report } from '../types.js'
+ * @import { Seconds, Settings } from '../types.js'
+ */
+
+/**
  * @typedef {import('../types.js').Mesh} Mesh
  */
 
 /**
  * Samples the field from the start. With `grow` the columns are sent while the front grows; otherwise they are sent
  * once the front is complete, so that the present picture stays until then. A `live` job comes from a drag: its columns
- * are sent once, at the end, and it has no report unless it is stopped. With `coarse` it ends where a refinement has finished
- * its coarse level: the particles that the full run refines. A job with more than `askAbove` expected
+ * are sent once, at the end, and it has no report unless it is stopped. With `coarse` it ends where a refinement has
+ * finished its coarse level: the particles that the full run refines. A job with more than `askAbove` expected
  * particles is returned without running. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
  * @property {number} id
  * @property {FieldRequest} field
- * @property {Pick<import('../points/protocol.js').Solved, 'field' | 'info'> | null} points
+ * @property {Pick<Solved, 'field' | 'info'> | null} points
  * @property {Settings} settings
  * @property {boolean} grow
  * @property {boolean} live
@@ -45,15 +45,15 @@
 /**
  * A `job` replaces the running one once the core has accepted its field. If the field is refused, the running job
  * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it is
- * sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page draws a
- * mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the mesh as a file, once
- * no job is left. The first message is `core`, or `no_core` if the core could not be loaded.
+ * sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page draws
+ * a mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the mesh as a
+ * file, once no job is left. The first message is `core`, or `no_core` if the core could not be loaded.
  * @typedef {{type: 'core', module: WebAssembly.Module}
  *   | {type: 'no_core', fault: LoadFault, message: string}
  *   | {type: 'job', job: Job}
  *   | {type: 'curvature', on: boolean}
  *   | {type: 'mesh', on: boolean}
- *   | {type: 'export', request: number, format: import('../types.js').MeshFormat}
+ *   | {type: 'export', request: number, format: MeshFormat}
  *   | {type: 'stop'}
  *   | {type: 'drawn', id: number}
  *   | {type: 'provoke', fault: Fault}} ToWorker
@@ -100,14 +100,14 @@
  * @property {string} message  words for `refused`, else empty
  * @property {boolean} reportFollows
  */
-/** @typedef {{type: 'report', id: number, report: Report} & import('../columns.js').Figures} ReportMessage */
+/** @typedef {{type: 'report', id: number, report: Report} & Figures} ReportMessage */
 /** @typedef {import('../bundle/load.js').LoadFault} LoadFault */
 /**
  * @typedef {{type: 'ready', description: Description}
  *   | {type: 'failed', fault: LoadFault, message: string}
  *   | {type: 'beat'}
  *   | {type: 'field', id: number, answer: FieldAnswer}
- *   | {type: 'box', id: number, answer: import('../types.js').FieldOk}
+ *   | {type: 'box', id: number, answer: FieldOk}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
  *   | ColumnsMessage | PastMessage | DoneMessage | ReportMessage

@@ -6,15 +6,17 @@
  */
 import { clampSettings } from '../share/state.js';
 
-/** Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would finish. */
-const PATIENCE_MS = 150;
+/**
+ * @import { Bounds, Description, FieldRequest, Settings } from '../types.js'
+ * @import { Outcome } from './protocol.js'
+ */
 
 /**
- * @typedef {import('../types.js').Bounds} Bounds
- * @typedef {import('../types.js').Description} Description
- * @typedef {import('../types.js').FieldRequest} FieldRequest
- * @typedef {import('../types.js').Settings} Settings
+ * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
+ * finish.
  */
+const PATIENCE_MS = 150;
+
 /**
  * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
  * question about a large number of particles. `restoring` completes the surface on the page while the state names
@@ -30,7 +32,10 @@ const PATIENCE_MS = 150;
  * @property {boolean} [restoring]
  * @property {boolean} [coarse]  of fewer particles than the settings of the state ask for, or of the coarse level alone
  */
-/** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}} RelaxRequest */
+/**
+ * @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}}
+ *   RelaxRequest
+ */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
 /**
  * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are, and
@@ -66,7 +71,7 @@ const PATIENCE_MS = 150;
  *   | {type: 'boxed', bounds: Bounds}
  *   | {type: 'refused', id: number}
  *   | {type: 'particles', description: Description | null}
- *   | {type: 'done', outcome: import('./protocol.js').Outcome, particles: number, reportFollows: boolean}
+ *   | {type: 'done', outcome: Outcome, particles: number, reportFollows: boolean}
  *   | {type: 'reported'}
  *   | {type: 'stopped'}
  *   | {type: 'lost'}
@@ -174,8 +179,8 @@ const after = (asked, id) => asked.filter((run) => run.id > id);
 export const askedRun = ({ asked }, id) => asked.find((run) => run.id === id);
 
 /**
- * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field was refused.
- * It ends before its report.
+ * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field
+ * was refused. It ends before its report.
  * @param {RunState} state
  * @returns {Run | null}
  */
@@ -202,7 +207,7 @@ export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current
 
 /**
  * Returns whether a run with this outcome has made a surface or found none.
- * @param {import('./protocol.js').Outcome} outcome
+ * @param {Outcome} outcome
  * @param {number} particles
  */
 export const tookPlace = (outcome, particles) => outcome === 'complete' || (outcome === 'stopped' && particles > 0);

@@ -1,5 +1,6 @@
 /**
- * Decides which runs the worker makes: turns requests into jobs, follows the jobs by the worker's messages, and updates the signals.
+ * Decides which runs the worker makes: turns requests into jobs, follows the jobs by the worker's messages, and updates
+ * the signals.
  *
  * @module
  */
@@ -24,29 +25,28 @@ import {
 } from './run-state.js';
 
 /**
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./protocol.js').Job} Job
- * @typedef {import('./run-state.js').Run} Run
- * @typedef {import('./run-state.js').RunRequest} RunRequest
- * @typedef {import('./run-state.js').SampleRequest} SampleRequest
- * @typedef {import('./supervisor.js').Crash} Crash
- * @typedef {import('./supervisor.js').WorkerLike} WorkerLike
- * @typedef {import('../points/protocol.js').Solved} Solved
- * @typedef {import('../store.js').Store} Store
+ * @import { Columns } from '../columns.js'
+ * @import { Solved } from '../points/protocol.js'
+ * @import { Store } from '../store.js'
+ * @import { Description, FieldAnswer, FieldOk } from '../types.js'
+ * @import { Picture } from './presenter.js'
+ * @import { ColumnsMessage, DoneMessage, FromWorker, Job } from './protocol.js'
+ * @import { Run, RunEvent, RunRequest, SampleRequest } from './run-state.js'
+ * @import { Clock, Crash, WorkerLike } from './supervisor.js'
  */
 
 export class Sampler {
   /**
    * @param {object} options
    * @param {Store} options.store
-   * @param {import('../columns.js').Columns} options.columns
-   * @param {import('./presenter.js').Picture} options.picture
+   * @param {Columns} options.columns
+   * @param {Picture} options.picture
    * @param {() => WorkerLike} options.spawn
    * @param {() => void} options.onReady  called when the description has arrived for the first time
    * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
    * @param {() => SampleRequest} options.whole  returns the full run of the present state
    * @param {(key: string) => Solved | undefined} [options.solved]  returns the solved model that a field names
-   * @param {import('./supervisor.js').Clock} [options.clock]
+   * @param {Clock} [options.clock]
    */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
     this.store = store;
@@ -89,7 +89,8 @@ export class Sampler {
     this.client.close();
   }
 
-  // ---- requests -------------------------------------------------------------------------------------------------------
+  // ---- requests
+  // -------------------------------------------------------------------------------------------------------
 
   /** @param {SampleRequest} request */
   sample(request) {
@@ -194,7 +195,7 @@ export class Sampler {
     };
   }
 
-  /** @param {import('./run-state.js').RunEvent} event */
+  /** @param {RunEvent} event */
   happened(event) {
     this.runs = reduce(this.runs, event);
     this.attend();
@@ -212,7 +213,8 @@ export class Sampler {
     if (wasRunning && waiting) this.send(waiting);
   }
 
-  // ---- what the worker sends --------------------------------------------------------------------------------------------
+  // ---- what the worker sends
+  // --------------------------------------------------------------------------------------------
 
   /** @param {FromWorker} message */
   receive(message) {
@@ -246,14 +248,14 @@ export class Sampler {
     }
   }
 
-  /** @param {import('../types.js').Description} description */
+  /** @param {Description} description */
   ready(description) {
     const first = this.store.description.value === null;
     this.store.description.value = description;
     if (first) this.onReady();
   }
 
-  /** @param {number} id @param {import('../types.js').FieldAnswer} answer */
+  /** @param {number} id @param {FieldAnswer} answer */
   fieldAnswered(id, answer) {
     const run = askedRun(this.runs, id);
     if (run?.request.kind !== 'sample') return;
@@ -268,7 +270,7 @@ export class Sampler {
    * Makes the job the current one. Messages of the previous job are ignored from now on.
    * @param {number} id
    * @param {SampleRequest} request
-   * @param {import('../types.js').FieldOk} answer
+   * @param {FieldOk} answer
    */
   fieldAccepted(id, request, answer) {
     this.happened({ type: 'accepted', id, bounds: answer.bounds });
@@ -278,7 +280,7 @@ export class Sampler {
 
   /**
    * Takes the box in which a run samples, which is found after its field was accepted.
-   * @param {import('../types.js').FieldOk} answer
+   * @param {FieldOk} answer
    * @param {Run} run
    */
   boxFound(answer, { request }) {
@@ -287,7 +289,7 @@ export class Sampler {
     if (!request.restoring) this.presenter.box(answer);
   }
 
-  /** @param {number} id @param {Extract<import('../types.js').FieldAnswer, {ok: false}>} answer */
+  /** @param {number} id @param {Extract<FieldAnswer, {ok: false}>} answer */
   fieldRefused(id, answer) {
     const wasRunning = runningOf(this.runs)?.id === id;
     this.presenter.fault(answer);
@@ -303,7 +305,7 @@ export class Sampler {
     this.presenter.dim(this.runs.astray);
   }
 
-  /** @param {import('./protocol.js').ColumnsMessage} message @param {Run} run */
+  /** @param {ColumnsMessage} message @param {Run} run */
   takeColumns(message, run) {
     const drawn = () => this.client.post({ type: 'drawn', id: message.id });
     // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
@@ -316,7 +318,7 @@ export class Sampler {
     this.presenter.particles(message, run, drawn);
   }
 
-  /** @param {import('./protocol.js').DoneMessage} message @param {Run} run */
+  /** @param {DoneMessage} message @param {Run} run */
   ended(message, run) {
     const { outcome, progress, reportFollows } = message;
     const { request } = run;
@@ -342,7 +344,7 @@ export class Sampler {
 
   /**
    * Updates the cost model from a finished run.
-   * @param {import('./protocol.js').DoneMessage} message
+   * @param {DoneMessage} message
    * @param {Run} run
    * @param {number} particles
    */
@@ -354,7 +356,8 @@ export class Sampler {
     if (drag) store.lastDrag.value = drag;
   }
 
-  // ---- when the worker fails ----------------------------------------------------------------------------------------------
+  // ---- when the worker fails
+  // ----------------------------------------------------------------------------------------------
 
   /** Version of the core; empty until the core has loaded. */
   get version() {
@@ -377,7 +380,8 @@ export class Sampler {
   }
 
   /**
-   * Makes the lost run again, in one step with the end of the old one: nothing on the page sees a sampler at rest in between.
+   * Makes the lost run again, in one step with the end of the old one: nothing on the page sees a sampler at rest in
+   * between.
    * @param {Crash} crash
    */
   restarted(crash) {

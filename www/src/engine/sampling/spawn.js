@@ -7,13 +7,15 @@
 import coreUrl from '../../wasm/core/core_bg.wasm?url';
 import { LoadError, loadModule, words } from '../bundle/load.js';
 
+/** @import { ToWorker } from './protocol.js' */
+
 /** The compiled core; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;
 
 /** @returns {Worker} */
 export function spawnSampler() {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'sampler' });
-  const say = (/** @type {import('./protocol.js').ToWorker} */ message) => worker.postMessage(message);
+  const say = (/** @type {ToWorker} */ message) => worker.postMessage(message);
   core ??= loadModule(coreUrl);
   core.then(
     (module) => say({ type: 'core', module }),

@@ -8,10 +8,8 @@
  */
 import { SILENCE_MS } from './protocol.js';
 
-/**
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./protocol.js').ToWorker} ToWorker
- */
+/** @import { FromWorker, ToWorker } from './protocol.js' */
+
 /**
  * The part of the worker interface that the supervisor uses. Tests pass a scripted worker.
  * @typedef {object} WorkerLike

@@ -12,8 +12,9 @@ import { join, write } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
- * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./protocol.js').ToWorker} ToWorker
+ * @import { InitOutput } from '../../wasm/core/core.js'
+ * @import { Env } from './job.js'
+ * @import { Fault, FromWorker, LoadFault, ToWorker } from './protocol.js'
  */
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
@@ -29,7 +30,7 @@ const post = (message, transfer = []) => self.postMessage(message, { transfer })
 const jobs = new Jobs(post);
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
-/** @type {import('./protocol.js').Fault | null} */
+/** @type {Fault | null} */
 let provoked = null;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
 let curvature = false;
@@ -65,7 +66,7 @@ const pause = () =>
 
 /** @type {Core | null} */
 let core = null;
-/** @type {import('../../wasm/core/core.js').InitOutput | null} */
+/** @type {InitOutput | null} */
 let raw = null;
 const memory = { held: 0, meshed: 0 };
 
@@ -84,7 +85,7 @@ function provoke() {
   }
 }
 
-/** @param {Core} ours @returns {import('./job.js').Env} */
+/** @param {Core} ours @returns {Env} */
 const surroundings = (ours) => ({
   nowMs: () => performance.now(),
   pause,
@@ -210,7 +211,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
 // Shows the supervisor that the worker is alive while the core loads.
 const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
 
-/** @param {import('./protocol.js').LoadFault} fault @param {string} message */
+/** @param {LoadFault} fault @param {string} message */
 function failed(fault, message) {
   clearInterval(beat);
   dead = true;

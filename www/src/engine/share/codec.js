@@ -10,10 +10,7 @@
 import { fromBase64url, toBase64url } from './base64url.js';
 import { completeSettings, defaultState, sanitize, surfaceOf } from './state.js';
 
-/**
- * @typedef {import('../types.js').State} State
- * @typedef {import('../types.js').Description} Description
- */
+/** @import { Description, State } from '../types.js' */
 
 const VERSION = 1;
 /** Largest length of a fragment that is decoded. */
@@ -68,7 +65,11 @@ export function difference(state, description) {
   return out;
 }
 
-/** @param {Uint8Array<ArrayBuffer>} bytes @param {CompressionStream | DecompressionStream} stream @param {number} limit */
+/**
+ * @param {Uint8Array<ArrayBuffer>} bytes
+ * @param {CompressionStream | DecompressionStream} stream
+ * @param {number} limit
+ */
 async function through(bytes, stream, limit) {
   const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
   /** @type {Uint8Array[]} */

@@ -6,12 +6,15 @@
  */
 import { NO_PARENT, SINGULAR } from '../columns.js';
 
-/** @typedef {import('../columns.js').Columns} Columns */
+/**
+ * @import { Columns } from '../columns.js'
+ * @import { Description } from '../types.js'
+ */
 
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
 
-/** @typedef {import('../types.js').Description['columns'][number]} Column */
+/** @typedef {Description['columns'][number]} Column */
 
 /** Returns the positions as exactly as they are known. @param {Columns} columns */
 const placesOf = ({ exact, positions }) => (exact.length > 0 ? exact : positions);
@@ -39,7 +42,11 @@ const READ = {
   singular: ({ slots }, i) => (slots[i] & SINGULAR ? 1 : 0),
 };
 
-/** Columns whose values are known; some are known only after the particles were measured. @param {Columns} columns @param {readonly Column[]} all */
+/**
+ * Columns whose values are known; some are known only after the particles were measured.
+ * @param {Columns} columns
+ * @param {readonly Column[]} all
+ */
 const known = ({ valence, nearest, residual }, all) =>
   all.filter(({ measured }) => !measured || (valence && nearest && residual));
 

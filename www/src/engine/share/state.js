@@ -8,14 +8,8 @@ import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
 
 /**
- * @typedef {import('../types.js').State} State
- * @typedef {import('../types.js').Description} Description
- * @typedef {import('../types.js').SurfaceInfo} SurfaceInfo
- * @typedef {import('../types.js').Settings} Settings
- * @typedef {import('../types.js').FieldRequest} FieldRequest
- * @typedef {import('../types.js').Bounds} Bounds
- * @typedef {import('../types.js').Vec3} Vec3
- * @typedef {import('../types.js').Parameter} Parameter
+ * @import { Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Settings, State } from '../types.js'
+ * @import { SurfaceInfo, Vec3 } from '../types.js'
  */
 
 /** Largest number of parameters in a state. */
@@ -99,7 +93,7 @@ export function fieldRequest(state, description, points) {
   return request;
 }
 
-/** A box that the core takes. @param {unknown} v @param {import('../types.js').Limits} limits @returns {Bounds | undefined} */
+/** A box that the core takes. @param {unknown} v @param {Limits} limits @returns {Bounds | undefined} */
 export function validBounds(v, limits) {
   if (!isRecord(v)) return undefined;
   const [min, max] = [vec3(v.min), vec3(v.max)];
@@ -110,7 +104,7 @@ export function validBounds(v, limits) {
   return fits && farthest <= limits.farthest_corner * diagonal ? { min, max } : undefined;
 }
 
-/** A plane with a unit normal. @param {unknown} v @returns {import('../types.js').CuttingPlane | undefined} */
+/** A plane with a unit normal. @param {unknown} v @returns {CuttingPlane | undefined} */
 export function validPlane(v) {
   if (!isRecord(v)) return undefined;
   const [normal, offset] = [vec3(v.normal), within(v.offset, -LARGEST_SINGLE, LARGEST_SINGLE)];
@@ -121,7 +115,8 @@ export function validPlane(v) {
 }
 
 /**
- * Numbers of points that can be fitted of a model or a file; null for a surface from a formula. How many a file has is not known here.
+ * Numbers of points that can be fitted of a model or a file; null for a surface from a formula. How many a file has is
+ * not known here.
  * @param {Description} description @param {string} id
  */
 function centresOf({ limits, models }, id) {
@@ -142,7 +137,12 @@ export function validCentres(v, description, id) {
   return Math.round(count) === range.usual ? null : Math.round(count);
 }
 
-/** The parameter of this name as the core would begin it. @param {Description} description @param {string} name @returns {Parameter} */
+/**
+ * The parameter of this name as the core would begin it.
+ * @param {Description} description
+ * @param {string} name
+ * @returns {Parameter}
+ */
 export const newParameter = ({ new_parameter }, name) => ({ ...new_parameter, name, label: name });
 
 /** Whether a parameter may have this name. @param {Description} description @param {string} name */

@@ -4,6 +4,8 @@
  * @module
  */
 
+/** @import { Vec3 } from '../types.js' */
+
 /**
  * Limits a number to its range; returns undefined for anything else.
  * @param {unknown} v
@@ -19,7 +21,7 @@ export const isRecord = (v) => typeof v === 'object' && v !== null && !Array.isA
 /** @param {unknown} v */
 export const finite = (v) => within(v, -Infinity, Infinity);
 
-/** @param {unknown} v @returns {import('../types.js').Vec3 | undefined} */
+/** @param {unknown} v @returns {Vec3 | undefined} */
 export const vec3 = (v) =>
   Array.isArray(v) && v.length === 3 && v.every(Number.isFinite) ? [v[0], v[1], v[2]] : undefined;
 

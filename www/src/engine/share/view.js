@@ -1,6 +1,6 @@
 /**
- * The options of the view: for each what it is before it is chosen, what may be chosen, and its name in words. State, links, validation
- * and the menu follow from this table.
+ * The options of the view: for each what it is before it is chosen, what may be chosen, and its name in words. State,
+ * links, validation and the menu follow from this table.
  *
  * @module
  */
@@ -8,6 +8,8 @@ import { DISC_SIZE } from '../types.js';
 import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 import { COLOURINGS } from '../view/colouring.js';
 import { integers, isRecord, vec3, within } from './valid.js';
+
+/** @import { CameraState, ColourMode } from '../types.js' */
 
 /** Largest number of a camera, which the graphics card reads in single precision. */
 const LARGEST_SINGLE = 3e38;
@@ -17,8 +19,8 @@ const LAST_LEVEL = 1e6;
 const LAST_PARTICLE = 2 ** 32 - 1;
 
 /**
- * An option. `valid` returns the valid value that is nearest to any input, or undefined. With `exact` a value that had to be changed
- * counts as one that was reset.
+ * An option. `valid` returns the valid value that is nearest to any input, or undefined. With `exact` a value that had
+ * to be changed counts as one that was reset.
  * @template T
  * @typedef {{home: () => T, words: string, valid: (raw: unknown) => T | undefined, exact?: boolean}} Option
  */
@@ -52,7 +54,7 @@ const place = (words) => ({
   },
 });
 
-/** @param {unknown} raw @returns {import('../types.js').CameraState | undefined} */
+/** @param {unknown} raw @returns {CameraState | undefined} */
 function validCamera(raw) {
   const { target: at, distance: far, yaw: turn, pitch: tilt, fit } = isRecord(raw) ? raw : {};
   const target = vec3(at);
@@ -64,7 +66,7 @@ function validCamera(raw) {
 }
 
 export const VIEW = {
-  colour: choice('colour', /** @type {import('../types.js').ColourMode[]} */ (Object.keys(COLOURINGS))),
+  colour: choice('colour', /** @type {ColourMode[]} */ (Object.keys(COLOURINGS))),
   /** Disc radius as a share of the repulsion radius: see {@link DISC_SIZE}. @type {Option<number>} */
   size: {
     home: () => DISC_SIZE.initial,
@@ -89,7 +91,10 @@ export const VIEW = {
   axes: flag(false, 'axes'),
   /** Whether a scale bar is drawn. */
   bar: flag(false, 'scale bar'),
-  /** Indices of up to two particles whose distance is measured; null while nothing is. @type {Option<number[] | null>} */
+  /**
+   * Indices of up to two particles whose distance is measured; null while nothing is.
+   * @type {Option<number[] | null>}
+   */
   measured: {
     home: () => null,
     words: 'measured distance',
@@ -107,7 +112,10 @@ export const VIEW = {
   step: place('relaxation step'),
   /** What a step on the timeline is. */
   grain: choice('grain of the timeline', ['level', 'particle', 'event']),
-  /** The particle of the paper's run that is followed, and the number of its event. @type {Option<[number, number] | null>} */
+  /**
+   * The particle of the paper's run that is followed, and the number of its event.
+   * @type {Option<[number, number] | null>}
+   */
   follow: {
     home: () => null,
     words: 'place on the timeline',
@@ -118,7 +126,7 @@ export const VIEW = {
       return [Math.min(particle, LAST_PARTICLE), Math.min(event, LAST_LEVEL)];
     },
   },
-  /** @type {Option<import('../types.js').CameraState>} */
+  /** @type {Option<CameraState>} */
   camera: { home: homeCamera, words: 'camera', valid: validCamera },
 };
 

@@ -4,8 +4,12 @@
  *
  * @module
  */
-/** @typedef {import('../../wasm/render-webgpu/render.js').Renderer} Renderer */
-/** @typedef {import('./painter.js').Painter} Painter */
+
+/**
+ * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { Painter } from './painter.js'
+ */
+
 /** @typedef {'webgpu' | 'webgl2' | 'canvas2d'} BackendKind */
 /**
  * @typedef {object} Device

@@ -8,10 +8,9 @@
  * @module
  */
 
+/** @import { Bounds, CameraState, Spot, Vec3 } from '../types.js' */
+
 /**
- * @typedef {import('../types.js').CameraState} CameraState
- * @typedef {import('../types.js').Vec3} Vec3
- * @typedef {import('../types.js').Bounds} Bounds
  * @typedef {{left: number, right: number, top: number, bottom: number}} Insets  pixels covered by panels
  * @typedef {{yaw: number, pitch: number}} Angles
  * @typedef {{
@@ -143,7 +142,7 @@ export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
 /**
  * Returns where a place is in the picture; null behind the eye.
  * @param {View} view @param {ArrayLike<number>} place @param {number} widthPx @param {number} heightPx
- * @returns {import('../types.js').Spot | null}
+ * @returns {Spot | null}
  */
 export function projected({ clipFromWorld: m, worldPerPx }, place, widthPx, heightPx) {
   const row = (/** @type {number} */ k) => m[k] * place[0] + m[4 + k] * place[1] + m[8 + k] * place[2] + m[12 + k];
@@ -177,7 +176,10 @@ export class Camera {
     this.pitchPerS = 0;
     /** @type {{target: Vec3, distance: number, yaw?: number, pitch?: number} | null} */
     this.glide = null;
-    /** A slow turn under way: its angles, and the time since its pause began. @type {{from: Angles, to: Angles, sinceS: number} | null} */
+    /**
+     * A slow turn under way: its angles, and the time since its pause began.
+     * @type {{from: Angles, to: Angles, sinceS: number} | null}
+     */
     this.turn = null;
     /** Whether motion is reduced: no easing and no animation. */
     this.calm = false;
@@ -376,7 +378,11 @@ export class Camera {
     return t < 1;
   }
 
-  /** Advances an animation, of which the share `keep` of the way stays. @param {number} keep @returns {boolean} whether it continues */
+  /**
+   * Advances an animation, of which the share `keep` of the way stays.
+   * @param {number} keep
+   * @returns {boolean} whether it continues
+   */
   follow(keep) {
     if (!this.glide) return false;
     const { state } = this;

@@ -8,11 +8,9 @@ import { hexFromPacked } from './oklab.js';
 import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
 
 /**
- * @typedef {import('../columns.js').Columns} Columns
- * @typedef {import('../types.js').ColourMode} ColourMode
- * @typedef {import('../types.js').Legend} Legend
- * @typedef {import('./palettes.js').Palette} Palette
- * @typedef {import('./palettes.js').Theme} Theme
+ * @import { Columns } from '../columns.js'
+ * @import { ColourMode, Legend, LegendEntry } from '../types.js'
+ * @import { Palette, Theme } from './palettes.js'
  */
 
 /** Number of slots of a particle in a uniform run. In an adaptive run it varies. */
@@ -145,12 +143,15 @@ function curvatureRange(columns) {
   return [-most, most];
 }
 
-/** What a colouring works with. @typedef {{palette: Palette, columns: Columns, range: [number, number] | null}} Context */
+/**
+ * What a colouring works with.
+ * @typedef {{palette: Palette, columns: Columns, range: [number, number] | null}} Context
+ */
 /**
  * A way to colour the particles. A colour is packed as `0xAABBGGRR`.
  * @typedef {object} Colouring
- * @property {(columns: Columns) => [number, number] | null} [range]  the values at both ends of a ramp, where they depend on the
- *   particles; null before there is a value
+ * @property {(columns: Columns) => [number, number] | null} [range]  the values at both ends of a ramp, where they
+ *   depend on the particles; null before there is a value
  * @property {(context: Context) => ((i: number) => number) | null} colour  null while what it shows is not known
  * @property {(context: Context) => Omit<Legend, 'unit'> & {unit?: string}} legend
  */
@@ -176,7 +177,7 @@ const classes = (title, labels, coloursOf, classesOf) => ({
 
 /**
  * A legend of entries, pending while they are not known.
- * @param {string} title @param {Palette} palette @param {import('../types.js').LegendEntry[] | null} entries
+ * @param {string} title @param {Palette} palette @param {LegendEntry[] | null} entries
  */
 const byEntries = (title, palette, entries) => ({
   title,
@@ -186,7 +187,8 @@ const byEntries = (title, palette, entries) => ({
 });
 
 /**
- * A colouring by a sequential ramp. `valuesIn` returns the value of a particle, or is null while the values are not known.
+ * A colouring by a sequential ramp. `valuesIn` returns the value of a particle, or is null while the values are not
+ * known.
  * @param {Pick<Legend, 'title' | 'mark'> & {unit?: string}} legend
  * @param {readonly [number, number] | ((columns: Columns) => [number, number] | null)} span
  * @param {(columns: Columns) => ((i: number) => number) | null} valuesIn
@@ -304,13 +306,15 @@ export const COLOURINGS = {
 };
 
 /**
- * Returns the values at both ends of a ramp whose range depends on the particles; null for other modes and before there is a value.
+ * Returns the values at both ends of a ramp whose range depends on the particles; null for other modes and before there
+ * is a value.
  * @param {ColourMode} mode @param {Columns} columns
  */
 export const rangeOf = (mode, columns) => COLOURINGS[mode].range?.(columns) ?? null;
 
 /**
- * Returns the colours of particles `first … last`, as `0xAABBGGRR`. While what a mode shows is missing, it is the plain one.
+ * Returns the colours of particles `first … last`, as `0xAABBGGRR`. While what a mode shows is missing, it is the plain
+ * one.
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
@@ -343,8 +347,8 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
 
 /**
  * Returns a legend entry for each of the largest components, and one for all others.
- * @param {Uint32Array} component @param {import('./palettes.js').Palette} palette
- * @returns {import('../types.js').LegendEntry[]}
+ * @param {Uint32Array} component @param {Palette} palette
+ * @returns {LegendEntry[]}
  */
 function componentEntries(component, palette) {
   /** @type {number[]} */
@@ -368,8 +372,8 @@ function componentEntries(component, palette) {
 }
 
 /**
- * Returns the colour of a unit vector. The range of a channel is 0.15 … 0.9 instead of 0 … 1, so that no direction is black or too
- * bright.
+ * Returns the colour of a unit vector. The range of a channel is 0.15 … 0.9 instead of 0 … 1, so that no direction is
+ * black or too bright.
  * @param {number} x @param {number} y @param {number} z
  */
 function colourOfDirection(x, y, z) {

@@ -6,7 +6,7 @@
  */
 import { Pointers, placeOn, zoomAt } from './pointers.js';
 
-/** @typedef {import('./pointers.js').Stage} Stage */
+/** @import { Place, Stage } from './pointers.js' */
 
 /**
  * Change in the logarithm of the distance per wheel pixel. A notch of 100 pixels is 14 %; a pinch unit counts about ten
@@ -86,7 +86,7 @@ function hoverOf({ point }) {
   let frame = 0;
   let last = { x: 0, y: 0 };
   return {
-    /** @param {import('./pointers.js').Place} place */
+    /** @param {Place} place */
     at(place) {
       last = place;
       if (frame !== 0) return;

@@ -2,17 +2,15 @@
  * Keeps a graphics device open: opens the best one, reopens it after a loss, and falls back to the next kind after
  * repeated losses.
  *
- * Browsers keep some 16 contexts alive on all frames of a page together, and take the oldest one away for the next. A picture out of
- * sight that loses its device therefore does not take another frame's: it is drawn as dots until it is seen again.
+ * Browsers keep some 16 contexts alive on all frames of a page together, and take the oldest one away for the next. A
+ * picture out of sight that loses its device therefore does not take another frame's: it is drawn as dots until it is
+ * seen again.
  *
  * @module
  */
 import { BACKENDS, openDevice } from './backends.js';
 
-/**
- * @typedef {import('./backends.js').Device} Device
- * @typedef {import('./backends.js').BackendKind} BackendKind
- */
+/** @import { BackendKind, Device } from './backends.js' */
 
 /** Time window in which losses of one kind of device are counted. */
 const WINDOW_MS = 60_000;
@@ -109,7 +107,10 @@ export class DeviceKeeper {
     else device.dispose();
   }
 
-  /** Notes whether the picture is in sight. A device that was lost out of sight is opened again. @param {boolean} inSight */
+  /**
+   * Notes whether the picture is in sight. A device that was lost out of sight is opened again.
+   * @param {boolean} inSight
+   */
   seen(inSight) {
     this.inSight = inSight;
     if (!inSight || !this.resting) return;

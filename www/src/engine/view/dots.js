@@ -9,6 +9,8 @@
  */
 import { NO_LEVEL } from '../columns.js';
 
+/** @import { View } from './camera.js' */
+
 /** Radius of the ink, and width of the casing around it, in page pixels. */
 const INK_PX = 1.7;
 const CASING_PX = 0.9;
@@ -20,7 +22,7 @@ const LEAST_INK = 2.4;
 
 /**
  * @param {Float32Array} points  three numbers each
- * @param {import('./camera.js').View} view  made for page pixels
+ * @param {View} view  made for page pixels
  * @param {object} options
  * @param {number} options.px  canvas pixels per page pixel
  * @param {number} options.size  disc scale of the renderer, which the radii compensate

@@ -1,6 +1,6 @@
 /**
- * Uploads a mesh to the graphics device: its faces, each with what it needs of its three corners, their colours, and marks
- * on the vertices that do not have six neighbours.
+ * Uploads a mesh to the graphics device: its faces, each with what it needs of its three corners, their colours, and
+ * marks on the vertices that do not have six neighbours.
  *
  * @module
  */
@@ -8,10 +8,11 @@ import { classOfValence, coloursOf } from './colouring.js';
 import { PALETTES } from './palettes.js';
 
 /**
- * @typedef {import('../columns.js').Columns} Columns
- * @typedef {import('../types.js').Mesh} Mesh
- * @typedef {import('../../wasm/render-webgpu/render.js').Renderer} Renderer
- * @typedef {import('./style.js').Look} Look
+ * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { Columns } from '../columns.js'
+ * @import { Mesh } from '../types.js'
+ * @import { Theme } from './palettes.js'
+ * @import { Look } from './style.js'
  */
 
 /** Faces gathered at a time, which take 6 MB. */
@@ -23,8 +24,8 @@ const SLICE = 65_536;
  */
 export function valencesOf(triangles, count) {
   const valence = new Uint8Array(count);
-  // Inside the mesh every neighbour follows the vertex in one triangle and precedes it in another, so that the sum of the
-  // followers less that of the predecessors is 0. At a border the first and the last one remain.
+  // Inside the mesh every neighbour follows the vertex in one triangle and precedes it in another, so that the sum of
+  // the followers less that of the predecessors is 0. At a border the first and the last one remain.
   const rest = new Int32Array(count);
   for (let i = 0; i < triangles.length; i += 3) {
     for (let k = 0; k < 3; k += 1) {
@@ -39,7 +40,7 @@ export function valencesOf(triangles, count) {
 
 /**
  * Returns the colour of the mark on every vertex, as in the colouring by neighbours; 0 for none.
- * @param {Uint32Array} triangles @param {number} count @param {import('./palettes.js').Theme} theme
+ * @param {Uint32Array} triangles @param {number} count @param {Theme} theme
  */
 export function marksOf(triangles, count, theme) {
   const palette = PALETTES[theme].valence;
@@ -89,8 +90,8 @@ export class FaceUpload {
    * Uploads what has changed.
    * @param {Renderer} renderer
    * @param {Look} look
-   * @param {{drawn: boolean, range: [number, number] | null}} present  whether faces are drawn now, and the ends of the present
-   *   colour ramp
+   * @param {{drawn: boolean, range: [number, number] | null}} present  whether faces are drawn now, and the ends of the
+   *   present colour ramp
    */
   write(renderer, look, { drawn, range }) {
     const { columns } = this;
@@ -121,6 +122,11 @@ export class FaceUpload {
   }
 }
 
-/** Returns whether a device can draw a mesh over all particles. @param {Renderer} renderer @param {Mesh} mesh @param {Columns} columns */
+/**
+ * Returns whether a device can draw a mesh over all particles.
+ * @param {Renderer} renderer
+ * @param {Mesh} mesh
+ * @param {Columns} columns
+ */
 const fits = (renderer, { triangles }, { count }) =>
   triangles.length / 3 <= renderer.max_faces() && count <= renderer.max_particles();

@@ -11,6 +11,8 @@ import { NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
+/** @import { CuttingPlane } from '../types.js' */
+
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
 const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
@@ -37,7 +39,7 @@ const INSIDE_CHROMA = 0.5;
  * @property {number | null} [level]  newest generation level drawn, null for all
  * @property {number} outline  index of the highlighted particle, −1 for none
  * @property {{min: number[], max: number[], colour: number[]} | null} box
- * @property {import('../types.js').CuttingPlane | null} [plane]  discs whose centres are beyond it are hidden
+ * @property {CuttingPlane | null} [plane]  discs whose centres are beyond it are hidden
  */
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
@@ -63,8 +65,8 @@ function eyeAxes(m) {
 }
 
 /**
- * Returns the brightness as `brightness` in shaders/common.wgsl does, with the sky straight up: a wrapped key light and a
- * hemisphere light, darker at the silhouette.
+ * Returns the brightness as `brightness` in shaders/common.wgsl does, with the sky straight up: a wrapped key light and
+ * a hemisphere light, darker at the silhouette.
  * @param {number} keyward  component of the normal towards the light @param {number} skyward component upwards
  * @param {number} edgeOn  1 at the silhouette
  */
@@ -76,8 +78,9 @@ function shadeOf(keyward, skyward, edgeOn) {
 /**
  * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
  * @param {{out: Uint32Array, depth: Float32Array, width: number, height: number}} target
- * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number, rim: number, coreSq: number}} disc
- *   `inv` is the depth at the centre; beyond the squared distance `coreSq` the disc has the colour of its rim
+ * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number,
+ *   rim: number, coreSq: number}} disc `inv` is the depth at the centre; beyond the squared distance `coreSq` the disc
+ *   has the colour of its rim
  */
 function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, depthPerPx, value, rim, coreSq }) {
   const y0 = Math.max(0, Math.ceil(sy - px - 0.5));

@@ -5,8 +5,10 @@
  * @module
  */
 
-/** @typedef {import('../types.js').Vec3} Vec3 */
-/** @typedef {import('../columns.js').Columns} Columns */
+/**
+ * @import { Columns } from '../columns.js'
+ * @import { CuttingPlane, Vec3 } from '../types.js'
+ */
 
 /**
  * Disc radius, relative to the particle's, at which three discs of a hexagonal packing meet in the gap between them.
@@ -26,7 +28,7 @@ const DENSE = 0.8;
  * @param {number} discScale  disc radius as a share of the particle's radius
  * @param {number} toleranceRad
  * @param {number} [lastLevel]  particles of later levels are hidden
- * @param {import('../types.js').CuttingPlane | null} [plane]  particles beyond it are hidden
+ * @param {CuttingPlane | null} [plane]  particles beyond it are hidden
  * @param {number} [upto]  particles from this one on are hidden
  * @returns {number | null}
  */
@@ -95,7 +97,7 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
 
 /**
  * Returns whether a plane hides a place, of which the coordinates begin at index `at`.
- * @param {import('../types.js').CuttingPlane} plane
+ * @param {CuttingPlane} plane
  * @param {ArrayLike<number>} positions
  * @param {number} at
  */

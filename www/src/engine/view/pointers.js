@@ -6,13 +6,15 @@
  * @module
  */
 
+/** @import { Camera, View } from './camera.js' */
+
 /** @typedef {{x: number, y: number}} Place  in CSS pixels of the host */
 /**
  * The objects on which the pointers act.
  * @typedef {object} Stage
  * @property {HTMLElement} host
- * @property {import('./camera.js').Camera} camera
- * @property {() => import('./camera.js').View} currentView
+ * @property {Camera} camera
+ * @property {() => View} currentView
  * @property {() => void} moved
  * @property {() => void} fit
  * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer hovers over or tapped this place

@@ -6,9 +6,8 @@
 import { ballOf } from './camera.js';
 
 /**
- * @typedef {import('../columns.js').Columns} Columns
- * @typedef {import('../types.js').Bounds} Bounds
- * @typedef {import('../types.js').Vec3} Vec3
+ * @import { Columns } from '../columns.js'
+ * @import { Bounds, Vec3 } from '../types.js'
  */
 
 /**
@@ -46,8 +45,8 @@ export class Scene {
   }
 
   /**
-   * Returns the ball that a fit shows: around the particles, or the clip box where there are none. Where the particles are those
-   * of an earlier field, the clip box is shown with them if it is drawn.
+   * Returns the ball that a fit shows: around the particles, or the clip box where there are none. Where the particles
+   * are those of an earlier field, the clip box is shown with them if it is drawn.
    * @param {Columns} columns
    * @param {boolean} boxDrawn  the ball encloses the clip box
    * @param {boolean} [axesDrawn]  the ball encloses the axes around the particles

@@ -4,6 +4,8 @@
  * @module
  */
 
+/** @import { BackendKind } from './backends.js' */
+
 /** Largest pixel ratio. Finer pixels are not visible but cost drawing time. */
 const LARGEST_PIXEL_RATIO = 2;
 /** Largest pixel ratio of the painter, whose cost grows with the number of pixels. */
@@ -31,7 +33,7 @@ export class Screen {
     this.measure();
   }
 
-  /** Adopts the pixel ratio limit of a kind of device. @param {import('./backends.js').BackendKind} kind */
+  /** Adopts the pixel ratio limit of a kind of device. @param {BackendKind} kind */
   drawnBy(kind) {
     this.largestRatio = kind === 'canvas2d' ? LARGEST_PAINTED_RATIO : LARGEST_PIXEL_RATIO;
     this.measure();

@@ -6,6 +6,11 @@
 import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
 
+/**
+ * @import { Bounds, CuttingPlane, ViewState } from '../types.js'
+ * @import { Insets } from './camera.js'
+ */
+
 /** Duration in which a new particle fades in. */
 export const FADE_S = 0.12;
 /** Width of the edges of faces, in page pixels. */
@@ -15,26 +20,26 @@ const DIM_BACKFACES = 1;
 
 /**
  * What of the view the picture itself shows, and what else it shows.
- * @typedef {Omit<import('../types.js').ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'>
+ * @typedef {Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'>
  *   & Setting} Look
  */
 /**
  * @typedef {object} Setting
  * @property {'light' | 'dark'} theme
- * @property {import('../types.js').Bounds | null} box  the clip box, or null if it is not drawn
- * @property {import('../types.js').CuttingPlane | null} plane  what it hides is neither drawn nor picked
+ * @property {Bounds | null} box  the clip box, or null if it is not drawn
+ * @property {CuttingPlane | null} plane  what it hides is neither drawn nor picked
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
  * @property {number | null} upto  number of particles drawn, null for all
  * @property {number} highlight  index of the particle with an outline, −1 for none
- * @property {import('./camera.js').Insets} insets
+ * @property {Insets} insets
  */
 
-/** Returns what the picture shows of the view. @param {import('../types.js').ViewState} view */
+/** Returns what the picture shows of the view. @param {ViewState} view */
 export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {
   return seen;
 }
 
-/** @param {import('../types.js').ViewState} view @returns {Look} */
+/** @param {ViewState} view @returns {Look} */
 export const firstLook = (view) => ({
   ...seenOf(view),
   theme: 'light',
@@ -54,8 +59,8 @@ export const firstLook = (view) => ({
 export const shownLevel = ({ level }, lastLevel) => (level === null ? null : Math.min(level, lastLevel));
 
 /**
- * Returns the number of the relaxation step after which the particles are drawn, null for the last one. Generation levels are drawn
- * as they were placed. A mesh has one place only.
+ * Returns the number of the relaxation step after which the particles are drawn, null for the last one. Generation
+ * levels are drawn as they were placed. A mesh has one place only.
  * @param {Look} look
  */
 export function shownStep({ level, step, upto, draw }) {

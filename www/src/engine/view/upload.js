@@ -9,9 +9,15 @@ import { Glide, MOST_GLIDING } from './glide.js';
 import { PALETTES } from './palettes.js';
 
 /**
- * @typedef {import('../columns.js').Columns} Columns
- * @typedef {import('./backends.js').Device['renderer']} Renderer
- * @typedef {import('./style.js').Look} Look
+ * @import { Columns } from '../columns.js'
+ * @import { Device } from './backends.js'
+ * @import { View } from './camera.js'
+ * @import { Reveal } from './reveal.js'
+ * @import { Look } from './style.js'
+ */
+
+/**
+ * @typedef {Device['renderer']} Renderer
  */
 
 /** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
@@ -74,7 +80,7 @@ export class ParticleUpload {
    * Uploads what has changed.
    * @param {Renderer} renderer
    * @param {Look} look
-   * @param {{reveal: import('./reveal.js').Reveal, calm: boolean, nowS: number}} present
+   * @param {{reveal: Reveal, calm: boolean, nowS: number}} present
    * @returns {number} number of particles on the device
    */
   write(renderer, look, { reveal, calm, nowS }) {
@@ -133,7 +139,7 @@ export class ParticleUpload {
    * Writes the model's points after the particles, as discs that face the eye, and therefore again for every frame.
    * @param {Renderer} renderer
    * @param {Look} look
-   * @param {import('./camera.js').View} view
+   * @param {View} view
    * @param {{count: number, ratio: number}} present  particles that the device holds; canvas pixels per page pixel
    * @returns {number} discs written
    */

@@ -18,20 +18,22 @@ import { FADE_S, firstLook, shownLevel, shownStep, styleOf } from './style.js';
 import { ParticleUpload } from './upload.js';
 
 /**
- * @typedef {import('../columns.js').Columns} Columns
- * @typedef {import('../types.js').Bounds} Bounds
- * @typedef {import('./backends.js').Device} Device
- * @typedef {import('./camera.js').View} View
- * @typedef {import('./style.js').Look} Look
+ * @import { Columns } from '../columns.js'
+ * @import { Bounds, CameraState, Legend, Place, Ray, Vec3, ViewState } from '../types.js'
+ * @import { BackendKind, Device } from './backends.js'
+ * @import { View } from './camera.js'
+ * @import { Outcome } from './frames.js'
+ * @import { Look } from './style.js'
  */
+
 /**
  * The events of the viewer.
  * @typedef {object} ViewerEvents
  * @property {(device: Device) => void} onDevice
  * @property {(kind: string, message: string) => void} onLost
  * @property {(kind: string, message: string) => void} onFallback
- * @property {(legend: import('../types.js').Legend) => void} onLegend
- * @property {(camera: import('../types.js').CameraState) => void} onCamera
+ * @property {(legend: Legend) => void} onLegend
+ * @property {(camera: CameraState) => void} onCamera
  * @property {() => void} onFrame  a picture was drawn
  * @property {(reveal: import('../types.js').Reveal | null) => void} onReveal
  */
@@ -50,8 +52,8 @@ export class Viewer {
    * @param {object} options
    * @param {HTMLElement} options.host
    * @param {Columns} options.columns
-   * @param {import('../types.js').ViewState} options.look
-   * @param {import('./backends.js').BackendKind | null} options.first  the back end to try first
+   * @param {ViewState} options.look
+   * @param {BackendKind | null} options.first  the back end to try first
    * @param {ViewerEvents} events
    */
   constructor({ host, columns, look, first }, events) {
@@ -100,7 +102,8 @@ export class Viewer {
     this.frames.close();
   }
 
-  // ---- what is to be drawn ------------------------------------------------------------------------------------------------
+  // ---- what is to be drawn
+  // ------------------------------------------------------------------------------------------------
 
   /** Replaces the old surface by a new one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
   begin({ grow, fit, bounds }) {
@@ -205,7 +208,8 @@ export class Viewer {
     this.frames.ask();
   }
 
-  // ---- where it is seen from ----------------------------------------------------------------------------------------------
+  // ---- where it is seen from
+  // ----------------------------------------------------------------------------------------------
 
   /**
    * Sets the clip box, which determines the near and far planes and a fit before there are particles.
@@ -227,7 +231,7 @@ export class Viewer {
     this.moved();
   }
 
-  /** Turns to a side of the surface, unless it is seen already. @param {import('../types.js').Vec3} normal */
+  /** Turns to a side of the surface, unless it is seen already. @param {Vec3} normal */
   turnTo(normal) {
     const to = facing(this.camera.state, normal);
     if (!to) return;
@@ -253,9 +257,9 @@ export class Viewer {
     return this.scene.fitBall(columns, look.box !== null, look.axes, isWhole ? undefined : isShown);
   }
 
-  /** Brings a place before the camera, seen along its normal. @param {import('../types.js').Place} place */
+  /** Brings a place before the camera, seen along its normal. @param {Place} place */
   lookAt({ places, radius, normal }) {
-    const target = /** @type {import('../types.js').Vec3} */ (
+    const target = /** @type {Vec3} */ (
       [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length)
     );
     this.camera.lookAt({ centre: target, radius: LOOK_RADII * radius }, normal);
@@ -286,20 +290,24 @@ export class Viewer {
     return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest, look.plane, upto);
   }
 
-  /** Returns where a place is in the picture, in CSS pixels of the host; null behind the eye. @param {ArrayLike<number>} place */
+  /**
+   * Returns where a place is in the picture, in CSS pixels of the host; null behind the eye.
+   * @param {ArrayLike<number>} place
+   */
   project(place) {
     const { cssWidth, cssHeight } = this.screen;
     return projected(this.currentView(), place, cssWidth, cssHeight);
   }
 
-  /** Returns the ray through a point of the host, in CSS pixels. @param {number} x @param {number} y @returns {import('../types.js').Ray} */
+  /** Returns the ray through a point of the host, in CSS pixels. @param {number} x @param {number} y @returns {Ray} */
   rayThrough(x, y) {
     const view = this.currentView();
     const { cssWidth, cssHeight } = this.screen;
     return { eye: view.eye, direction: rayThrough(view, x, y, Math.max(1, cssWidth), Math.max(1, cssHeight)) };
   }
 
-  // ---- drawing ------------------------------------------------------------------------------------------------------------
+  // ---- drawing
+  // ------------------------------------------------------------------------------------------------------------
 
   /** @param {Device} device  without any particle yet */
   opened(device) {
@@ -310,7 +318,7 @@ export class Viewer {
     this.events.onDevice(device);
   }
 
-  /** @param {number} nowS @param {number} dtS @returns {import('./frames.js').Outcome} */
+  /** @param {number} nowS @param {number} dtS @returns {Outcome} */
   frame(nowS, dtS) {
     const { device } = this.keeper;
     if (!device) return 'none';
@@ -424,8 +432,8 @@ export class Viewer {
 }
 
 /**
- * Enlarges a view so that the surface fills the shorter side of a picture as it fills that of the window. A renderer shows in a picture
- * all that the window shows, so that in one of another aspect ratio the surface would be smaller.
+ * Enlarges a view so that the surface fills the shorter side of a picture as it fills that of the window. A renderer
+ * shows in a picture all that the window shows, so that in one of another aspect ratio the surface would be smaller.
  * @param {View} view @param {number} aspect  of the picture @param {number} windowAspect
  */
 function fillFrame({ packed }, aspect, windowAspect) {

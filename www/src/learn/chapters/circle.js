@@ -10,11 +10,14 @@ import { NoSurface } from '../lab.js';
 import { sharpestBend } from '../measure.js';
 import { createRange, facts } from '../parts.js';
 
-/** @typedef {import('./index.js').Context} Context */
+/**
+ * @import { Lab } from '../lab.js'
+ * @import { Context } from './index.js'
+ */
 
 /**
  * Opens the particle around which the surface bends most, at the slot of the child beyond the bend.
- * @param {import('../lab.js').Lab} lab
+ * @param {Lab} lab
  */
 export async function openBend(lab) {
   const run = await lab.coarse();

@@ -3,12 +3,15 @@ import { effect } from '@preact/signals-core';
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 
-/** @typedef {import('./index.js').Context} Context */
+/**
+ * @import { Lab } from '../lab.js'
+ * @import { Context } from './index.js'
+ */
 
 /** Steps of Witkin and Heckbert's system for 10,633 particles on an ellipsoid, as Table 1 of the paper has it. */
 const STEPS_OF_TABLE_1 = 373;
 
-/** @param {import('../lab.js').Lab} lab */
+/** @param {Lab} lab */
 export async function costOf(lab) {
   const { progress, placing } = await lab.run({}, { keep: true });
   const { particles, evaluations } = progress;

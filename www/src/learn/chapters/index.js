@@ -6,7 +6,15 @@ import { rest, seams } from './rest.js';
 import { opening, rings } from './rings.js';
 import { sizes } from './sizes.js';
 
-/** What a figure is given: the runs, and which predictions are out. @typedef {{ lab: Promise<import('../lab.js').Lab>, stops: import('../predict.js').Stops }} Context */
+/**
+ * @import { Lab } from '../lab.js'
+ * @import { Stops } from '../predict.js'
+ */
+
+/**
+ * What a figure is given: the runs, and which predictions are out.
+ * @typedef {{ lab: Promise<Lab>, stops: Stops }} Context
+ */
 
 /** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
 export const FIGURES = {

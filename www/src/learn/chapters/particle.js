@@ -12,8 +12,9 @@ import { s } from '../../ui/svg.js';
 import { createRange } from '../parts.js';
 
 /**
- * @typedef {import('./index.js').Context} Context
- * @typedef {import('../../figures/particle.js').Opened} Opened
+ * @import { Opened } from '../../figures/particle.js'
+ * @import { Run } from '../lab.js'
+ * @import { Context } from './index.js'
  */
 
 /** The fates that are explained in any case. */
@@ -102,7 +103,7 @@ export async function sixChildren({ lab, stops }) {
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 
-/** What became of the children, level by level. @param {import('../lab.js').Run} run */
+/** What became of the children, level by level. @param {Run} run */
 function fateChart(run) {
   const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
   const rows = levels.map(({ fates }) => [fates.added, fates.matched]);

@@ -8,8 +8,9 @@ import { createBars, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
 /**
- * @typedef {import('./index.js').Context} Context
- * @typedef {import('../../engine/types.js').Vec3} Vec3
+ * @import { Lab, Run } from '../lab.js'
+ * @import { Mark } from '../picture.js'
+ * @import { Context } from './index.js'
  */
 
 const STEP_MS = 400;
@@ -18,7 +19,7 @@ const [NEAR, FAR] = [0.7, 1.15];
 
 /**
  * The widest hole that the fronts leave: the particle beside it, where the filling of gaps looks.
- * @param {import('../lab.js').Lab} lab
+ * @param {Lab} lab
  */
 export async function widestHole(lab) {
   const run = await lab.run({ gaps: 'fill', relax_steps: 0 }, { keep: true });
@@ -32,7 +33,7 @@ export async function widestHole(lab) {
   return widest.particle < 0 ? null : { ...widest, radius: run.radius, run };
 }
 
-/** Particles whose front met itself or another one out of step. @param {import('../lab.js').Run} run */
+/** Particles whose front met itself or another one out of step. @param {Run} run */
 async function seamsOf({ client, chapters }) {
   /** @type {Set<number>} */
   const found = new Set();
@@ -65,7 +66,7 @@ export async function seams({ lab, stops }) {
   const draw = () => {
     const isOpen = stops.isOpen('predict-hole');
     const picked = stops.picked('predict-hole');
-    /** @type {import('../picture.js').Mark[]} */
+    /** @type {Mark[]} */
     const marks = [];
     const mark = (/** @type {number} */ i, /** @type {'ring' | 'cross'} */ kind) =>
       marks.push({ place: at(run.placed.positions, i), normal: at(run.placed.normals, i), radius: run.radius, kind });

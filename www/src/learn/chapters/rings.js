@@ -6,18 +6,21 @@ import { ringsOf } from '../measure.js';
 import { createBars, createPlay, createRange } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 
-/** @typedef {import('./index.js').Context} Context */
+/**
+ * @import { LessonParticles } from '../../engine/types.js'
+ * @import { Context } from './index.js'
+ */
 
 /** Time in which the whole front grows. */
 const GROWTH_MS = 4500;
 
-/** Counts of the particles up to each level. @param {import('../../engine/types.js').LessonParticles} particles */
+/** Counts of the particles up to each level. @param {LessonParticles} particles */
 function countsOf({ levels }) {
   const last = levels.reduce((most, level) => Math.max(most, level), 0);
   return Array.from({ length: last + 1 }, (_, level) => levels.reduce((sum, own) => sum + (own <= level ? 1 : 0), 0));
 }
 
-/** The particles up to a level. @param {import('../../engine/types.js').LessonParticles} all @param {number} level */
+/** The particles up to a level. @param {LessonParticles} all @param {number} level */
 function upTo(all, level) {
   const kept = [...all.levels.keys()].filter((i) => all.levels[i] <= level);
   const vectors = (/** @type {Float32Array} */ column) =>

@@ -8,8 +8,12 @@ import { createScale, createSelect } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
 
 /**
- * @typedef {import('./index.js').Context} Context
- * @typedef {import('../../engine/lesson/protocol.js').LessonSettings['law']} Law
+ * @import { LessonSettings } from '../../engine/lesson/protocol.js'
+ * @import { Context } from './index.js'
+ */
+
+/**
+ * @typedef {LessonSettings['law']} Law
  */
 
 /** @param {Context} context */

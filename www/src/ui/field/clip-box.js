@@ -4,8 +4,7 @@ import { cutOf, enlarge } from '../box.js';
 import { fill, h } from '../dom.js';
 import { formatSignificant } from '../format.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Bounds} Bounds */
+/** @import { Bounds, Engine } from '../../engine/types.js' */
 
 const AXES = /** @type {const} */ (['x', 'y', 'z']);
 /** Step of the number boxes, as a share of the box's side. It is rounded to a power of ten. */

@@ -8,8 +8,14 @@ import { EditorState, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, keymap, MatchDecorator, ViewPlugin, WidgetType } from '@codemirror/view';
 import { h } from '../dom.js';
 
-/** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
-/** @typedef {import('../../engine/types.js').Description['functions']} Functions */
+/**
+ * @import { Description, FieldFault } from '../../engine/types.js'
+ * @import { Editor } from './formula.js'
+ * @import { StateEffectType } from '@codemirror/state'
+ * @import { DecorationSet, ViewUpdate } from '@codemirror/view'
+ */
+
+/** @typedef {Description['functions']} Functions */
 /**
  * @typedef {object} CodeEditorOptions
  * @property {string} text
@@ -19,7 +25,7 @@ import { h } from '../dom.js';
  * @property {(text: string) => void} change
  */
 
-/** @type {import('@codemirror/state').StateEffectType<{ fault: FieldFault | null, message: string }>} */
+/** @type {StateEffectType<{ fault: FieldFault | null, message: string }>} */
 const faultEffect = StateEffect.define();
 
 class CaretWidget extends WidgetType {
@@ -28,7 +34,7 @@ class CaretWidget extends WidgetType {
   }
 }
 
-/** @typedef {{ fault: boolean, marks: import('@codemirror/view').DecorationSet }} FaultState */
+/** @typedef {{ fault: boolean, marks: DecorationSet }} FaultState */
 /** @type {StateField<FaultState>} */
 const faultField = StateField.define({
   create: () => /** @type {FaultState} */ ({ fault: false, marks: Decoration.none }),
@@ -86,7 +92,7 @@ function tokens(functions) {
         this.decorations = decorator.createDeco(view);
       }
 
-      /** @param {import('@codemirror/view').ViewUpdate} update */
+      /** @param {ViewUpdate} update */
       update(update) {
         this.decorations = decorator.updateDeco(update, this.decorations);
       }
@@ -169,7 +175,7 @@ const theme = EditorView.theme({
   '.cm-completionInfo': { padding: '0.25rem 0.5rem', font: '0.75rem/1.0625rem var(--font)', maxWidth: '14rem' },
 });
 
-/** @param {CodeEditorOptions} options @returns {import('./formula.js').Editor} */
+/** @param {CodeEditorOptions} options @returns {Editor} */
 export function createCodeEditor({ text, selection, functions, names, change }) {
   const element = h('div', { class: 'code-host' });
   const root = element.attachShadow({ mode: 'open', delegatesFocus: true });

@@ -18,8 +18,10 @@ import {
   towardEye,
 } from '../space.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').CuttingPlane} CuttingPlane */
+/**
+ * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ */
 
 /** Places of the position slider on the way through the box. */
 const PLACES = 400;
@@ -97,9 +99,9 @@ function button(label, text, act) {
  * origin along the normal.
  * @param {Engine} engine
  * @param {object} present
- * @param {import('@preact/signals-core').ReadonlySignal<import('../../engine/types.js').Bounds | null>} present.bounds
- * @param {import('@preact/signals-core').ReadonlySignal<CuttingPlane | null>} present.plane
- * @param {import('@preact/signals-core').ReadonlySignal<{axis: number, sign: number} | null>} present.axis
+ * @param {ReadonlySignal<Bounds | null>} present.bounds
+ * @param {ReadonlySignal<CuttingPlane | null>} present.plane
+ * @param {ReadonlySignal<{axis: number, sign: number} | null>} present.axis
  */
 function createPosition(engine, { bounds, plane, axis }) {
   const sign = () => axis.peek()?.sign ?? 1;
@@ -134,9 +136,9 @@ function createPosition(engine, { bounds, plane, axis }) {
  * Creates the sliders for a free direction.
  * @param {Engine} engine
  * @param {object} present
- * @param {import('@preact/signals-core').ReadonlySignal<CuttingPlane | null>} present.plane
- * @param {import('@preact/signals-core').ReadonlySignal<{axis: number, sign: number} | null>} present.axis
- * @param {import('@preact/signals-core').Signal<boolean>} present.free
+ * @param {ReadonlySignal<CuttingPlane | null>} present.plane
+ * @param {ReadonlySignal<{axis: number, sign: number} | null>} present.axis
+ * @param {Signal<boolean>} present.free
  */
 function createAngles(engine, { plane, axis, free }) {
   const angles = computed(() => anglesOf(plane.value?.normal ?? [1, 0, 0]));

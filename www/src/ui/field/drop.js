@@ -3,8 +3,13 @@ import { h } from '../dom.js';
 import { carriesFiles, FORMATS, LIMIT, listOf } from './files.js';
 
 /**
- * @param {import('../../engine/types.js').Engine} engine
- * @param {import('../toasts.js').Toast} toast
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Toast } from '../toasts.js'
+ */
+
+/**
+ * @param {Engine} engine
+ * @param {Toast} toast
  */
 export function mountDrop(engine, toast) {
   const target = h(

@@ -1,10 +1,12 @@
 /** Lists the facts about a model from points. */
 import { formatCount, formatSignificant } from '../format.js';
 
+/** @import { ModelInfo } from '../../engine/types.js' */
+
 const NORMALS = { given: 'given', from_mesh: 'from the mesh', estimated: 'estimated' };
 
 /**
- * @param {import('../../engine/types.js').ModelInfo} info
+ * @param {ModelInfo} info
  * @returns {{ label: string, value: string, unit: string, help: string }[]}
  */
 export function factsOf({ condition, residual_mean, residual_95, residual_max, normals }) {
@@ -45,7 +47,7 @@ export function factsOf({ condition, residual_mean, residual_95, residual_max, n
 
 /**
  * Says what f is, and how many of the points it interpolates.
- * @param {import('../../engine/types.js').ModelInfo} info
+ * @param {ModelInfo} info
  */
 export function fittedOf({ points, centres }) {
   const which = points === centres ? `all ${formatCount(points)}` : `${formatCount(centres)} of ${formatCount(points)}`;

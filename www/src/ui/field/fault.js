@@ -1,6 +1,7 @@
 /** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
 
-/** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
+/** @import { Description, FieldFault } from '../../engine/types.js' */
+
 /**
  * @typedef {object} FaultView
  * @property {'hint' | 'fault'} tone
@@ -102,7 +103,7 @@ export function segmentsOf(message) {
  * Returns whether a text ends in an unknown name that is the beginning of a function's name, as `sq` is of `sqrt`. The
  * constant e is known.
  * @param {string} text  up to the caret
- * @param {import('../../engine/types.js').Description['functions']} functions
+ * @param {Description['functions']} functions
  * @param {string[]} parameters  of the formula
  */
 export function beginsFunction(text, functions, parameters) {

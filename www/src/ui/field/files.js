@@ -1,6 +1,8 @@
 /** Describes the point files that can be read, and the errors in reading them. */
 import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/types.js';
 
+/** @import { LoadingError } from '../../engine/types.js' */
+
 /** Names of the file formats, such as PLY and OBJ. `.txt` is only another extension of XYZ. */
 export const FORMATS = FILE_TYPES.split(',')
   .filter((type) => type !== '.txt')
@@ -29,7 +31,7 @@ const ADVICE = {
 
 /**
  * Describes an error in loading for the user.
- * @param {import('../../engine/types.js').LoadingError} error
+ * @param {LoadingError} error
  */
 export function describeLoadingError({ name, kind, message, line }) {
   const text = message.trim();

@@ -6,10 +6,11 @@ import { beginsFunction, describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Description, Engine, FieldFault } from '../../engine/types.js'
+ * @import { FaultView, Repair } from './fault.js'
+ */
 
-/** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
-/** @typedef {import('./fault.js').Repair} Repair */
 /**
  * The interface of both editors. Offsets are UTF-16 code units.
  * @typedef {object} Editor
@@ -26,7 +27,7 @@ import { createTextarea } from './textarea.js';
 /**
  * Creates the section of the formula.
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 export function createFormula(engine, description) {
   const input = new FormulaInput(engine, description);
@@ -60,14 +61,16 @@ export function createFormula(engine, description) {
 class FormulaInput {
   /**
    * @param {Engine} engine
-   * @param {import('../../engine/types.js').Description} description
+   * @param {Description} description
    */
   constructor(engine, description) {
     this.engine = engine;
     this.functions = description.functions;
     this.error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
     this.holder = h('div', { class: 'editor', id: 'formula' });
-    /** Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys. */
+    /**
+     * Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys.
+     */
     this.unfinished = false;
     this.upgrading = false;
     const shown = computed(() => engine.state.value.formula);
@@ -170,7 +173,7 @@ class FormulaInput {
   }
 }
 
-/** @param {import('./fault.js').FaultView} view */
+/** @param {FaultView} view */
 const excerptElement = ({ excerpt }) =>
   excerpt &&
   h(

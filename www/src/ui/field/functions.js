@@ -3,11 +3,13 @@
 import { createDialog } from '../dialog.js';
 import { h } from '../dom.js';
 
+/** @import { Description } from '../../engine/types.js' */
+
 /** @type {ReturnType<typeof createDialog> | null} */
 let dialog = null;
 
 /**
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  * @param {(name: string) => void} insert
  */
 export function openFunctions(description, insert) {

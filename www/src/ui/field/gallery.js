@@ -1,6 +1,6 @@
 /**
- * The gallery: one picture per surface, as radio buttons, in groups of which one is shown. The last group holds the models
- * from points and the file opened last. A search looks through all groups.
+ * The gallery: one picture per surface, as radio buttons, in groups of which one is shown. The last group holds the
+ * models from points and the file opened last. A search looks through all groups.
  */
 import { batch, computed, effect, signal } from '@preact/signals-core';
 import { FILE_SURFACE, FILE_TYPES } from '../../engine/types.js';
@@ -9,7 +9,11 @@ import { explain } from '../explain.js';
 import { icon } from '../icons.js';
 import { FORMATS, LIMIT, listOf } from './files.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Description, Engine } from '../../engine/types.js'
+ * @import { Explanation } from '../explain.js'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ */
 
 const PICTURE_PX = 160;
 /** Name of the group of models and files. */
@@ -17,17 +21,17 @@ const POINTS = 'Points';
 
 /**
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 export function createGallery(engine, description) {
   /** @type {Map<string, HTMLInputElement>} */
   const inputs = new Map();
 
   /**
-   * The radio buttons of a group have a name of their own: if all shared one, the chosen one, hidden in another group, would
-   * keep the keyboard out of this group.
+   * The radio buttons of a group have a name of their own: if all shared one, the chosen one, hidden in another group,
+   * would keep the keyboard out of this group.
    * @param {string} group @param {string} id @param {string} name @param {Node} face
-   * @param {() => import('../explain.js').Explanation} help
+   * @param {() => Explanation} help
    */
   function createTile(group, id, name, face, help) {
     const input = h('input', {
@@ -126,7 +130,7 @@ export function createGallery(engine, description) {
 
 /**
  * Returns the groups of the gallery in their order, the models last.
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 function groupsOf({ surfaces, models }) {
   /** @type {Map<string, { id: string, name: string, story: string, formula?: string, credit?: string }[]>} */
@@ -137,10 +141,12 @@ function groupsOf({ surfaces, models }) {
 }
 
 /**
- * Shows the tiles of one group, or those of all groups that the search finds. Returns the line that says that there is none.
- * @param {{ name: string, entries: { id: string, name: string, story: string, formula?: string }[], tiles: HTMLElement }[]} sections
- * @param {import('@preact/signals-core').ReadonlySignal<string>} shown
- * @param {import('@preact/signals-core').ReadonlySignal<string>} query
+ * Shows the tiles of one group, or those of all groups that the search finds. Returns the line that says that there is
+ * none.
+ * @param {{ name: string, entries: { id: string, name: string, story: string, formula?: string }[], tiles: HTMLElement
+ *   }[]} sections
+ * @param {ReadonlySignal<string>} shown
+ * @param {ReadonlySignal<string>} query
  */
 function showTiles(sections, shown, query) {
   const none = h('p', { class: 'quiet', role: 'status' });
@@ -167,8 +173,8 @@ const textOf = ({ name, story, formula = '' }) => `${name} ${story} ${formula}`.
 /**
  * Creates the buttons that choose the group.
  * @param {{ name: string }[]} sections
- * @param {import('@preact/signals-core').Signal<string>} shown
- * @param {import('@preact/signals-core').Signal<string>} query
+ * @param {Signal<string>} shown
+ * @param {Signal<string>} query
  */
 function createGroups(sections, shown, query) {
   const buttons = sections.map(({ name }) => {
@@ -187,7 +193,7 @@ function createGroups(sections, shown, query) {
   return h('div', { class: 'gallery-groups', role: 'group', 'aria-label': 'Groups of surfaces' }, buttons);
 }
 
-/** Creates the search field. @param {import('@preact/signals-core').Signal<string>} query */
+/** Creates the search field. @param {Signal<string>} query */
 function createSearch(query) {
   const input = h('input', {
     type: 'search',

@@ -4,7 +4,7 @@ import { fill, h } from '../dom.js';
 import { formatShare } from '../format.js';
 import { describeLoadingError } from './files.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @import { Engine } from '../../engine/types.js' */
 
 /** Step of the progress that is announced to assistive technology. */
 const SPOKEN_SHARE = 0.25;

@@ -8,12 +8,14 @@ import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
 import { factsOf, fittedOf } from './facts.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Shape} Shape */
+/**
+ * @import { Description, Engine, ModelInfo, Shape } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /**
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 export function createModel(engine, description) {
   const model = computed(() => (engine.field.value?.kind === 'points' ? engine.field.value.model : null));
@@ -79,8 +81,8 @@ export function createModel(engine, description) {
 /**
  * Creates the control of the number of points that are fitted.
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
- * @param {import('@preact/signals-core').ReadonlySignal<import('../../engine/types.js').ModelInfo | null>} model
+ * @param {Description} description
+ * @param {ReadonlySignal<ModelInfo | null>} model
  */
 function createCentres(engine, { limits }, model) {
   const scale = { min: limits.centres_min, max: limits.centres_max, step: 10, integer: true };

@@ -10,14 +10,16 @@ import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
 import { storyOf } from './story.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Description} Description */
+/**
+ * @import { Description, Engine } from '../../engine/types.js'
+ * @import { Motion } from '../motion.js'
+ */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {import('../motion.js').Motion} motion
+ * @param {Motion} motion
  */
 export function mountField(body, engine, description, motion) {
   fill(

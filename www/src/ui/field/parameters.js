@@ -7,13 +7,16 @@ import { icon } from '../icons.js';
 import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Parameter} Parameter */
+/**
+ * @import { Engine, Parameter } from '../../engine/types.js'
+ * @import { Course, Motion } from '../motion.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /** Speeds at which a parameter is played, as multiples of the usual one. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
-/** @param {Engine} engine @param {import('../motion.js').Motion} motion */
+/** @param {Engine} engine @param {Motion} motion */
 export function createParameters(engine, motion) {
   const rows = h('div', { class: 'rows' });
   const section = h(
@@ -64,8 +67,8 @@ function resetAll(engine) {
  * @param {Engine} engine
  * @param {Parameter} parameter
  * @param {object} parts
- * @param {import('@preact/signals-core').ReadonlySignal<Record<string, number>>} parts.values
- * @param {import('../motion.js').Motion} parts.motion
+ * @param {ReadonlySignal<Record<string, number>>} parts.values
+ * @param {Motion} parts.motion
  */
 function createRow(engine, { name, label, value, min, max, step }, { values, motion }) {
   const title = label && label !== name ? label : `Parameter ${name}`;
@@ -101,7 +104,7 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
   return row;
 }
 
-/** Creates the choice of how a parameter is played, which is shown while one is. @param {import('../motion.js').Motion} motion */
+/** Creates the choice of how a parameter is played, which is shown while one is. @param {Motion} motion */
 function createCourse({ playing, course, speed }) {
   const courses = createSegmented({
     name: 'Course',
@@ -110,7 +113,7 @@ function createCourse({ playing, course, speed }) {
       { value: 'loop', label: 'Loop' },
     ],
     change: (value) => {
-      course.value = /** @type {import('../motion.js').Course} */ (value);
+      course.value = /** @type {Course} */ (value);
     },
   });
   effect(() => courses.set(course.value));

@@ -2,10 +2,12 @@
 import { FILE_SURFACE } from '../../engine/types.js';
 import { formatCount, plural } from '../format.js';
 
+/** @import { Description, ModelInfo } from '../../engine/types.js' */
+
 /**
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  * @param {string | null} id null for a formula that is not in the gallery
- * @param {import('../../engine/types.js').ModelInfo | null} info of a surface from points
+ * @param {ModelInfo | null} info of a surface from points
  * @returns {{ name: string, facts: string, text: string, credit: string }}
  */
 export function storyOf(description, id, info) {

@@ -1,9 +1,11 @@
 /** The formula in a native text area, which is available before the full editor has loaded and where it cannot load. */
 import { h } from '../dom.js';
 
+/** @import { Editor } from './formula.js' */
+
 /**
  * @param {{ text: string, change: (text: string) => void, focused: () => void }} options
- * @returns {import('./formula.js').Editor}
+ * @returns {Editor}
  */
 export function createTextarea({ text, change, focused }) {
   const area = h('textarea', {

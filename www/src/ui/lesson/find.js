@@ -1,4 +1,7 @@
-/** Finds the particle that stands for another one: of a run for one of the picture, and of a new picture for an old place. */
+/**
+ * Finds the particle that stands for another one: of a run for one of the picture, and of a new picture for an old
+ * place.
+ */
 import { NO_PARENT } from '../../engine/columns.js';
 
 /**
@@ -18,8 +21,8 @@ export function nearest(positions, count, place) {
 }
 
 /**
- * Returns the particle of a run that stands for a particle of the picture: the one with its number if it lies within r of it,
- * since every other one is about 2r away; else the nearest.
+ * Returns the particle of a run that stands for a particle of the picture: the one with its number if it lies within r
+ * of it, since every other one is about 2r away; else the nearest.
  * @param {ArrayLike<number>} positions  of the run, three per particle
  * @param {{ index: number, place: ArrayLike<number> }} wanted  of the picture
  * @param {number} radius
@@ -41,8 +44,8 @@ export function distanceSq(positions, i, place) {
 }
 
 /**
- * Returns the number of particles that are there when a particle is taken from the queue: they come in the order of their parents,
- * and a seed when the queue is empty.
+ * Returns the number of particles that are there when a particle is taken from the queue: they come in the order of
+ * their parents, and a seed when the queue is empty.
  * @param {ArrayLike<number>} parents @param {number} particle
  */
 export function placedBefore(parents, particle) {

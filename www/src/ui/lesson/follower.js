@@ -1,6 +1,6 @@
 /**
- * Follows single particles: runs the paper's algorithm on the surface of the picture, finds the particle that stands for one of
- * the picture, and goes through its events.
+ * Follows single particles: runs the paper's algorithm on the surface of the picture, finds the particle that stands
+ * for one of the picture, and goes through its events.
  */
 import { batch, computed, signal } from '@preact/signals-core';
 import { momentAt } from '../../figures/moment.js';
@@ -12,15 +12,16 @@ import { Relaxation } from './rest.js';
 import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey, surfaceWords } from './run.js';
 
 /**
- * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../engine/types.js').LessonClient} LessonClient
- * @typedef {import('../../engine/types.js').Vec3} Vec3
- * @typedef {import('./run.js').Run} Run
+ * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
+ * @import { Run } from './run.js'
+ * @import { Signal } from '@preact/signals-core'
  */
+
 /**
- * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a step to
- * another one.
- * @typedef {import('../../figures/particle.js').Opened & { picture: { index: number, distance: number } | null }} Opened
+ * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a
+ * step to another one.
+ * @typedef {import('../../figures/particle.js').Opened & { picture: { index: number, distance: number } | null }}
+ *   Opened
  */
 /**
  * @typedef {{ kind: 'running', particles: number }
@@ -28,14 +29,17 @@ import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey, surfaceWo
  *   | { kind: 'too_many', text: string, radius: number }
  *   | { kind: 'failed', text: string }} Status
  */
-/** A particle that is to be opened, and the event to begin with. @typedef {{ particle: number, at: number | 'last', picture: Opened['picture'] }} Wish */
+/**
+ * A particle that is to be opened, and the event to begin with.
+ * @typedef {{ particle: number, at: number | 'last', picture: Opened['picture'] }} Wish
+ */
 
 export class Follower {
   /** @param {Engine} engine @param {(text: string) => void} say  tells what a link names and is not there */
   constructor(engine, say) {
     this.engine = engine;
     this.say = say;
-    /** @type {import('@preact/signals-core').Signal<Status>} */
+    /** @type {Signal<Status>} */
     this.status = signal({ kind: 'running', particles: 0 });
     this.opened = signal(/** @type {Opened | null} */ (null));
     /** Number of the event that is shown. */
@@ -47,7 +51,10 @@ export class Follower {
       const opened = this.opened.value;
       return opened && opened.events.length > 0 ? momentAt(opened.events, this.at.value) : null;
     });
-    /** The slot under the pointer, in a view or in the picture; every view then shows it. @type {import('@preact/signals-core').Signal<number | null>} */
+    /**
+     * The slot under the pointer, in a view or in the picture; every view then shows it.
+     * @type {Signal<number | null>}
+     */
     this.pointed = signal(null);
     this.hot = computed(() => this.pointed.value ?? this.slotInPicture());
     /** Whether the picture shows another surface, or one with another radius, than the run. */

@@ -2,7 +2,7 @@
 import { explain } from '../explain.js';
 import { packCarried } from '../surface-link.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @import { Engine } from '../../engine/types.js' */
 
 const PAGE = './learn/';
 

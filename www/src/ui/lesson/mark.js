@@ -1,11 +1,15 @@
-/** Draws the children of the particle that is followed in the picture, and the circle on which the one at hand is looked for. */
+/**
+ * Draws the children of the particle that is followed in the picture, and the circle on which the one at hand is looked
+ * for.
+ */
 import { dot, tangentsOf } from '../../figures/geometry.js';
 
 /**
- * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../figures/moment.js').Child} Child
- * @typedef {import('./follower.js').Follower} Follower
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Child } from '../../figures/moment.js'
+ * @import { Follower } from './follower.js'
  */
+
 /**
  * The part of the picture's pen that is used here.
  * @typedef {object} Pen
@@ -19,7 +23,9 @@ const CIRCLE = 64;
 
 /**
  * Returns points of a circle around a place.
- * @param {ArrayLike<number>} centre @param {ArrayLike<number>} a @param {ArrayLike<number>} b  perpendicular unit vectors of its plane
+ * @param {ArrayLike<number>} centre
+ * @param {ArrayLike<number>} a
+ * @param {ArrayLike<number>} b  perpendicular unit vectors of its plane
  * @param {number} radius @param {number} corners
  */
 export function circleAround(centre, a, b, radius, corners) {

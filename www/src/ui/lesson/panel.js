@@ -1,6 +1,6 @@
 /**
- * The panel that follows one particle through the paper's algorithm, event by event. It takes the place of the report, and on a
- * phone that of the sheet; it is loaded when it is first asked for.
+ * The panel that follows one particle through the paper's algorithm, event by event. It takes the place of the report,
+ * and on a phone that of the sheet; it is loaded when it is first asked for.
  */
 import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { momentAt } from '../../figures/moment.js';
@@ -20,7 +20,10 @@ import { createTold } from './told.js';
 import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Lesson, Track } from '../track.js'
+ */
 
 /** Distance in radii up to which two particles are at one place, but for rounding. */
 const SAME_PLACE = 0.005;
@@ -30,7 +33,7 @@ const SAME_PLACE = 0.005;
  * @param {object} page
  * @param {(text: string) => void} page.say  tells what a link names and is not there
  * @param {(mark: ReturnType<typeof childrenMark>) => void} page.mount  puts a mark on the picture
- * @returns {Promise<import('../track.js').Lesson>}
+ * @returns {Promise<Lesson>}
  */
 export async function mountFollow(shell, engine, { say, mount }) {
   await loadSheet(sheet);
@@ -70,7 +73,10 @@ export async function mountFollow(shell, engine, { say, mount }) {
   follower.rest.watch();
   mount(childrenMark(engine, follower));
 
-  /** Where the focus and the picture were before. @type {{ focus: HTMLElement | null, level: number | null, step: number | null }} */
+  /**
+   * Where the focus and the picture were before.
+   * @type {{ focus: HTMLElement | null, level: number | null, step: number | null }}
+   */
   let before = { focus: null, level: null, step: null };
   function show() {
     if (open.peek()) return;
@@ -121,7 +127,11 @@ export async function mountFollow(shell, engine, { say, mount }) {
 const placeOf = ({ opened, at }) =>
   computed(() => (opened.value ? /** @type {[number, number]} */ ([opened.value.subject.particle, at.value]) : null));
 
-/** Keeps the particle and its event in the state, and so in the link. @param {Follower} follower @param {Engine} engine */
+/**
+ * Keeps the particle and its event in the state, and so in the link.
+ * @param {Follower} follower
+ * @param {Engine} engine
+ */
 function keepPlace(follower, engine) {
   const place = placeOf(follower);
   effect(() => {
@@ -131,8 +141,8 @@ function keepPlace(follower, engine) {
 }
 
 /**
- * Draws the front as it was at the event, unless whole levels are looked at. It needs the particles of the picture to be those of
- * the run.
+ * Draws the front as it was at the event, unless whole levels are looked at. It needs the particles of the picture to
+ * be those of the run.
  * @param {Follower} follower @param {Engine} engine
  */
 function drawFront({ opened, at, run, stale }, engine) {
@@ -154,7 +164,7 @@ function drawFront({ opened, at, run, stale }, engine) {
  * @param {object} parts
  * @param {HTMLElement} parts.title
  * @param {Follower} parts.follower
- * @param {import('../track.js').Track} parts.particles
+ * @param {Track} parts.particles
  * @param {() => void} parts.close
  */
 function createHead({ title, follower, particles, close }) {
@@ -323,7 +333,11 @@ function createFoot(follower, engine) {
   );
 }
 
-/** Leads from the events of the particle to its relaxation, and back. @param {Follower} follower @param {Engine} engine */
+/**
+ * Leads from the events of the particle to its relaxation, and back.
+ * @param {Follower} follower
+ * @param {Engine} engine
+ */
 function createTurn({ rest }, engine) {
   const turn = () => {
     const isResting = rest.status.peek() !== null;

@@ -1,6 +1,7 @@
 /**
- * Follows the particle that is open through the relaxation: where the timeline stands at a relaxation step, the panel shows who
- * pushes the particle, and where it goes. The run with its steps is another one, made when it is first asked for.
+ * Follows the particle that is open through the relaxation: where the timeline stands at a relaxation step, the panel
+ * shows who pushes the particle, and where it goes. The run with its steps is another one, made when it is first asked
+ * for.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 import { mostPushed, numbersOfRest, pushersOf, restOf, tellRest } from '../../figures/rest.js';
@@ -10,20 +11,27 @@ import { formatCount, formatSignificant } from '../format.js';
 import { settingOf, settingsOf } from './run.js';
 
 /**
- * @typedef {import('../../figures/rest.js').Rest} Rest
- * @typedef {import('./follower.js').Follower} Follower
- * @typedef {import('./follower.js').Opened} Opened
+ * @import { LessonChapter, LessonClient } from '../../engine/types.js'
+ * @import { Rest } from '../../figures/rest.js'
+ * @import { Follower } from './follower.js'
  */
-/** What there is of a step: null where the timeline stands elsewhere. @typedef {null | { text: string, rest: Rest | null }} RestStatus */
+
+/**
+ * What there is of a step: null where the timeline stands elsewhere.
+ * @typedef {null | { text: string, rest: Rest | null }} RestStatus
+ */
 
 export class Relaxation {
   /** @param {Follower} follower */
   constructor(follower) {
     this.follower = follower;
     this.status = signal(/** @type {RestStatus} */ (null));
-    /** @type {import('../../engine/types.js').LessonClient | null} */
+    /** @type {LessonClient | null} */
     this.client = null;
-    /** The run and its number of steps, so that a change can be told. @type {{ of: object, steps: number, chapters: Promise<import('../../engine/types.js').LessonChapter[]> } | null} */
+    /**
+     * The run and its number of steps, so that a change can be told.
+     * @type {{ of: object, steps: number, chapters: Promise<LessonChapter[]> } | null}
+     */
     this.made = null;
     this.asked = 0;
   }

@@ -1,21 +1,23 @@
-/** A run of the paper's algorithm on the surface of the picture: what it is asked for, and how it relates to the picture. */
+/**
+ * A run of the paper's algorithm on the surface of the picture: what it is asked for, and how it relates to the
+ * picture.
+ */
 import { NO_PARENT } from '../../engine/columns.js';
 import { RESIDUAL, triple } from '../../figures/particle.js';
 import { distanceSq } from './find.js';
 
-/**
- * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../engine/types.js').LessonParticles} LessonParticles
- * @typedef {import('../../engine/types.js').Vec3} Vec3
- */
+/** @import { Engine, LessonParticles, LessonSettings, Vec3 } from '../../engine/types.js' */
+
 /**
  * A run and the surface that it belongs to.
  * @typedef {object} Run
  * @property {string} surface  see {@link surfaceKey}
  * @property {string} words  the surface in words
  * @property {number} pictureRadius
- * @property {number} own  the radius of the picture, which the run has unless that would be too many; 1 with particles of many sizes
- * @property {number} radius  the radius; with particles of many sizes the factor by which they are larger than those of the law
+ * @property {number} own  the radius of the picture, which the run has unless that would be too many; 1 with particles
+ *   of many sizes
+ * @property {number} radius  the radius; with particles of many sizes the factor by which they are larger than those of
+ *   the law
  * @property {boolean} adaptive  whether the particles have different radii
  * @property {LessonParticles} end  all its particles
  * @property {number} alike  how many of its first particles are those of the picture
@@ -27,7 +29,10 @@ export const MOST_PARTICLES = 20_000;
 const COARSER_PARTICLES = 16_000;
 const LEAST_COARSER = 1.25;
 
-/** Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own front. */
+/**
+ * Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own
+ * front.
+ */
 const SETTINGS = /** @type {const} */ ({
   placing: 'one_by_one',
   matched: 'stay',
@@ -44,10 +49,10 @@ export const settingOf = ({ state, description }, name) =>
   state.value.settings[name] ?? description.value?.settings.find((setting) => setting.name === name)?.default;
 
 /**
- * Returns what a run is asked for, with the sizes of the picture. Adaptive particles have the law of the picture, as it is: the paper
- * has nothing that grades it.
+ * Returns what a run is asked for, with the sizes of the picture. Adaptive particles have the law of the picture, as it
+ * is: the paper has nothing that grades it.
  * @param {Engine} engine @param {Pick<Run, 'radius' | 'adaptive'>} run
- * @returns {Partial<import('../../engine/types.js').LessonSettings>}
+ * @returns {Partial<LessonSettings>}
  */
 export function settingsOf(engine, { radius, adaptive }) {
   const seeds = seedsOf(engine);
@@ -94,7 +99,11 @@ function seedsOf({ columns }) {
   return seeds;
 }
 
-/** A radius with which there are few enough particles. @param {number} radius @param {number} count  with that radius */
+/**
+ * A radius with which there are few enough particles.
+ * @param {number} radius
+ * @param {number} count  with that radius
+ */
 export const coarserThan = (radius, count) => radius * Math.max(LEAST_COARSER, Math.sqrt(count / COARSER_PARTICLES));
 
 /**

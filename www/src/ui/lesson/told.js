@@ -3,7 +3,7 @@ import { effect } from '@preact/signals-core';
 import { tell } from '../../figures/words.js';
 import { h } from '../dom.js';
 
-/** @typedef {import('./follower.js').Follower} Follower */
+/** @import { Follower } from './follower.js' */
 
 /** Shortest interval between announcements to assistive technology, and the rest before one. */
 const ANNOUNCE_MS = 1500;
@@ -26,7 +26,11 @@ function wordsOf({ opened, moment, rest }) {
     : 'This particle still waited in the queue when the run reached its limit, so it has no events.';
 }
 
-/** Announces the event once the steps pause, and not more often than the interval. @param {Follower} follower @param {HTMLElement} spoken */
+/**
+ * Announces the event once the steps pause, and not more often than the interval.
+ * @param {Follower} follower
+ * @param {HTMLElement} spoken
+ */
 function announce(follower, spoken) {
   let last = -Infinity;
   let timer = 0;

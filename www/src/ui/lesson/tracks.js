@@ -1,18 +1,24 @@
-/** The two finer grains of the timeline: the particles of the run, in the order in which they are treated, and the events of one. */
+/**
+ * The two finer grains of the timeline: the particles of the run, in the order in which they are treated, and the
+ * events of one.
+ */
 import { computed, signal } from '@preact/signals-core';
 import { valueText } from '../../figures/words.js';
 import { formatCount } from '../format.js';
 
 /**
- * @typedef {import('./follower.js').Follower} Follower
- * @typedef {import('../track.js').Track} Track
- * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
+ * @import { LessonEvent } from '../../engine/types.js'
+ * @import { Track } from '../track.js'
+ * @import { Follower } from './follower.js'
  */
 
 /** A place that stands for itself, not for the whole. */
 const never = signal(false);
 
-/** Heights of the bars of the events: what happens to a child stands out, its fate most. @type {Record<string, number>} */
+/**
+ * Heights of the bars of the events: what happens to a child stands out, its fate most.
+ * @type {Record<string, number>}
+ */
 const HEIGHTS = { taken: 1, done: 1, fate: 0.8, added: 0.8, slot: 0.55, landed: 0.55, room: 0.55, arc: 0.55 };
 const USUAL_HEIGHT = 0.3;
 

@@ -1,4 +1,6 @@
-/** The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm. */
+/**
+ * The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm.
+ */
 import { effect } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
 import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
@@ -11,10 +13,8 @@ import { s } from '../svg.js';
 import { createRestViews } from './rest.js';
 
 /**
- * @typedef {import('./follower.js').Follower} Follower
- * @typedef {import('./follower.js').Opened} Opened
- * @typedef {import('../../figures/moment.js').Moment} Moment
- * @typedef {import('../../figures/moment.js').Child} Child
+ * @import { Child, Moment } from '../../figures/moment.js'
+ * @import { Follower, Opened } from './follower.js'
  */
 
 /** @param {Follower} follower */
@@ -42,10 +42,19 @@ export function createViews(follower) {
   return element;
 }
 
-/** The moment as if it spoke of a slot: what is shown while a child is pointed at. @param {Moment} moment @param {number} slot @returns {Moment} */
+/**
+ * The moment as if it spoke of a slot: what is shown while a child is pointed at.
+ * @param {Moment} moment
+ * @param {number} slot
+ * @returns {Moment}
+ */
 const pointedAt = (moment, slot) => ({ ...moment, slot, isNow: true });
 
-/** Lets a child that is pointed at in one view stand out in all. @param {HTMLElement} element @param {Follower} follower */
+/**
+ * Lets a child that is pointed at in one view stand out in all.
+ * @param {HTMLElement} element
+ * @param {Follower} follower
+ */
 function linkHover(element, { pointed, hot, opened, moment }) {
   element.addEventListener('pointerover', ({ target }) => {
     const slot = target instanceof Element ? target.closest('[data-slot]')?.getAttribute('data-slot') : null;
@@ -154,7 +163,10 @@ function mark(kind) {
   return svg;
 }
 
-/** How much larger a lens with a half size of one radius shows things than the profile: 7.5 rem for 2 r against 16.25 rem for 5.3 r. */
+/**
+ * How much larger a lens with a half size of one radius shows things than the profile: 7.5 rem for 2 r against 16.25
+ * rem for 5.3 r.
+ */
 const LENS_SCALE = 7.5 / 2 / (16.25 / 5.3);
 
 /** @param {NonNullable<Opened['profiles'][number]>} profile */

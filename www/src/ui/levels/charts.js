@@ -1,4 +1,7 @@
-/** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
+/**
+ * Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded
+ * when asked for.
+ */
 import { computed, effect, signal } from '@preact/signals-core';
 import { draw, footOf, scaleOf } from '../chart.js';
 import { fill, h } from '../dom.js';
@@ -11,13 +14,27 @@ import sheet from './charts.css?url';
 import { fatesOf, movesOf } from './figures.js';
 import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('./player.js').Player} Player */
-/** @typedef {import('../chart.js').Drawn & {title: string, value: string, label: string, missing?: string}} Chart  `value`: of the place that is
- * shown, or of all; `label`: the chart in words; `missing`: why nothing is known */
-/** Distances of the particles that are shown to their nearest, over 2r, and which they are in words. @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread */
+/**
+ * @import { Columns } from '../../engine/columns.js'
+ * @import { Engine, Report } from '../../engine/types.js'
+ * @import { Drawn } from '../chart.js'
+ * @import { Player } from './player.js'
+ * @import { LevelTable } from './table.js'
+ */
 
-/** The most particles whose distances are worked out here, which takes some hundredths of a second. Those of the end of a run are measured by the core. */
+/**
+ * `value`: of the place that is shown, or of all; `label`: the chart in words; `missing`: why nothing is known.
+ * @typedef {Drawn & {title: string, value: string, label: string, missing?: string}} Chart
+ */
+/**
+ * Distances of the particles that are shown to their nearest, over 2r, and which they are in words.
+ * @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread
+ */
+
+/**
+ * The most particles whose distances are worked out here, which takes some hundredths of a second. Those of the end of
+ * a run are measured by the core.
+ */
 const MOST_MEASURED = 20_000;
 
 /** @param {Engine} engine @param {Player} player */
@@ -85,7 +102,12 @@ export async function createCharts(engine, player) {
   return { element, shown };
 }
 
-/** The particles beside those of a perfect lattice at 2r: there are more where neighbours are nearer than that, and fewer where holes are left. @param {import('../../engine/types.js').Report | null} report @param {boolean} adaptive */
+/**
+ * The particles beside those of a perfect lattice at 2r: there are more where neighbours are nearer than that, and
+ * fewer where holes are left.
+ * @param {Report | null} report
+ * @param {boolean} adaptive
+ */
 function boundWords(report, adaptive) {
   const area = report?.quality?.area ?? 0;
   if (!report || adaptive || !(area > 0)) return '';
@@ -95,7 +117,7 @@ function boundWords(report, adaptive) {
 
 /**
  * The distances of what is shown: up to a level as it was placed, before a relaxation step, or at the end of the run.
- * @param {import('../../engine/columns.js').Columns} columns @param {{ upTo: number | null, step: number | null }} place
+ * @param {Columns} columns @param {{ upTo: number | null, step: number | null }} place
  * @returns {Spread}
  */
 function spreadOf(columns, { upTo, step }) {
@@ -170,7 +192,7 @@ function spreadTables(spread, degree) {
   ];
 }
 
-/** @param {import('./table.js').LevelTable} table @param {number | null} at @returns {Chart} */
+/** @param {LevelTable} table @param {number | null} at @returns {Chart} */
 function freshChart({ fresh, last }, at) {
   const counts = [...fresh];
   const most = Math.max(...counts);
@@ -186,7 +208,7 @@ function freshChart({ fresh, last }, at) {
   };
 }
 
-/** @param {import('./table.js').LevelTable} table @param {number | null} at @returns {Chart} */
+/** @param {LevelTable} table @param {number | null} at @returns {Chart} */
 function fateChart(table, at) {
   const rows = fatesOf(table);
   const words = rows.map(({ name, counts }) => {
@@ -242,7 +264,10 @@ const inR = (value) => `${formatFixed(value, 3)}\u00a0r`;
 const NOTHING =
   'Not known. The positions of each step are kept of up to 20,000 particles, once a relaxation has ended.';
 
-/** @param {() => Chart} read @param {((place: number) => void) | null} seek  null where the places are none of the timeline */
+/**
+ * @param {() => Chart} read
+ * @param {((place: number) => void) | null} seek  null where the places are none of the timeline
+ */
 function chartOf(read, seek) {
   const title = h('span');
   const value = h('span', { class: 'unit' });
@@ -281,7 +306,12 @@ function chartOf(read, seek) {
   return element;
 }
 
-/** The charts as tables. @param {import('./table.js').LevelTable} table @param {readonly number[]} energy @param {readonly number[]} moves */
+/**
+ * The charts as tables.
+ * @param {LevelTable} table
+ * @param {readonly number[]} energy
+ * @param {readonly number[]} moves
+ */
 function tables(table, energy, moves) {
   const fates = fatesOf(table);
   const levels = [...table.fresh].map((fresh, k) => [

@@ -1,7 +1,7 @@
 /** The figures of the charts: fates of each level, energy and largest move of each relaxation step. */
 import { FATE } from '../../engine/columns.js';
 
-/** @typedef {import('./table.js').LevelTable} LevelTable */
+/** @import { LevelTable } from './table.js' */
 
 const FATES = 8;
 
@@ -29,7 +29,8 @@ export const fatesOf = ({ fates, last }) =>
 
 /**
  * Returns the longest move of each relaxation step, in radii.
- * @param {readonly ArrayLike<number>[]} past  positions before each step @param {ArrayLike<number>} now  after the last one
+ * @param {readonly ArrayLike<number>[]} past  positions before each step
+ * @param {ArrayLike<number>} now  after the last one
  * @param {ArrayLike<number>} radii
  */
 export function movesOf(past, now, radii) {

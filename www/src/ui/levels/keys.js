@@ -1,8 +1,10 @@
 /** What a key means on the timeline. */
 
+/** @import { Grain } from '../../engine/types.js' */
+
 /**
  * A move: `by` one place of a grain, or to its first or last place. The grain `chosen` is that of the timeline.
- * @typedef {{ grain: 'chosen' | import('../../engine/types.js').Grain, to: -1 | 1 | 'first' | 'last' }} Move
+ * @typedef {{ grain: 'chosen' | Grain, to: -1 | 1 | 'first' | 'last' }} Move
  */
 
 /** Keys that move along the chosen grain; a presenter's clicker sends the pages. @type {Record<string, Move['to']>} */
@@ -11,8 +13,8 @@ const MOVES = { PageUp: -1, PageDown: 1, Home: 'first', End: 'last' };
 const ARROWS = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 };
 
 /**
- * Returns the move of a key; null for one that means nothing here. An arrow alone moves by an event, on the range by what the range
- * goes along, with Shift by a particle, with Alt by a level.
+ * Returns the move of a key; null for one that means nothing here. An arrow alone moves by an event, on the range by
+ * what the range goes along, with Shift by a particle, with Alt by a level.
  * @param {{ key: string, shiftKey: boolean, altKey: boolean, ctrlKey: boolean, metaKey: boolean }} event
  * @param {{ onRange: boolean, isOpen: boolean }} place  `isOpen`: a particle is followed
  * @returns {Move | null}

@@ -1,12 +1,16 @@
 /**
- * The coarsest grain of the timeline: the generation levels, then the relaxation steps, then the particles as they are. The place
- * is part of the state; the viewer draws it.
+ * The coarsest grain of the timeline: the generation levels, then the relaxation steps, then the particles as they are.
+ * The place is part of the state; the viewer draws it.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 import { formatCount, plural } from '../format.js';
 import { levelTable, shortOf } from './table.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Columns } from '../../engine/columns.js'
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Track } from '../track.js'
+ */
 
 /** Height of the bar of a relaxation step whose moves are not known, as a share of the highest level. */
 const STEP_HEIGHT = 0.12;
@@ -41,8 +45,9 @@ export function placeOf({ level, step }, { last, steps }) {
 const SEEN = 0.1;
 
 /**
- * Returns whether every particle up to a level faces away from the camera, so that the faint surface still to come would hide them all.
- * @param {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'normals'>} particles
+ * Returns whether every particle up to a level faces away from the camera, so that the faint surface still to come
+ * would hide them all.
+ * @param {Pick<Columns, 'count' | 'levels' | 'normals'>} particles
  * @param {{ yaw: number, pitch: number }} camera @param {number} level
  */
 export function isOutOfSight({ count, levels, normals }, { yaw, pitch }, level) {
@@ -82,14 +87,18 @@ export function createLevels(engine) {
     if (to.level !== null) turnTo(to.level, whole.peek());
     engine.setView(to);
   }
-  /** Turns the seed to the eye: on the way back from the whole, and where nothing of a level would be seen. @param {number} to @param {boolean} [isBack] */
+  /**
+   * Turns the seed to the eye: on the way back from the whole, and where nothing of a level would be seen.
+   * @param {number} to
+   * @param {boolean} [isBack]
+   */
   function turnTo(to, isBack = false) {
     const { columns, state } = engine;
     const [x, y, z] = columns.normals;
     if (isBack || isOutOfSight(columns, state.peek().view.camera, to)) engine.turnTo([x, y, z]);
   }
   const some = computed(() => table.value.count > 0 && !engine.empty.value);
-  /** @type {import('../track.js').Track} */
+  /** @type {Track} */
   const track = {
     name: 'level',
     perSecond: 10,
@@ -125,7 +134,11 @@ export function createLevels(engine) {
   return { ...track, table, kept, level, newest, relaxed, turnTo };
 }
 
-/** Calls `act` at most once per frame, however many column messages a run sends. @param {Engine} engine @param {() => void} act */
+/**
+ * Calls `act` at most once per frame, however many column messages a run sends.
+ * @param {Engine} engine
+ * @param {() => void} act
+ */
 function watch(engine, act) {
   let asked = false;
   effect(() => {

@@ -1,19 +1,21 @@
 /**
- * Moves along the timeline: by levels, by particles or by events, manually and by playback. Where it stands is part of the state.
+ * Moves along the timeline: by levels, by particles or by events, manually and by playback. Where it stands is part of
+ * the state.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 
 /**
- * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../engine/types.js').Grain} Grain
- * @typedef {import('../track.js').Lesson} Lesson
- * @typedef {import('../track.js').Track} Track
+ * @import { Engine, Grain } from '../../engine/types.js'
+ * @import { Lesson, Track } from '../track.js'
+ * @import { Move } from './keys.js'
+ * @import { Levels } from './levels.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
 export class Player {
   /**
    * @param {Engine} engine
-   * @param {import('./levels.js').Levels} levels
+   * @param {Levels} levels
    * @param {() => Promise<Lesson | null>} load  the lesson; null if it cannot be had
    */
   constructor(engine, levels, load) {
@@ -22,7 +24,7 @@ export class Player {
     this.load = load;
     this.lesson = signal(/** @type {Lesson | null} */ (null));
     this.isOpen = computed(() => this.lesson.value?.open.value ?? false);
-    /** @type {import('@preact/signals-core').ReadonlySignal<Grain>} */
+    /** @type {ReadonlySignal<Grain>} */
     this.grain = computed(() => (this.isOpen.value ? engine.state.value.view.grain : 'level'));
     this.track = computed(() => this.trackOf(this.grain.value));
     this.playing = signal(false);
@@ -98,7 +100,7 @@ export class Player {
     if (this.isOpen.peek() && level.peek() !== null) this.lesson.peek()?.goToLevel(newest.peek());
   }
 
-  /** @param {import('./keys.js').Move} move */
+  /** @param {Move} move */
   move({ grain: named, to }) {
     this.pause();
     const chosen = this.grain.peek();
@@ -153,7 +155,11 @@ export class Player {
   }
 }
 
-/** The first particle of a level in the picture, the seed if none is named. @param {Engine} engine @param {number | null} level */
+/**
+ * The first particle of a level in the picture, the seed if none is named.
+ * @param {Engine} engine
+ * @param {number | null} level
+ */
 function firstOf({ columns }, level) {
   const first =
     level === null ? 0 : columns.levels.subarray(0, columns.count).indexOf(Math.min(level, columns.lastLevel));

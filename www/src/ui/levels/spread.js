@@ -1,20 +1,27 @@
 /** How even the particles are that are shown: distances to the nearest, and numbers of neighbours. */
 import { between, createGrid } from '../neighbours.js';
 
-/** Distances over 2r that the histogram spans, with its number of bins; what is beyond counts in the last one on its side. */
+/**
+ * Distances over 2r that the histogram spans, with its number of bins; what is beyond counts in the last one on its
+ * side.
+ */
 export const SPAN = /** @type {const} */ ([0.6, 1.2]);
 export const BINS = 24;
 /** Numbers of neighbours that have a bar; those beyond count in the last one on their side. */
 export const NEIGHBOURS = /** @type {const} */ ([3, 9]);
 
-/** Side of the cells in which neighbours are looked for, over the mean radius, and how many cells around are looked at. */
+/**
+ * Side of the cells in which neighbours are looked for, over the mean radius, and how many cells around are looked at.
+ */
 const CELL = 2.2;
 const MOST_RINGS = 8;
 
 /**
- * Returns the distance of each of some particles to the nearest of them, over the diameter of its own disc; infinite where there is none
- * within eight cells.
- * @param {ArrayLike<number>} positions @param {ArrayLike<number>} radii @param {readonly number[]} chosen  their numbers
+ * Returns the distance of each of some particles to the nearest of them, over the diameter of its own disc; infinite
+ * where there is none within eight cells.
+ * @param {ArrayLike<number>} positions
+ * @param {ArrayLike<number>} radii
+ * @param {readonly number[]} chosen  their numbers
  */
 export function nearestOver(positions, radii, chosen) {
   const cell = (CELL * chosen.reduce((sum, i) => sum + radii[i], 0)) / Math.max(1, chosen.length);
@@ -42,8 +49,8 @@ export function nearestBins(nearest) {
 }
 
 /**
- * Counts the particles by their number of neighbours, with the share of six among all; null where no number is known. Duplicates
- * have none, and no bar.
+ * Counts the particles by their number of neighbours, with the share of six among all; null where no number is known.
+ * Duplicates have none, and no bar.
  * @param {ArrayLike<number> | null} valence
  */
 export function degreeBins(valence) {

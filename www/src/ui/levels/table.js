@@ -2,7 +2,9 @@
 import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
-/** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
+/** @import { Columns } from '../../engine/columns.js' */
+
+/** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
 /**
  * The table has one row per level. `fates` has eight counts per level: the fates of the children that the previous
  * level proposed.
@@ -64,7 +66,8 @@ export const shortOf = ({ last, fresh, total }, level) =>
 /**
  * Describes a level: its particles, and the fates of the children proposed.
  * @param {LevelTable} table @param {number} level
- * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as it was placed, before them
+ * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as it was placed, before
+ *   them
  */
 export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates } = table;

@@ -1,6 +1,6 @@
 /**
- * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer than a level
- * open the lesson.
+ * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer
+ * than a level open the lesson.
  */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h, live } from '../dom.js';
@@ -14,8 +14,15 @@ import { createLevels } from './levels.js';
 import { Player } from './player.js';
 import { describeLevel } from './table.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Grain} Grain */
+/**
+ * @import { Engine, Grain } from '../../engine/types.js'
+ * @import { IconName } from '../icons.js'
+ * @import { Bars, Lesson } from '../track.js'
+ * @import { Move } from './keys.js'
+ * @import { Levels } from './levels.js'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ */
+
 /** @typedef {{ title: string, text: string }} Told */
 /** @typedef {ReturnType<typeof createTimeline>} Timeline */
 
@@ -31,8 +38,8 @@ const GRAINS = /** @type {const} */ ([
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {object} page
- * @param {import('@preact/signals-core').Signal<Told | null>} page.told  the level in words, null while all are shown
- * @param {() => Promise<import('../track.js').Lesson | null>} page.lesson  loads the lesson
+ * @param {Signal<Told | null>} page.told  the level in words, null while all are shown
+ * @param {() => Promise<Lesson | null>} page.lesson  loads the lesson
  * @param {(text: string) => void} page.say  tells what a link names and is not there
  */
 export function createTimeline(body, engine, { told, lesson, say }) {
@@ -69,7 +76,7 @@ export function createTimeline(body, engine, { told, lesson, say }) {
     const isReady = player.isOpen.value && player.track.value.some.value;
     if (isReady && document.activeElement?.matches('.panel-follow')) range.focus({ preventScroll: true });
   });
-  const by = (/** @type {import('./keys.js').Move['to']} */ to) => () => player.move({ grain: 'level', to });
+  const by = (/** @type {Move['to']} */ to) => () => player.move({ grain: 'level', to });
   return {
     first: by('first'),
     back: by(-1),
@@ -80,7 +87,13 @@ export function createTimeline(body, engine, { told, lesson, say }) {
   };
 }
 
-/** What the caption says of the place; null where it says what it says of the whole. @param {Engine} engine @param {import('./levels.js').Levels} levels @param {Player} player @returns {Told | null} */
+/**
+ * What the caption says of the place; null where it says what it says of the whole.
+ * @param {Engine} engine
+ * @param {Levels} levels
+ * @param {Player} player
+ * @returns {Told | null}
+ */
 function describe(engine, { table, newest, kept, some, whole, relaxed, text }, player) {
   if (!some.value) return null;
   if (player.grain.value !== 'level') return { title: player.track.value.text.value, text: '' };
@@ -171,7 +184,7 @@ function takeKeys(player, { body, range }) {
 /**
  * Opens the particle that a link names, once the surface is there, and says what a link names and is not there.
  * @param {Engine} engine @param {Player} player
- * @param {{ levels: import('./levels.js').Levels, say: (text: string) => void }} parts
+ * @param {{ levels: Levels, say: (text: string) => void }} parts
  */
 function restore(engine, player, { levels, say }) {
   let isNew = true;
@@ -299,7 +312,7 @@ function buttonsOf(player) {
     () => track.value.some.value && (track.value.at.value < track.value.last.value || track.value.name === 'event'),
   );
   const name = () => track.value.name;
-  const move = (/** @type {import('./keys.js').Move['to']} */ to) => () => player.move({ grain: 'chosen', to });
+  const move = (/** @type {Move['to']} */ to) => () => player.move({ grain: 'chosen', to });
   const some = computed(() => track.value.some.value);
   const toggle = button({
     shape: () => (playing.value ? 'pause' : 'play'),
@@ -343,11 +356,11 @@ const named = (name) => name[0].toUpperCase() + name.slice(1);
 
 /**
  * @param {object} options
- * @param {() => import('../icons.js').IconName} options.shape
+ * @param {() => IconName} options.shape
  * @param {() => string} options.label
  * @param {string} options.key
  * @param {() => void} options.act
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} options.enabled
+ * @param {ReadonlySignal<boolean>} options.enabled
  */
 function button({ shape, label, key, act, enabled }) {
   const press = () => {
@@ -371,7 +384,7 @@ const LEAST = 0.06;
 
 /**
  * Draws the bars as one path, which is stretched to the available width.
- * @param {import('../track.js').Bars} bars @param {number} places
+ * @param {Bars} bars @param {number} places
  */
 function drawBars({ heights, widths }, places) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');

@@ -1,8 +1,8 @@
 /** Draws the legend and a caption on a picture of the surface. */
 import { formatCount, formatSignificant, plural } from '../format.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Legend} Legend */
+/** @import { Engine, Legend } from '../../engine/types.js' */
+
 /** @typedef {OffscreenCanvasRenderingContext2D | CanvasRenderingContext2D} Context */
 /**
  * What goes with the surface.
@@ -11,7 +11,10 @@ import { formatCount, formatSignificant, plural } from '../format.js';
  * @property {string[]} caption  lines
  * @property {{ ink: string, quiet: string }} colours
  */
-/** Where the parts are drawn, and how large. @typedef {{ context: Context, em: number, left: number, parts: Parts }} Sheet */
+/**
+ * Where the parts are drawn, and how large.
+ * @typedef {{ context: Context, em: number, left: number, parts: Parts }} Sheet
+ */
 
 /** Height of the letters as a share of the shorter side of the picture, and its least in pixels. */
 const LETTER_SHARE = 0.022;
@@ -85,7 +88,13 @@ function drawLegend(sheet, legend) {
   write(sheet, high, left + width, y + 2.1 * em, 'quiet', 'right');
 }
 
-/** Draws the colours of a scale: side by side if they are a cycle, else blended. @param {Sheet} sheet @param {Legend} legend @param {number} y @param {number} width */
+/**
+ * Draws the colours of a scale: side by side if they are a cycle, else blended.
+ * @param {Sheet} sheet
+ * @param {Legend} legend
+ * @param {number} y
+ * @param {number} width
+ */
 function strip({ context, em, left }, { kind, colours, range, mark }, y, width) {
   if (kind === 'cyclic' || kind === 'normal') {
     colours.forEach((colour, i) => {

@@ -8,9 +8,16 @@ import { printPage } from './print.js';
 import { createRecorderBar } from './recorder-bar.js';
 import { FILM_SIZES, sizesOf, wordsOf } from './sizes.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('./film.js').Subject} Subject */
-/** @typedef {{ id: string, label: string, size: import('./sizes.js').Size }} SizeEntry */
+/**
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Motion } from '../motion.js'
+ * @import { Toast } from '../toasts.js'
+ * @import { Parts } from './compose.js'
+ * @import { Subject, Wish } from './film.js'
+ * @import { Size } from './sizes.js'
+ */
+
+/** @typedef {{ id: string, label: string, size: Size }} SizeEntry */
 
 /** Seconds of a sequence. */
 const SEQUENCE_S = [2, 4, 8, 12];
@@ -20,7 +27,7 @@ const TURN = 'turn';
 
 /**
  * @param {Engine} engine
- * @param {{ motion: import('../motion.js').Motion, toast: import('../toasts.js').Toast }} page
+ * @param {{ motion: Motion, toast: Toast }} page
  */
 export function createPictureDialog(engine, page) {
   const transparent = check('No ground', false);
@@ -46,8 +53,8 @@ export function createPictureDialog(engine, page) {
  * What both sections need.
  * @typedef {object} Shared
  * @property {Engine} engine
- * @property {{ motion: import('../motion.js').Motion, toast: import('../toasts.js').Toast }} page
- * @property {() => import('./compose.js').Parts} parts
+ * @property {{ motion: Motion, toast: Toast }} page
+ * @property {() => Parts} parts
  * @property {HTMLInputElement} transparent
  * @property {() => void} close
  */
@@ -120,7 +127,7 @@ function pictureSection({ engine, page, parts, transparent, close }) {
   ];
 }
 
-/** @param {Engine} engine @param {import('./sizes.js').Size} size */
+/** @param {Engine} engine @param {Size} size */
 const wishOf = (engine, size) => ({
   engine,
   size,
@@ -151,7 +158,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
     if (range) return /** @type {Subject} */ ({ kind: 'parameter', range, course: page.motion.course.peek() });
     return /** @type {Subject} */ ({ kind: value === FREE ? FREE : TURN });
   };
-  /** @param {(wish: import('./film.js').Wish) => Promise<Blob | null>} make */
+  /** @param {(wish: Wish) => Promise<Blob | null>} make */
   const record = async (make) => {
     const { filming } = page.motion;
     if (filming.peek()) return;

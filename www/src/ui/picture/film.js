@@ -5,21 +5,26 @@ import { effect } from '@preact/signals-core';
 import { CROSSING_S, placeAt, TURN_S, valueAt } from '../motion.js';
 import { compose } from './compose.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../motion.js').Range} Range */
+/**
+ * @import { Engine } from '../../engine/types.js'
+ * @import { Course, Range } from '../motion.js'
+ * @import { Context, Parts } from './compose.js'
+ */
+
 /**
  * What is recorded.
  * @typedef {object} Wish
  * @property {Engine} engine
  * @property {{ width: number, height: number }} size
- * @property {() => import('./compose.js').Parts} parts  legend and caption of the present moment
+ * @property {() => Parts} parts  legend and caption of the present moment
  * @property {Subject} subject
  * @property {AbortSignal} signal  ends the recording; a film keeps what it has
- * @property {(share: number | null, seconds: number) => void} tell  is told of the progress: of the whole, if that is known, and in seconds
+ * @property {(share: number | null, seconds: number) => void} tell  is told of the progress: of the whole, if that is
+ *   known, and in seconds
  */
 /**
  * What moves: the turntable, a parameter, or what the user does.
- * @typedef {{ kind: 'turn' } | { kind: 'parameter', range: Range, course: import('../motion.js').Course } | { kind: 'free' }} Subject
+ * @typedef {{ kind: 'turn' } | { kind: 'parameter', range: Range, course: Course } | { kind: 'free' }} Subject
  */
 
 /** Pictures per second of a sequence; the least time between two of a film. */
@@ -41,7 +46,8 @@ export function durationOf(subject) {
 }
 
 /**
- * Returns a function that brings the surface into its pose at a share of the recording, 0 to 1, and one that takes it back.
+ * Returns a function that brings the surface into its pose at a share of the recording, 0 to 1, and one that takes it
+ * back.
  * @param {Engine} engine @param {Subject} subject
  * @returns {{ at: (share: number) => Promise<void>, back: () => void }}
  */
@@ -85,7 +91,7 @@ const nextFrame = () => new Promise((resolve) => requestAnimationFrame(() => res
 
 /**
  * Draws the present moment on a canvas.
- * @param {Wish} wish @param {import('./compose.js').Context} context @param {boolean} [transparent]
+ * @param {Wish} wish @param {Context} context @param {boolean} [transparent]
  */
 export async function drawOn({ engine, size, parts }, context, transparent = false) {
   context.putImageData(await engine.picture({ ...size, transparent }), 0, 0);

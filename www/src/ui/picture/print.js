@@ -3,7 +3,7 @@ import { h } from '../dom.js';
 import { formatSignificant } from '../format.js';
 import { captionOf } from './compose.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @import { Engine } from '../../engine/types.js' */
 
 /** Pixels of the printed picture: some 300 to an inch. */
 const PICTURE_PX = { width: 2100, height: 1500 };

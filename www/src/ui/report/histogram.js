@@ -5,7 +5,11 @@ import { fill, h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
 import { coarsen, overDiameters, trim } from './bins.js';
 
-/** @typedef {import('../../engine/types.js').Report} Report */
+/**
+ * @import { Engine, Report } from '../../engine/types.js'
+ * @import { Drawn } from '../chart.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 const TABLE_ROWS = 12;
 /**
@@ -15,8 +19,8 @@ const TABLE_ROWS = 12;
 const IDEAL = 1;
 
 /**
- * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
- * @param {import('../../engine/types.js').Engine} engine
+ * @param {ReadonlySignal<Report | null>} report
+ * @param {Engine} engine
  */
 export function createHistogram(report, { columns }) {
   const plot = h('div', { class: 'plot', 'aria-hidden': 'true' });
@@ -77,7 +81,7 @@ export function createHistogram(report, { columns }) {
     const ends = [formatFixed(min, 2), formatFixed(max, 2)];
     const ideal = (IDEAL - min) / (max - min);
     const rows = [{ fate: 'new', name: 'particles', counts }];
-    /** @type {import('../chart.js').Drawn} */
+    /** @type {Drawn} */
     const chart = { kind: 'bars', rows, first: 0, at: null, format: formatCount, ends, ideal };
     fill(plot, draw(chart));
     fill(foot, footOf(chart));

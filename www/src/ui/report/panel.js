@@ -8,7 +8,7 @@ import { listOf, placeOf } from './places.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @import { Description, Engine, ReportRow } from '../../engine/types.js' */
 
 const DRAWN = {
   starting: 'Graphics starting',
@@ -20,7 +20,7 @@ const DRAWN = {
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 export function mountReport(body, engine, description) {
   // During a run the figures of the previous one stay, dimmed, but for the count, which is that of the caption.
@@ -70,7 +70,10 @@ export function mountReport(body, engine, description) {
   );
 }
 
-/** Says that the figures are those of all particles, where the picture shows fewer or earlier ones. @param {Engine} engine */
+/**
+ * Says that the figures are those of all particles, where the picture shows fewer or earlier ones.
+ * @param {Engine} engine
+ */
 function whoseFigures(engine) {
   const { level, step, grain, follow } = engine.state.value.view;
   const isWhole = level === null && step === null && (grain === 'level' || follow === null);
@@ -86,7 +89,7 @@ function whoseFigures(engine) {
 function createShow(engine, said) {
   /** The list that was shown last, and the next place of it. @type {{ list: unknown, next: number }} */
   let last = { list: null, next: 0 };
-  return (/** @type {import('../../engine/types.js').ReportRow} */ row) => {
+  return (/** @type {ReportRow} */ row) => {
     const list = listOf(engine.report.peek(), row.places);
     // During a run the figures are those of earlier particles.
     if (list.length === 0) return;

@@ -3,9 +3,11 @@ import { formatFixed } from '../format.js';
 import { distance } from '../space.js';
 import { valueAt } from './rows.js';
 
-/** @typedef {import('../../engine/types.js').Report} Report */
-/** @typedef {import('../../engine/types.js').Place} Place */
-/** @typedef {import('../../engine/columns.js').Columns} Columns */
+/**
+ * @import { Columns } from '../../engine/columns.js'
+ * @import { Place, Report } from '../../engine/types.js'
+ */
+
 /** @typedef {Report['places']['pairs'][number]} Pair */
 /** @typedef {Report['places']['holes'][number]} Hole */
 
@@ -50,7 +52,11 @@ export function placeOf(list, index, columns) {
   };
 }
 
-/** Returns the index of the particle that is nearest to a place. @param {readonly number[]} place @param {Columns} columns */
+/**
+ * Returns the index of the particle that is nearest to a place.
+ * @param {readonly number[]} place
+ * @param {Columns} columns
+ */
 function nearestTo(place, { positions, count }) {
   let [best, least] = [0, Infinity];
   for (let i = 0; i < count; i += 1) {

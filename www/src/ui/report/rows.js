@@ -1,8 +1,7 @@
 /** Reads the figures of a report by their path and formats them. */
 import { formatCount, formatFixed, formatSignificant, MISSING } from '../format.js';
 
-/** @typedef {import('../../engine/types.js').Report} Report */
-/** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
+/** @import { Report, ReportRow } from '../../engine/types.js' */
 
 /**
  * Returns the value at a path such as `quality.six`. It is null for a non-finite number, which stands for an undefined
@@ -55,7 +54,8 @@ export function isTold(report, { key, unless }) {
 }
 
 /**
- * Returns the headings of the two columns of quality figures: of the particles as they were placed, and after relaxation.
+ * Returns the headings of the two columns of quality figures: of the particles as they were placed, and after
+ * relaxation.
  * @param {Report | null} report
  */
 export const headingsOf = (report) => [report?.refined_levels != null ? 'Refined' : 'Front', 'Relaxed'];

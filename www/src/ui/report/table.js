@@ -5,15 +5,17 @@ import { explain } from '../explain.js';
 import { listOf } from './places.js';
 import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
 
-/** @typedef {import('../../engine/types.js').Report} Report */
-/** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
+/**
+ * @import { Report, ReportRow } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /**
  * Creates one table for all groups, so that the figures are aligned. Units are part of the labels.
- * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
+ * @param {ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
  * @param {object} parts
- * @param {import('@preact/signals-core').ReadonlySignal<number>} parts.counted  particles of a run without a report yet, or 0
+ * @param {ReadonlySignal<number>} parts.counted  particles of a run without a report yet, or 0
  * @param {(row: ReportRow) => void} parts.show  shows the next place that a figure is about
  */
 export function createTable(report, rows, parts) {
@@ -43,7 +45,7 @@ export function createTable(report, rows, parts) {
 const isPaired = ({ key }) => key.startsWith('quality.');
 
 /**
- * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
+ * @param {ReadonlySignal<Report | null>} report
  * @param {ReportRow} row
  * @param {Parameters<typeof createTable>[2]} parts
  */

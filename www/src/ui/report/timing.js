@@ -3,6 +3,11 @@ import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
 
+/**
+ * @import { Engine } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
+
 const PHASES = /** @type {const} */ ([
   ['seeding', 'Seeding'],
   ['generation', 'Generation'],
@@ -14,8 +19,8 @@ const PHASES = /** @type {const} */ ([
 const capital = (words) => words[0].toUpperCase() + words.slice(1);
 
 /**
- * @param {import('../../engine/types.js').Engine} engine
- * @param {import('@preact/signals-core').ReadonlySignal<unknown>} report the report, with which the times appear
+ * @param {Engine} engine
+ * @param {ReadonlySignal<unknown>} report the report, with which the times appear
  */
 export function createTiming(engine, report) {
   const section = h('div', { class: 'section timing' });

@@ -6,13 +6,15 @@ import { plural } from '../format.js';
 import { createSetting } from './setting.js';
 import { arrange, countChanged } from './settings.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
+/**
+ * @import { Description, Engine, SettingInfo } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  * @param {{ head: HTMLElement[] }} extras buttons at the end of the first line
  */
 export function mountSampling(body, engine, { settings }, { head }) {
@@ -85,7 +87,7 @@ function createActions(engine) {
  * @param {string} label
  * @param {string} help
  * @param {() => void} act
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} enabled
+ * @param {ReadonlySignal<boolean>} enabled
  * @param {string} [kind]
  */
 function action(label, help, act, enabled, kind = '') {

@@ -8,8 +8,10 @@ import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 import { isSegmented, isShown } from './settings.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
+/**
+ * @import { Engine, SettingInfo } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /**
  * @param {Engine} engine
@@ -47,7 +49,7 @@ const kindOf = (info) =>
 /**
  * @param {Engine} engine
  * @param {SettingInfo} info
- * @param {import('@preact/signals-core').ReadonlySignal<number | string>} value
+ * @param {ReadonlySignal<number | string>} value
  */
 function createChoice(engine, info, value) {
   if (isSegmented(info)) {
@@ -78,7 +80,7 @@ function createChoice(engine, info, value) {
 /**
  * @param {Engine} engine
  * @param {SettingInfo} info
- * @param {import('@preact/signals-core').ReadonlySignal<number | string>} value
+ * @param {ReadonlySignal<number | string>} value
  */
 function createNumber(engine, info, value) {
   const integer = info.kind === 'integer';

@@ -1,7 +1,6 @@
 /** Decides which settings are shown, where, and with which control. */
 
-/** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
-/** @typedef {import('../../engine/types.js').Settings} Settings */
+/** @import { SettingInfo, Settings } from '../../engine/types.js' */
 
 /** The setting on which the others depend. It is shown first. */
 const KIND = 'sampling';

@@ -1,16 +1,18 @@
 /** Returns the caption that describes the state of the run. */
 import { formatCount, formatSeconds, formatShare, lastSteps, plural } from '../format.js';
 
+/** @import { Loading, Progress } from '../../engine/types.js' */
+
 /** Returns the caption during a reveal. @param {{ level: number, particles: number }} reveal */
 export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
 
-/** Returns the caption while a model or a file is loading. @param {import('../../engine/types.js').Loading} loading */
+/** Returns the caption while a model or a file is loading. @param {Loading} loading */
 export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · ${formatShare(fraction, 0)}`;
 
 /**
- * @param {import('../../engine/types.js').Progress} progress
- * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null, steps: number }} facts  `seconds` are
- *   those of the sampling or, with `steps` above 0, of so many relaxation steps after it
+ * @param {Progress} progress
+ * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null, steps: number }} facts  `seconds`
+ *   are those of the sampling or, with `steps` above 0, of so many relaxation steps after it
  */
 export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
   const particles = plural(progress.particles, 'particle');

@@ -4,14 +4,14 @@ import { fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../format.js';
 import { clamp } from '../scale.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Hover} Hover */
+/** @import { Engine, Hover } from '../../engine/types.js' */
 
 const OFFSET_PX = 16;
 
 /**
  * @param {HTMLElement} host @param {Engine} engine
- * @param {{ view: HTMLElement, follow: (index: number) => void }} parts  `view` is the part of the picture that no panel covers
+ * @param {{ view: HTMLElement, follow: (index: number) => void }} parts  `view` is the part of the picture that no
+ *   panel covers
  */
 export function mountHover(host, engine, { view, follow }) {
   const card = h('div', { class: 'hover-card', hidden: true });

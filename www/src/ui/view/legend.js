@@ -4,13 +4,14 @@ import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../engine/types.js').Legend} Legend */
-/** @typedef {import('../../engine/types.js').ColourMode} ColourMode */
+/**
+ * @import { ColourMode, Description, Engine, Legend } from '../../engine/types.js'
+ * @import { Child } from '../dom.js'
+ */
 
 /**
  * @param {Engine} engine
- * @param {import('../../engine/types.js').Description} description
+ * @param {Description} description
  */
 export function createLegend(engine, description) {
   const select = h(
@@ -47,7 +48,7 @@ function swatch(colour) {
   return element;
 }
 
-/** @type {Record<Legend['kind'], (legend: Legend) => import('../dom.js').Child[]>} */
+/** @type {Record<Legend['kind'], (legend: Legend) => Child[]>} */
 const SCALES = {
   plain: () => [],
   cyclic: ({ colours, unit }) => [

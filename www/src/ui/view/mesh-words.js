@@ -1,11 +1,13 @@
 /** Says in one line what a mesh adds up to, and where it is open or leaves particles out. */
 import { formatCount, plural } from '../format.js';
 
+/** @import { MeshAnswer } from '../../engine/types.js' */
+
 /** Most components whose Euler numbers are told one by one. */
 const MOST_TOLD = 3;
 
 /**
- * @param {import('../../engine/types.js').MeshAnswer} mesh
+ * @param {MeshAnswer} mesh
  * @returns {string}
  */
 export function wordsOf({ components, unfilled, left_out }) {

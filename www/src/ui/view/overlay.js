@@ -5,7 +5,10 @@ import { fill, h } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { NO_MESH, wordsOf } from './mesh-words.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 const HINT_MS = 9000;
 /** Shortest interval between announcements of a run to assistive technology. */
@@ -15,7 +18,7 @@ const ANNOUNCE_MS = 3000;
  * @param {HTMLElement} view
  * @param {Engine} engine
  * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement, told:
- *   import('@preact/signals-core').ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` describes
+ *   ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` describes
  *   the chosen generation level
  */
 export function mountOverlay(view, engine, { stage, poster, start, told }) {
@@ -130,7 +133,7 @@ function emptyState(engine) {
 /**
  * @param {HTMLElement} hint
  * @param {HTMLElement} stage
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} settled
+ * @param {ReadonlySignal<boolean>} settled
  */
 function hintUntilUsed(hint, stage, settled) {
   const end = () => {
@@ -149,8 +152,8 @@ function hintUntilUsed(hint, stage, settled) {
 /**
  * Announces the caption at most once per interval, and always at the end of a run.
  * @param {HTMLElement} spoken
- * @param {import('@preact/signals-core').ReadonlySignal<string>} text
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} busy
+ * @param {ReadonlySignal<string>} text
+ * @param {ReadonlySignal<boolean>} busy
  */
 function announce(spoken, text, busy) {
   let last = -Infinity;

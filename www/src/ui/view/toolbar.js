@@ -10,11 +10,17 @@ import { attachMenu } from '../menu.js';
 import { copyLink, exportFile, exportMesh } from '../share.js';
 import { createSlider } from '../slider.js';
 
-/** @typedef {import('../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine, MeshFormat, ViewState } from '../../engine/types.js'
+ * @import { Props } from '../dom.js'
+ * @import { IconName } from '../icons.js'
+ * @import { Motion } from '../motion.js'
+ * @import { Toast } from '../toasts.js'
+ */
 
 const ZOOM = 1.25;
 const TURN_RAD = Math.PI / 12;
-/** File formats for the mesh, with a note. @type {[import('../../engine/types.js').MeshFormat, string][]} */
+/** File formats for the mesh, with a note. @type {[MeshFormat, string][]} */
 const MESH_FORMATS = [
   ['glb', 'triangles, normals, levels as colours'],
   ['obj', 'triangles and normals, as text'],
@@ -28,8 +34,8 @@ const MESH_FORMATS = [
  * @param {() => void} page.hide
  * @param {() => void} page.shortcuts
  * @param {() => void} page.picture  opens the dialog that takes the picture away
- * @param {import('../motion.js').Motion} page.motion
- * @param {import('../toasts.js').Toast} page.toast
+ * @param {Motion} page.motion
+ * @param {Toast} page.toast
  */
 export function createToolbar(engine, { hide, shortcuts, picture, motion, toast }) {
   const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');
@@ -80,11 +86,11 @@ export function createToolbar(engine, { hide, shortcuts, picture, motion, toast 
 }
 
 /**
- * @param {import('../icons.js').IconName} name
+ * @param {IconName} name
  * @param {string} label
  * @param {string} help
  * @param {() => void} [act]
- * @param {import('../dom.js').Props} [props]
+ * @param {Props} [props]
  */
 function tool(name, label, help, act, props = {}) {
   const button = h(
@@ -121,10 +127,10 @@ function choice(label, act, note) {
 
 /**
  * Creates buttons that turn the picture, for users who cannot drag, and one that keeps it turning.
- * @param {Engine} engine @param {import('../motion.js').Motion} motion
+ * @param {Engine} engine @param {Motion} motion
  */
 function turning(engine, motion) {
-  /** @type {[import('../icons.js').IconName, string, number, number][]} */
+  /** @type {[IconName, string, number, number][]} */
   const turns = [
     ['left', 'Turn left', -1, 0],
     ['right', 'Turn right', 1, 0],
@@ -188,7 +194,7 @@ function discSize(engine) {
  * @param {Engine} engine
  * @param {string} name
  * @param {K} key
- * @param {[import('../../engine/types.js').ViewState[K], string][]} values
+ * @param {[ViewState[K], string][]} values
  * @param {() => boolean} [hidden]
  */
 function choices(engine, name, key, values, hidden) {

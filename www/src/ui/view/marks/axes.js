@@ -6,9 +6,12 @@ import { AXES, niceStep, ticksIn } from '../../space.js';
 import { boxOf } from './box.js';
 import { outerEdge, outward } from './edges.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Bounds} Bounds */
-/** @typedef {import('./draw.js').Pen} Pen */
+/**
+ * @import { Bounds, Engine } from '../../../engine/types.js'
+ * @import { Pen } from './draw.js'
+ * @import { Edge } from './edges.js'
+ * @import { Mark } from './layer.js'
+ */
 
 /** Smallest distance of ticks, length of a tick, and distances of its figure and of the axis's name from the axis. */
 const APART_PX = 48;
@@ -18,10 +21,13 @@ const NAME_PX = 38;
 /** Largest length of the scale bar. */
 const BAR_PX = 110;
 
-/** @param {Engine} engine @returns {import('./layer.js').Mark} */
+/** @param {Engine} engine @returns {Mark} */
 export function axesMark(engine) {
   const clip = boxOf(engine);
-  /** The box around the particles. During a run it stays, so that the axes do not grow with the surface. @type {Bounds | null} */
+  /**
+   * The box around the particles. During a run it stays, so that the axes do not grow with the surface.
+   * @type {Bounds | null}
+   */
   let last = null;
   const box = computed(() => {
     void engine.revision.value;
@@ -41,7 +47,7 @@ export function axesMark(engine) {
   };
 }
 
-/** @param {Pen} pen @param {Engine} engine @param {import('./edges.js').Edge} edge @param {number} axis */
+/** @param {Pen} pen @param {Engine} engine @param {Edge} edge @param {number} axis */
 function drawAxis(pen, engine, edge, axis) {
   const { from, to, ends, centre } = edge;
   pen.line(from, to, 'axis');

@@ -6,8 +6,11 @@ import { AXES, axisVector, centreOf, placeAlong } from '../../space.js';
 import { outerEdge, outward } from './edges.js';
 import { createHandle } from './handle.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Bounds} Bounds */
+/**
+ * @import { Bounds, Engine } from '../../../engine/types.js'
+ * @import { Mark } from './layer.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
+ */
 
 /** Step of the arrow keys as a share of the side. */
 const KEY_SHARE = 0.02;
@@ -19,7 +22,7 @@ const LABEL_PX = 14;
 /** The clip box that is drawn: the user's, or that of the field. @param {Engine} engine */
 export const boxOf = (engine) => computed(() => engine.state.value.bounds ?? engine.field.value?.bounds ?? null);
 
-/** @param {Engine} engine @param {HTMLElement} stage @returns {import('./layer.js').Mark} */
+/** @param {Engine} engine @param {HTMLElement} stage @returns {Mark} */
 export function boxMark(engine, stage) {
   const box = boxOf(engine);
   const faces = AXES.flatMap((name, axis) =>
@@ -54,7 +57,7 @@ export function boxMark(engine, stage) {
 /**
  * @param {Engine} engine
  * @param {HTMLElement} stage
- * @param {import('@preact/signals-core').ReadonlySignal<Bounds | null>} box
+ * @param {ReadonlySignal<Bounds | null>} box
  * @param {{ name: string, axis: number, end: 'min' | 'max' }} face
  */
 function createFace(engine, stage, box, { name, axis, end }) {

@@ -1,7 +1,7 @@
 /** Draws lines, rings and figures at places of the surface, in SVG elements that are reused from picture to picture. */
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Spot} Spot */
+/** @import { Engine } from '../../../engine/types.js' */
+
 /** @typedef {{x: number, y: number}} Point  in pixels of the picture */
 /**
  * @typedef {object} Pen
@@ -24,7 +24,12 @@ export function drawn(layer, engine) {
   /** @type {SVGElement[]} */
   let kept = [];
   let used = 0;
-  /** Returns the next element, in the order of drawing. @param {string} tag @param {string} kind @param {Record<string, string | number>} attributes */
+  /**
+   * Returns the next element, in the order of drawing.
+   * @param {string} tag
+   * @param {string} kind
+   * @param {Record<string, string | number>} attributes
+   */
   const next = (tag, kind, attributes) => {
     let element = kept[used];
     if (element?.tagName !== tag) {

@@ -1,9 +1,11 @@
 /** Chooses edges of the clip box on the outline of its picture, where figures do not cover the surface. */
 import { axisVector, centreOf, cornerOf, dot } from '../../space.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Bounds} Bounds */
-/** @typedef {import('./draw.js').Point} Point */
+/**
+ * @import { Bounds, Engine } from '../../../engine/types.js'
+ * @import { Point } from './draw.js'
+ */
+
 /**
  * An edge of the box in the picture, from its lower to its upper end, with those ends in space and the picture of the
  * box's centre.

@@ -4,8 +4,8 @@
  */
 import { h } from '../../dom.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Ray} Ray */
+/** @import { Engine, Ray } from '../../../engine/types.js' */
+
 /**
  * @typedef {object} HandleOptions
  * @property {string} name  accessible name
@@ -74,7 +74,13 @@ export function createHandle(engine, stage, { name, kind, grab, drag, drop, canc
       knob.hidden = spot === null;
       if (spot) knob.style.transform = `translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
     },
-    /** Tells assistive technology the value. @param {number} now @param {number} min @param {number} max @param {string} text */
+    /**
+     * Tells assistive technology the value.
+     * @param {number} now
+     * @param {number} min
+     * @param {number} max
+     * @param {string} text
+     */
     tell(now, min, max, text) {
       const round = (/** @type {number} */ v) => String(Number(v.toPrecision(6)));
       knob.setAttribute('aria-valuenow', round(now));

@@ -6,8 +6,10 @@ import { createMeasureCard, measureMark } from './measure.js';
 import { planeMark } from './plane.js';
 import { spotMark } from './spot.js';
 
+/** @import { Engine } from '../../../engine/types.js' */
+
 /**
- * @param {import('../../../engine/types.js').Engine} engine
+ * @param {Engine} engine
  * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement }} parts  `host` holds the picture and lies in
  *   `stage`; `view` is the part that no panel covers
  */

@@ -6,12 +6,16 @@ import { computed, effect } from '@preact/signals-core';
 import { h } from '../../dom.js';
 import { drawn } from './draw.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../../../engine/types.js'
+ * @import { Pen } from './draw.js'
+ */
+
 /**
  * A kind of mark.
  * @typedef {object} Mark
  * @property {() => boolean} shown  whether there is something to draw; read in an effect
- * @property {(pen: import('./draw.js').Pen) => void} draw  called after every picture while it is shown
+ * @property {(pen: Pen) => void} draw  called after every picture while it is shown
  * @property {HTMLElement[]} [handles]  elements that the mark places itself
  */
 

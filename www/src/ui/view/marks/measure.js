@@ -4,7 +4,10 @@ import { h } from '../../dom.js';
 import { formatCount, formatSignificant } from '../../format.js';
 import { separation } from '../../space.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../../../engine/types.js'
+ * @import { Mark } from './layer.js'
+ */
 
 /** Smallest radius of a ring around a particle, and the half size of the cross. */
 const RING_PX = 6;
@@ -18,7 +21,7 @@ const present = (engine) => {
   return (engine.state.value.view.measured ?? []).filter((index) => !stale && index < count);
 };
 
-/** @param {Engine} engine @param {HTMLElement} host  of the picture @returns {import('./layer.js').Mark} */
+/** @param {Engine} engine @param {HTMLElement} host  of the picture @returns {Mark} */
 export function measureMark(engine, host) {
   const chosen = computed(() => present(engine));
   const focused = signal(false);

@@ -6,10 +6,10 @@ import { along, centreOf, directionOnSphere, dot, extentOf, placeAlong, sectionO
 import { boxOf } from './box.js';
 import { createHandle } from './handle.js';
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
-/** @typedef {import('../../../engine/types.js').Bounds} Bounds */
-/** @typedef {import('../../../engine/types.js').CuttingPlane} CuttingPlane */
-/** @typedef {import('../../../engine/types.js').Vec3} Vec3 */
+/**
+ * @import { Bounds, CuttingPlane, Engine, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Mark } from './layer.js'
+ */
 
 /** Length of the arrow in pixels. */
 const ARROW_PX = 52;
@@ -17,7 +17,7 @@ const ARROW_PX = 52;
 const KEY_SHARE = 0.01;
 const FINE = 0.1;
 
-/** @param {Engine} engine @param {HTMLElement} stage @returns {import('./layer.js').Mark} */
+/** @param {Engine} engine @param {HTMLElement} stage @returns {Mark} */
 export function planeMark(engine, stage) {
   const box = boxOf(engine);
   /** Place near which the knob is, if the plane was turned in the picture. @type {Vec3 | null} */
@@ -34,7 +34,11 @@ export function planeMark(engine, stage) {
     far: false,
   };
 
-  /** Returns the place of the knob: on the plane, beside the pivot or the middle of the box. @param {CuttingPlane} plane @param {Bounds} bounds */
+  /**
+   * Returns the place of the knob: on the plane, beside the pivot or the middle of the box.
+   * @param {CuttingPlane} plane
+   * @param {Bounds} bounds
+   */
   const baseOf = ({ normal, offset }, bounds) => {
     const near = pivot ?? centreOf(bounds);
     return along(near, normal, offset - dot(normal, near));
@@ -42,7 +46,7 @@ export function planeMark(engine, stage) {
   const cancel = () => {
     if (drag.plane) engine.setPlane(drag.plane);
   };
-  /** @param {import('../../../engine/types.js').Ray} ray */
+  /** @param {Ray} ray */
   const grab = (ray) => {
     const [plane, bounds] = [engine.state.peek().plane, box.peek()];
     drag.plane = plane;

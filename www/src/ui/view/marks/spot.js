@@ -1,11 +1,14 @@
 /** Marks the place that a figure of the report was pressed for: two particles, or a hole. */
 
-/** @typedef {import('../../../engine/types.js').Engine} Engine */
+/**
+ * @import { Engine } from '../../../engine/types.js'
+ * @import { Mark } from './layer.js'
+ */
 
 const LEAST_RING_PX = 7;
 const LABEL_PX = 14;
 
-/** @param {Engine} engine @returns {import('./layer.js').Mark} */
+/** @param {Engine} engine @returns {Mark} */
 export function spotMark(engine) {
   return {
     shown: () => engine.spot.value !== null,
