@@ -7,10 +7,8 @@ import { signal } from '@preact/signals-core';
 import { emptyState } from './share/state.js';
 
 /**
- * @import { BackendName, Description, FieldFault, FieldOk, Hover, LastDrag, Legend, Loading } from './types.js'
- * @import { LoadingError, MeshAnswer, ModelInfo, Notice, Place, Progress, Report, Reveal, State } from './types.js'
- * @import { Timing, ViewState } from './types.js'
- * @import { Signal } from '@preact/signals-core'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { EngineSignals, Progress, State, ViewState } from './types.js'
  */
 
 /** @returns {Progress} */
@@ -33,43 +31,41 @@ export const idleProgress = () => ({
 });
 
 /**
- * @template T
- * @param {T} value
- * @returns {Signal<T>}
+ * The engine's signals, to be written.
+ * @typedef {{[K in keyof EngineSignals as EngineSignals[K] extends ReadonlySignal<any> ? K : never]:
+ *   EngineSignals[K] extends ReadonlySignal<infer T> ? Signal<T> : never}} Store
  */
-const cell = (value) => signal(value);
 
+/** @returns {Store} */
 export function createStore() {
   return {
-    state: cell(emptyState()),
-    description: cell(/** @type {Description | null} */ (null)),
-    field: cell(/** @type {FieldOk | null} */ (null)),
-    fieldError: cell(/** @type {FieldFault | null} */ (null)),
-    progress: cell(idleProgress()),
-    report: cell(/** @type {Report | null} */ (null)),
-    timing: cell(/** @type {Timing | null} */ (null)),
-    backend: cell(/** @type {BackendName} */ ('starting')),
-    adapter: cell(''),
-    notice: cell(/** @type {Notice | null} */ (null)),
-    mesh: cell(/** @type {MeshAnswer | null} */ (null)),
-    hover: cell(/** @type {Hover | null} */ (null)),
-    spot: cell(/** @type {Place | null} */ (null)),
-    legend: cell(/** @type {Legend | null} */ (null)),
-    reveal: cell(/** @type {Reveal | null} */ (null)),
-    busy: cell(false),
-    partial: cell(false),
-    revision: cell(0),
-    empty: cell(false),
-    lastDrag: cell(/** @type {LastDrag | null} */ (null)),
-    loading: cell(/** @type {Loading | null} */ (null)),
-    loadingError: cell(/** @type {LoadingError | null} */ (null)),
-    model: cell(/** @type {ModelInfo | null} */ (null)),
-    frame: cell(0),
-    theme: cell(/** @type {'light' | 'dark'} */ ('light')),
+    state: signal(emptyState()),
+    description: signal(null),
+    field: signal(null),
+    fieldError: signal(null),
+    progress: signal(idleProgress()),
+    report: signal(null),
+    timing: signal(null),
+    backend: signal('starting'),
+    adapter: signal(''),
+    notice: signal(null),
+    mesh: signal(null),
+    hover: signal(null),
+    spot: signal(null),
+    legend: signal(null),
+    reveal: signal(null),
+    busy: signal(false),
+    partial: signal(false),
+    revision: signal(0),
+    empty: signal(false),
+    lastDrag: signal(null),
+    loading: signal(null),
+    loadingError: signal(null),
+    model: signal(null),
+    frame: signal(0),
+    theme: signal('light'),
   };
 }
-
-/** @typedef {ReturnType<typeof createStore>} Store */
 
 /** Changes a part of the shareable state. @param {Store} store @param {Partial<State>} patch */
 export function change({ state }, patch) {

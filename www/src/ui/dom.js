@@ -9,7 +9,12 @@ import { effect } from '@preact/signals-core';
  * What an element may be given: itself, or a function of signals whose text is kept up to date.
  * @typedef {Child | (() => Child)} Given
  */
-/** @typedef {{ [name: string]: any }} Props */
+/** What an attribute may be. @typedef {string | number | boolean | null | undefined} Attribute */
+/**
+ * @template {HTMLElement} [E=HTMLElement]
+ * @typedef {{ on?: { [K in keyof HTMLElementEventMap]?: (event: HTMLElementEventMap[K]) => void }, prop?: Partial<E>,
+ *   data?: Record<string, Attribute | (() => Attribute)> } & Record<string, unknown>} Props
+ */
 
 /** What ends with a node. @type {WeakMap<Node, (() => void)[]>} */
 const endings = new WeakMap();
@@ -49,7 +54,7 @@ export function release(node) {
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
- * @param {Props | null} [props]
+ * @param {Props<HTMLElementTagNameMap[K]> | null} [props]
  * @param {...(Given | Given[])} children
  * @returns {HTMLElementTagNameMap[K]}
  */
@@ -59,15 +64,12 @@ export function h(tag, props, ...children) {
     if (typeof value === 'function') live(element, () => act(value()));
     else act(value);
   };
-  for (const [name, value] of Object.entries(props ?? {})) {
-    if (name === 'on') {
-      for (const [type, listener] of Object.entries(value)) element.addEventListener(type, listener);
-    } else if (name === 'data') {
-      for (const [key, datum] of Object.entries(value))
-        set(datum, (now) => Object.assign(element.dataset, { [key]: now }));
-    } else if (name === 'prop') Object.assign(element, value);
-    else set(value, (now) => setAttribute(element, name, now));
-  }
+  const { on = {}, data = {}, prop, ...attributes } = props ?? {};
+  for (const [name, value] of Object.entries(attributes)) set(value, (now) => setAttribute(element, name, now));
+  for (const [key, value] of Object.entries(data)) set(value, (now) => Object.assign(element.dataset, { [key]: now }));
+  Object.assign(element, prop);
+  for (const [type, listener] of Object.entries(on))
+    element.addEventListener(type, /** @type {EventListener} */ (listener));
   append(element, children);
   return element;
 }

@@ -29,7 +29,7 @@ export function createClipBox(engine) {
         'aria-label': `${axis} ${end === 'min' ? 'from' : 'to'}`,
         on: {
           change: () => commit(input.valueAsNumber),
-          keydown: (/** @type {KeyboardEvent} */ event) => {
+          keydown: (event) => {
             if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
             event.preventDefault();
             const now = bounds.peek();

@@ -204,7 +204,7 @@ function createSearch(query) {
       input: () => {
         query.value = input.value;
       },
-      keydown: (/** @type {KeyboardEvent} */ event) => {
+      keydown: (event) => {
         if (event.key !== 'Escape' || input.value === '') return;
         query.value = '';
         event.stopPropagation();
