@@ -1,5 +1,5 @@
 /** Copies a link or exports a file. */
-import { FILE_SURFACE } from '../engine/types.js';
+import { FILE_SURFACE } from '../engine/constants.js';
 
 /**
  * @import { Engine, MeshFormat } from '../engine/types.js'

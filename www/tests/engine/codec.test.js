@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
+import { FILE_SURFACE } from '../../src/engine/constants.js';
 import { decode, encode, LONGEST_FRAGMENT } from '../../src/engine/share/codec.js';
 import { clampSettings, defaultState, fieldRequest, sanitize } from '../../src/engine/share/state.js';
-import { FILE_SURFACE } from '../../src/engine/types.js';
 import { description } from './description.js';
 
 /** @import { State } from '../../src/engine/types.js' */

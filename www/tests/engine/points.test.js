@@ -1,10 +1,10 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
+import { FILE_SURFACE } from '../../src/engine/constants.js';
 import { LOADING_MS, PointsClient, SILENCE_MS } from '../../src/engine/points/client.js';
 import { ModelLoader } from '../../src/engine/points/loader.js';
 import { solve } from '../../src/engine/points/solve.js';
 import { defaultState } from '../../src/engine/share/state.js';
 import { createStore } from '../../src/engine/store.js';
-import { FILE_SURFACE } from '../../src/engine/types.js';
 import { description } from './description.js';
 
 /**

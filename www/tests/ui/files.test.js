@@ -1,5 +1,5 @@
 import { beforeAll, describe, expect, it } from 'vitest';
-import { FILE_SURFACE } from '../../src/engine/types.js';
+import { FILE_SURFACE } from '../../src/engine/constants.js';
 import { factsOf, fittedOf } from '../../src/ui/field/facts.js';
 import { carriesFiles, describeLoadingError, FORMATS, LIMIT, listOf } from '../../src/ui/field/files.js';
 import { storyOf } from '../../src/ui/field/story.js';

@@ -3,6 +3,8 @@
  *
  * @module
  */
+
+import { FILE_SURFACE } from '../constants.js';
 import { shapeOf } from '../points/loader.js';
 import {
   fromPoints,
@@ -15,7 +17,6 @@ import {
   validSetting,
 } from '../share/state.js';
 import { change, description, showAll } from '../store.js';
-import { FILE_SURFACE } from '../types.js';
 
 /**
  * @import { Parts } from '../index.js'

@@ -6,8 +6,8 @@
  * @module
  */
 import { batch } from '@preact/signals-core';
+import { FILE_SURFACE, LARGEST_FILE_BYTES } from '../constants.js';
 import { defaultState, fromPoints, modelOf } from '../share/state.js';
-import { FILE_SURFACE, LARGEST_FILE_BYTES } from '../types.js';
 import { PointsClient } from './client.js';
 
 /**

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { FILE_SURFACE } from '../types.js';
+import { FILE_SURFACE } from '../constants.js';
 import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
 

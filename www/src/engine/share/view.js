@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { DISC_SIZE } from '../types.js';
+import { DISC_SIZE } from '../constants.js';
 import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 import { COLOURINGS } from '../view/colouring.js';
 import { integers, isRecord, vec3, within } from './valid.js';

@@ -1,5 +1,5 @@
 /** Describes the point files that can be read, and the errors in reading them. */
-import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/types.js';
+import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/constants.js';
 
 /** @import { LoadingError } from '../../engine/types.js' */
 

@@ -3,7 +3,7 @@
  * models from points and the file opened last. A search looks through all groups.
  */
 import { batch, computed, effect, signal } from '@preact/signals-core';
-import { FILE_SURFACE, FILE_TYPES } from '../../engine/types.js';
+import { FILE_SURFACE, FILE_TYPES } from '../../engine/constants.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { icon } from '../icons.js';

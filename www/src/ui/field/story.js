@@ -1,5 +1,5 @@
 /** Returns the description of the present surface. */
-import { FILE_SURFACE } from '../../engine/types.js';
+import { FILE_SURFACE } from '../../engine/constants.js';
 import { formatCount, plural } from '../format.js';
 
 /** @import { Description, ModelInfo } from '../../engine/types.js' */

@@ -1,7 +1,7 @@
 /** The toolbar beside the picture: zoom, fit, view options, link, picture, export. */
 
 import { computed } from '@preact/signals-core';
-import { DISC_SIZE } from '../../engine/types.js';
+import { DISC_SIZE } from '../../engine/constants.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';

@@ -1,0 +1,357 @@
+// Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands. Lengths are
+// in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says otherwise.
+import type { Columns } from './columns.js';
+import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
+import type { Surface } from './lesson/protocol.js';
+
+export type Signal<T> = import('@preact/signals-core').Signal<T>;
+export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
+export type Vec3 = [number, number, number];
+
+// ---- what the core says and is told: written from its own types (core-types.d.ts)
+
+export type Bounds = import('./core-types.js').Bounds;
+export type Parameter = import('./core-types.js').Parameter;
+export type Description = import('./core-types.js').Description;
+export type Limits = import('./core-types.js').Limits;
+/** One entry of the gallery. */
+export type SurfaceInfo = import('./core-types.js').SurfaceEntry;
+/** One setting of the sampler; the interface builds its control from this. */
+export type SettingInfo = import('./core-types.js').Setting;
+/** One row of the report; its keys are paths into {@link Report}, such as `quality.six`. */
+export type ReportRow = import('./core-types.js').ReportRow;
+/** A built-in model from points. Its `id` goes where a gallery surface's does. */
+export type PointModel = import('./core-types.js').Model;
+/** What is known of a model from points once it is solved. */
+export type ModelInfo = import('./core-types.js').ModelInfo;
+/** What goes with a solved system to the core. */
+export type SolvedModel = import('./core-types.js').SolvedModel;
+export type MathNode = import('./core-types.js').MathNode;
+export type FieldFault = import('./core-types.js').Fault;
+/** What one step of the core answers. */
+export type CoreProgress = import('./core-types.js').Progress;
+/** null while the run goes on */
+export type StopReason = CoreProgress['stop_reason'];
+/** The figures of a finished run. */
+export type CoreReport = import('./core-types.js').Report;
+/** What a mesh adds up to. */
+export type MeshAnswer = import('./core-types.js').MeshAnswer;
+export type LessonEvent = import('./core-types.js').LessonEvent;
+export type LessonIterate = import('./core-types.js').LessonIterate;
+export type LessonPush = import('./core-types.js').LessonPush;
+export type LessonChapter = import('./core-types.js').LessonChapter;
+export type LessonSettings = import('./core-types.js').LessonSettings;
+export type LessonClient = import('./lesson/client.js').LessonClient;
+export type LessonParticles = import('./lesson/protocol.js').Particles;
+/** A mesh over all particles on the page, three indices a triangle. */
+export type Mesh = { triangles: Uint32Array; about: MeshAnswer };
+export type CoreAnswer<T> = Answer<T, FieldFault>;
+export type FieldAnswer = CoreAnswer<import('./core-types.js').FieldAnswer>;
+/** `surface` is of a model its id, of a file {@link FILE_SURFACE} */
+export type FieldOk = Extract<FieldAnswer, { ok: true }>;
+export type StartAnswer = CoreAnswer<Start>;
+export type SolverAnswer<T> = Answer<T, PointsFault>;
+export type PointsAnswer = SolverAnswer<PointsProgress>;
+export type SolvedAnswer = SolverAnswer<SolvedModel>;
+
+// ---- what the page adds to it
+
+/** `points` names a solved model; with it only the clip box counts. */
+export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
+/** By the settings' names; a missing one has its default. */
+export type Settings = Record<string, number | string>;
+/**
+ * The progress of the present run, as the page shows it. `phase` has one more value than in the core, `quality`: the
+ * quality figures are being computed.
+ */
+export type Progress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'quality'; run: number; live: boolean };
+export type Seconds = { seeding: number; generation: number; refinement: number; relaxation: number; quality: number };
+/** A report with what the worker measured. */
+export type Report = CoreReport & { seconds: Seconds };
+
+// ---- the shareable state
+
+export type Grain = ViewState['grain'];
+export type ColourMode = import('./core-types.js').ColourMode;
+/**
+ * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
+ * the camera follows the surface. A zoom or pan by the user ends that, and the fit command starts it again.
+ */
+export type CameraState = { target: Vec3; distance: number; yaw: number; pitch: number; fit: boolean };
+/** The options of the view. */
+export type ViewState = import('./share/view.js').ViewState;
+/**
+ * A plane that hides the part of the picture that its unit normal points to: all p with normal · p > offset. Nothing is
+ * sampled anew.
+ */
+export type CuttingPlane = { normal: Vec3; offset: number };
+/**
+ * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
+ * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
+ * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` is empty; a formula typed then is based
+ * on the default surface. The points of a file are not in the state, so a link to a file shows the default surface.
+ */
+export interface State {
+  v: 1;
+  surface: string;
+  formula: string;
+  parameters: Record<string, number>;
+  declared: Parameter[];
+  /** how many of the points of a model or a file are fitted; null for the default number, and for a formula */
+  centres: number | null;
+  /** null: the surface's own box, or one that fits the formula */
+  bounds: Bounds | null;
+  plane: CuttingPlane | null;
+  settings: Settings;
+  view: ViewState;
+}
+/** The part of the state that can be undone: what is sampled and how, and where it is cut open, without the view. */
+export type Shape = Omit<State, 'v' | 'view'>;
+
+// ---- what the engine reports
+
+export type BackendName = 'starting' | 'webgpu' | 'webgl2' | 'canvas2d';
+/**
+ * A message for the user. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`,
+ * `file`, `share-file`, …); a later notice of the same cause replaces it, and it is removed when it no longer applies.
+ * `details` is a report for the user to copy.
+ */
+export interface Notice {
+  id: string;
+  kind: 'info' | 'warn' | 'error';
+  text: string;
+  details?: string;
+  action?: { label: string; run: () => void };
+}
+/**
+ * The particle under the pointer, or the tapped one. x and y are CSS pixels within the canvas host. `residual`,
+ * `nearest` and `valence` are null until the report of the run has arrived.
+ */
+export interface Hover {
+  index: number;
+  level: number;
+  /** null for a seed */
+  parent: number | null;
+  position: Vec3;
+  normal: Vec3;
+  radius: number;
+  residual: number | null;
+  valence: number | null;
+  nearest: number | null;
+  x: number;
+  y: number;
+  /** it was pressed and stays until the next press, instead of following the pointer */
+  tapped: boolean;
+}
+/**
+ * Where a place is in the picture: x and y are CSS pixels within the canvas host, `perPx` is the length in the field's
+ * coordinates that is one pixel long there, across the line of sight.
+ */
+export type Spot = { x: number; y: number; perPx: number };
+/**
+ * A place to be pointed out: the positions that are marked by rings of this radius, the direction from which they are
+ * seen, and what stands beside them.
+ */
+export type Place = { places: Vec3[]; radius: number; normal: Vec3; text: string };
+/** A ray from the eye; the direction has length 1. */
+export type Ray = { eye: Vec3; direction: Vec3 };
+/** colour is `#rrggbb` */
+export type LegendEntry = { label: string; colour: string; count?: number };
+/**
+ * The legend of the colours. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to
+ * `range[1]`. A diverging ramp has 0 in its middle; values outside its range have the colour of its end. `entries` name
+ * categories. `pending` is set while the figures behind the colours are being computed.
+ */
+export interface Legend {
+  title: string;
+  unit: string;
+  kind: 'cyclic' | 'categories' | 'sequential' | 'diverging' | 'plain' | 'normal';
+  entries?: LegendEntry[];
+  range?: [number, number];
+  /** a value with a tick on the ramp, such as the ideal distance 2r */
+  mark?: number;
+  colours: string[];
+  pending?: boolean;
+}
+/**
+ * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation
+ * steps alone, which were made after it.
+ */
+export type Timing = {
+  steps: number;
+  sampling: number;
+  total: number;
+  seconds: Seconds;
+  us_per_particle: number;
+  particles: number;
+  live: boolean;
+};
+/**
+ * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
+ * picture.
+ */
+export type LastDrag = { requested: number; shown: number; latency_ms: number; particles: number; coarse: boolean };
+/** The progress of the reveal of a new run: its particles appear level by level, slowly enough to be followed. */
+export type Reveal = { level: number; levels: number; particles: number };
+/** The progress of loading a model or a file. `label` is the core's name of the stage. */
+export interface Loading {
+  /** of the model, or {@link FILE_SURFACE} */
+  id: string;
+  name: string;
+  stage: 'starting' | 'reading' | 'thinning' | 'normals' | 'solving';
+  label: string;
+  /** 0 … 1 of the whole process */
+  fraction: number;
+}
+/** An error in loading a model or a file. The previous surface stays. */
+export interface LoadingError {
+  id: string;
+  name: string;
+  /** the core's kind of error, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle` */
+  kind: string;
+  /** with the line number, if there is one */
+  message: string;
+  /** from 1 */
+  line: number | null;
+}
+export interface EngineSignals {
+  state: ReadonlySignal<State>;
+  /** null until the core has loaded */
+  description: ReadonlySignal<Description | null>;
+  /** the last good field */
+  field: ReadonlySignal<FieldOk | null>;
+  /** the error in the present formula */
+  fieldError: ReadonlySignal<FieldFault | null>;
+  progress: ReadonlySignal<Progress>;
+  /** null while stale */
+  report: ReadonlySignal<Report | null>;
+  timing: ReadonlySignal<Timing | null>;
+  backend: ReadonlySignal<BackendName>;
+  /** name of the graphics adapter, may be empty */
+  adapter: ReadonlySignal<string>;
+  notice: ReadonlySignal<Notice | null>;
+  /** of the mesh drawn; null while there is none */
+  mesh: ReadonlySignal<MeshAnswer | null>;
+  hover: ReadonlySignal<Hover | null>;
+  /** the place that was pointed out last; null once it no longer applies */
+  spot: ReadonlySignal<Place | null>;
+  legend: ReadonlySignal<Legend | null>;
+  /** increases whenever the particles, their fates or their figures change */
+  revision: ReadonlySignal<number>;
+  /** the particles, read-only */
+  columns: Columns;
+  /** null while nothing is being revealed */
+  reveal: ReadonlySignal<Reveal | null>;
+  /** whether a run is active and can be stopped */
+  busy: ReadonlySignal<boolean>;
+  /** whether the picture shows a run that was stopped or capped */
+  partial: ReadonlySignal<boolean>;
+  /** whether the last run found no surface */
+  empty: ReadonlySignal<boolean>;
+  lastDrag: ReadonlySignal<LastDrag | null>;
+  /** increases with every picture drawn, after which places may have moved in it */
+  frame: ReadonlySignal<number>;
+  /** the effective theme, after `auto` is resolved */
+  theme: ReadonlySignal<'light' | 'dark'>;
+  /** the model or file that is loading */
+  loading: ReadonlySignal<Loading | null>;
+  /** null once another surface is chosen; a notice `file` has the same message */
+  loadingError: ReadonlySignal<LoadingError | null>;
+  /** of the surface shown; null for a formula */
+  model: ReadonlySignal<ModelInfo | null>;
+}
+export interface EngineCommands {
+  /** a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last */
+  setSurface: (id: string) => void;
+  /** samples the points of a file; resolves once it is sampled, refused or cancelled */
+  openFile: (file: File) => Promise<void>;
+  /** fits another number of the points of the present model or file */
+  setCentres: (count: number) => void;
+  /** cancels the model or file that is loading */
+  cancelLoading: () => void;
+  /** `unfinished`: the text is sampled only after a pause, or with the next change */
+  setFormula: (text: string, options?: { unfinished?: boolean }) => void;
+  /** `live` during a drag; call once more without it at the end */
+  setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
+  /** restores the value of the gallery or of the declaration */
+  resetParameter: (name: string) => void;
+  /** declares an unknown name of the formula as a parameter */
+  declareParameter: (name: string) => void;
+  setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
+  /** the normal may have any length but 0 */
+  setPlane: (plane: CuttingPlane | null) => void;
+  /** takes the box of the gallery surface back, or fits it to the formula */
+  fitBox: () => void;
+  setSetting: (name: string, value: number | string, options?: { live?: boolean }) => void;
+  resetSetting: (name: string) => void;
+  /** restores an earlier state, without the view */
+  restore: (shape: Shape) => void;
+  /** samples from the start; does nothing during a run of the same input */
+  run: () => void;
+  /** stops the run and keeps the partial result */
+  stop: () => void;
+  /** starts a run without relaxation */
+  generateOnly: () => void;
+  /** relaxes the present particles by that many steps */
+  relax: (steps: number) => void;
+  setView: (patch: Partial<ViewState>) => void;
+  fit: () => void;
+  /** marks a place, or none, and brings it before the camera unless `turns` is false */
+  pointOut: (place: Place | null, options?: { turns?: boolean }) => void;
+  /** draws only so many particles, the first ones; null for all */
+  showFirst: (count: number | null) => void;
+  /** turns the camera to a side of the surface, unless that side is seen already */
+  turnTo: (normal: Vec3) => void;
+  /** no particle is chosen any more, even if it was pressed */
+  dismissHover: () => void;
+  /** > 1 zooms in */
+  zoom: (factor: number) => void;
+  orbit: (dxRad: number, dyRad: number) => void;
+  /** pixels of the canvas host covered by panels; the surface is centred in the rest */
+  setInsets: (insets: { left: number; right: number; top: number; bottom: number }) => void;
+  /** the state as the fragment of an address, with `#`; empty for the default state. Not before the core has loaded */
+  link: () => Promise<string>;
+  /**
+   * adopts the state of such a fragment with what `patch` changes; `initial`: what cannot be read is the default state
+   */
+  openLink: (link: string, options?: { initial?: boolean; patch?: object }) => Promise<void>;
+  /** changes a part of the state and samples; returns what of it was not valid, in words */
+  set: (patch: Record<string, unknown>) => string[];
+  /** without panels; the surface fills its shorter side as it fills that of the window */
+  picture: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<ImageData>;
+  savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
+  exportFile: (format: 'ply' | 'csv') => Promise<Blob>;
+  /** once no run is left */
+  exportMesh: (format: MeshFormat) => Promise<Blob>;
+  dismissNotice: () => void;
+  /** returns the index of the particle under a point of the canvas host */
+  pick: (x: number, y: number) => number | null;
+  /** returns where a place is in the picture; null behind the eye */
+  project: (place: ArrayLike<number>) => Spot | null;
+  /** returns the ray from the eye through a point of the canvas host */
+  rayThrough: (x: number, y: number) => Ray;
+  /** the paper's algorithms, event by event; its worker and its bundle are loaded with the first run */
+  openLesson: (
+    options?: ConstructorParameters<typeof import('./lesson/client.js').LessonClient>[0],
+  ) => Promise<import('./lesson/client.js').LessonClient>;
+  /** returns the present surface for such a run */
+  lessonSurface: () => Surface | null;
+  /** frees all that the engine holds: its workers, its device and its canvas */
+  destroy: () => void;
+}
+/** File formats for a mesh. */
+export type MeshFormat = 'glb' | 'obj' | 'stl' | 'ply';
+/** What tests need of an engine. */
+export interface EngineDebug {
+  /** traps the core in its worker, overflows the worker's stack, or sends it into an endless loop */
+  provoke: (fault: 'panic' | 'overflow' | 'hang') => void;
+  loseDevice: (reason?: string) => void;
+  /** delivers a message of another run */
+  stale: (id: number) => void;
+  /** resolves once the picture stands still and the state has the camera */
+  still: () => Promise<void>;
+  /** whether no sampler is there or coming */
+  isOff: () => boolean;
+  counts: () => { frames: number; uploads: number; opened: number; restarts: number; stale: number; dimmed: boolean };
+}
+export type Engine = EngineSignals & EngineCommands & { debug: EngineDebug };
