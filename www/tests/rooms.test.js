@@ -7,7 +7,7 @@ import { expect, test } from 'vitest';
 const SRC = fileURLToPath(new URL('../src', import.meta.url));
 
 /** What a panel may know of the engine; it is handed the engine itself. */
-const ENGINE_FACE = ['engine/types', 'engine/constants', 'engine/columns', 'engine/share/base64url'];
+const ENGINE_FACE = ['engine/types', 'engine/constants', 'engine/vector', 'engine/columns', 'engine/share/base64url'];
 
 /**
  * Who may use whom, by path below src/. The longest entry that fits a file counts; every file may use its own room. What is not
@@ -20,10 +20,11 @@ const MAY_USE = {
   // The words that everything shares.
   'engine/core-types': [],
   'engine/constants': [],
+  'engine/vector': ['engine/types'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
   'engine/columns': ['engine/types'],
   'engine/store': ['engine/types', 'engine/share'],
-  'engine/view': ['engine/types', 'engine/columns'],
+  'engine/view': ['engine/types', 'engine/columns', 'engine/vector'],
   // The state holds the camera's.
   'engine/share': ['engine/types', 'engine/constants', 'engine/columns', 'engine/view'],
   // What the workers need to bring in a bundle and to keep its pace.

@@ -1,16 +1,11 @@
 /** Places in a plane through a particle, in radii. */
+import { dot } from '../engine/vector.js';
 
 /** @typedef {[number, number]} Point */
 /**
  * Two perpendicular unit vectors at a particle, and its radius.
  * @typedef {{ centre: ArrayLike<number>, right: ArrayLike<number>, up: ArrayLike<number>, radius: number }} Plane
  */
-
-/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
-export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-
-/** Distance of two places. @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
-export const between = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 /**
  * Returns where a place is in the plane, projected along its normal, in radii.

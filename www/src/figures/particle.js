@@ -2,7 +2,8 @@
  * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
  */
 import { NO_PARENT } from '../engine/columns.js';
-import { between, inPlane, lensOf } from './geometry.js';
+import { distance, unit } from '../engine/vector.js';
+import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
 /**
@@ -45,12 +46,6 @@ const SECTION_HALF = 3.2;
 const SECTION_CELLS = 64;
 const LENS_CELLS = 24;
 
-/** @param {readonly number[]} v @returns {Vec3} */
-const unit = (v) => {
-  const length = Math.hypot(...v) || 1;
-  return [v[0] / length, v[1] / length, v[2] / length];
-};
-
 /** @param {Float32Array} column @param {number} i */
 export const triple = (column, i) => /** @type {Vec3} */ ([...column.subarray(3 * i, 3 * i + 3)]);
 
@@ -90,7 +85,7 @@ export async function openParticle(client, { end, radius }, particle) {
 async function profile(client, { place, normal, radius }, { start, iterates, landed, pushes }) {
   if (!start) return null;
   const direction = pushes.length > 0 ? unit(start.place.map((v, k) => v - place[k])) : start.direction;
-  const reach = pushes.length > 0 ? between(start.place, place) : 2 * radius;
+  const reach = pushes.length > 0 ? distance(start.place, place) : 2 * radius;
   const plane = { right: direction, up: normal };
   const [section, newton] = await Promise.all([
     client.ask('section', { ...plane, centre: place, half: SECTION_HALF * radius, cells: SECTION_CELLS }),
@@ -115,7 +110,7 @@ async function profile(client, { place, normal, radius }, { start, iterates, lan
     reach,
     section,
     newton,
-    newtonDistance: last && lands ? between(last.position, place) : null,
+    newtonDistance: last && lands ? distance(last.position, place) : null,
     lens,
   };
 }

@@ -1,4 +1,5 @@
 /** A relaxation step of one particle (paper §4.5): who pushes it, the sum of that, the move, and where it lands. */
+import { size } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { inRadii } from './words.js';
 
@@ -22,9 +23,6 @@ import { inRadii } from './words.js';
  * @property {(LessonPush & { at: Vec3, radius: number })[]} pushes
  * @property {Extract<LessonEvent, {type: 'moved'}>} moved
  */
-
-/** @param {ArrayLike<number>} v */
-const size = (v) => Math.hypot(v[0], v[1], v[2]);
 
 /** @param {Float32Array} column @param {number} i @returns {Vec3} */
 const triple = (column, i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]];

@@ -1,4 +1,5 @@
 /** Computes directions, extents and sections in the space of the surface, for controls and for marks on the picture. */
+import { along, cross, distance, dot } from '../engine/vector.js';
 
 /**
  * @import { Columns } from '../engine/columns.js'
@@ -7,12 +8,6 @@
 
 export const AXES = /** @type {const} */ (['x', 'y', 'z']);
 
-/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
-export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
-/** Returns p + t q. @param {ArrayLike<number>} p @param {ArrayLike<number>} q @param {number} t @returns {Vec3} */
-export const along = (p, q, t) => [p[0] + t * q[0], p[1] + t * q[1], p[2] + t * q[2]];
-/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
-export const distance = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 /** Returns the unit vector along an axis. @param {number} axis @param {number} [sign] @returns {Vec3} */
 export const axisVector = (axis, sign = 1) => /** @type {Vec3} */ ([0, 1, 2].map((k) => (k === axis ? sign : 0)));
 
@@ -116,9 +111,6 @@ export function sectionOf(bounds, { normal, offset }) {
   };
   return points.sort((p, q) => angle(p) - angle(q));
 }
-
-/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q @returns {Vec3} */
-const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
 
 /** Returns a unit vector across a unit vector. @param {ArrayLike<number>} n @returns {Vec3} */
 function across(n) {

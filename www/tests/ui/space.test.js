@@ -1,12 +1,10 @@
 import { describe, expect, test } from 'vitest';
+import { along, distance, dot } from '../../src/engine/vector.js';
 import {
-  along,
   anglesOf,
   axisOf,
   directionOf,
   directionOnSphere,
-  distance,
-  dot,
   extentOf,
   niceStep,
   placeAlong,

@@ -7,6 +7,7 @@
  *
  * @module
  */
+import { dot } from '../vector.js';
 
 /** @import { Bounds, CameraState, Spot, Vec3 } from '../types.js' */
 
@@ -122,9 +123,6 @@ function fair(a, b, side) {
   const scale = Math.min(1, ((1 - LEAST_FREE) * side) / (p + q || 1));
   return [p * scale, q * scale];
 }
-
-/** @param {readonly number[]} p @param {readonly number[]} q */
-export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 
 /**
  * Returns the unit direction of the ray through a pixel.

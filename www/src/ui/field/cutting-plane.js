@@ -1,22 +1,12 @@
 /** The controls of the cutting plane: its direction, its position, and which side it hides. */
 import { computed, effect, signal } from '@preact/signals-core';
+import { along, dot } from '../../engine/vector.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatSignificant } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
-import {
-  AXES,
-  along,
-  anglesOf,
-  axisOf,
-  axisVector,
-  centreOf,
-  directionOf,
-  dot,
-  extentOf,
-  towardEye,
-} from '../space.js';
+import { AXES, anglesOf, axisOf, axisVector, centreOf, directionOf, extentOf, towardEye } from '../space.js';
 
 /**
  * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'

@@ -2,7 +2,8 @@
  * Draws the children of the particle that is followed in the picture, and the circle on which the one at hand is looked
  * for.
  */
-import { dot, tangentsOf } from '../../figures/geometry.js';
+import { dot } from '../../engine/vector.js';
+import { tangentsOf } from '../../figures/geometry.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'

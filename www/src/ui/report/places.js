@@ -1,6 +1,7 @@
 /** Finds the places in the picture that a figure of the report is about: crowded pairs and wide holes. */
+
+import { distance } from '../../engine/vector.js';
 import { formatFixed } from '../format.js';
-import { distance } from '../space.js';
 import { valueAt } from './rows.js';
 
 /**

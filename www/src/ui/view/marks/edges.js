@@ -1,5 +1,6 @@
 /** Chooses edges of the clip box on the outline of its picture, where figures do not cover the surface. */
-import { axisVector, centreOf, cornerOf, dot } from '../../space.js';
+import { dot } from '../../../engine/vector.js';
+import { axisVector, centreOf, cornerOf } from '../../space.js';
 
 /**
  * @import { Bounds, Engine } from '../../../engine/types.js'

@@ -1,8 +1,9 @@
 /** Marks of the cutting plane: its outline in the clip box, a knob that moves it and one that turns it. */
 import { effect } from '@preact/signals-core';
+import { along, dot } from '../../../engine/vector.js';
 import { formatSignificant } from '../../format.js';
 import { clamp } from '../../scale.js';
-import { along, centreOf, directionOnSphere, dot, extentOf, placeAlong, sectionOf } from '../../space.js';
+import { centreOf, directionOnSphere, extentOf, placeAlong, sectionOf } from '../../space.js';
 import { boxOf } from './box.js';
 import { createHandle } from './handle.js';
 

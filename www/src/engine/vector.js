@@ -1,0 +1,19 @@
+/** Vectors of three numbers. */
+
+/** @import { Vec3 } from './types.js' */
+
+/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
+export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q @returns {Vec3} */
+export const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+/** Returns p + t q. @param {ArrayLike<number>} p @param {ArrayLike<number>} q @param {number} t @returns {Vec3} */
+export const along = (p, q, t) => [p[0] + t * q[0], p[1] + t * q[1], p[2] + t * q[2]];
+/** @param {ArrayLike<number>} v */
+export const size = (v) => Math.hypot(v[0], v[1], v[2]);
+/** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
+export const distance = (p, q) => size(along(p, q, -1));
+/** Returns the vector with length 1; 0 stays 0. @param {ArrayLike<number>} v @returns {Vec3} */
+export function unit(v) {
+  const length = size(v) || 1;
+  return [v[0] / length, v[1] / length, v[2] / length];
+}
