@@ -1,5 +1,6 @@
 /** Controls and small charts that several figures have. */
 
+import { signal } from '@preact/signals-core';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 import { s } from '../ui/svg.js';
@@ -13,8 +14,11 @@ export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
   const input = h('input', { type: 'range', class: 'slider', id, min: 0, max, step: 1, value });
   const output = h('output', { class: 'range-value', for: id });
+  /** Where it stands. */
+  const place = signal(value);
   const tell = () => {
     const at = Number(input.value);
+    place.value = at;
     output.textContent = say(at);
     input.setAttribute('aria-valuetext', say(at));
     input.style.setProperty('--place', String(max > 0 ? at / max : 0));
@@ -27,6 +31,7 @@ export function createRange({ name, max, value = 0, say, change }) {
   return {
     element: h('div', { class: 'range-row' }, h('label', { for: id }, name), input, output),
     input,
+    place,
     get: () => Number(input.value),
     /** @param {number} to */
     set(to) {

@@ -173,13 +173,8 @@ export class Picture {
     painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
     const view = this.view();
     painter.set_view(view.packed);
-    if (painter.image.width !== w || painter.image.height !== high) {
-      painter.image = new ImageData(w, high);
-      painter.depth = new Float32Array(w * high);
-    }
     // The ground is left out, so that the picture stands on that of the page or of the paper.
-    painter.paint(painter.image, painter.depth, true, 0);
-    painter.context.putImageData(painter.image, 0, 0);
+    painter.draw(0, true);
     this.drawMarks(painter.context, scene.marks ?? [], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }

@@ -213,14 +213,14 @@ export class Painter {
     this.style = { ...this.style, ...JSON.parse(json) };
   }
 
-  /** @param {number} timeS */
-  draw(timeS) {
+  /** @param {number} timeS @param {boolean} [transparent]  leaves the ground out */
+  draw(timeS, transparent = false) {
     if (this.width === 0 || this.height === 0) return 'skipped';
     if (this.image.width !== this.width || this.image.height !== this.height) {
       this.image = new ImageData(this.width, this.height);
       this.depth = new Float32Array(this.width * this.height);
     }
-    this.paint(this.image, this.depth, false, timeS);
+    this.paint(this.image, this.depth, transparent, timeS);
     this.context.putImageData(this.image, 0, 0);
     return 'drawn';
   }

@@ -84,25 +84,17 @@ export async function rings(context) {
   effect(() => {
     chart.hidden = !context.stops.isOpen('predict-ring');
   });
-  const tell = () => {
-    const level = range.get();
+  effect(() => {
+    const level = range.place.value;
     bars.mark(level);
     const flat = level === 0 ? '' : ` On a plane: ${formatCount(6 * level)}.`;
     words.textContent = `Level ${formatCount(level)}: ${plural(sizes[level] ?? 0, 'new particle')}.${flat}`;
-  };
-  range.input.addEventListener('input', tell);
-  range.input.addEventListener('change', tell);
-  const { set } = range;
-  range.set = (to) => {
-    set(to);
-    tell();
-  };
+  });
   bars.element.addEventListener('click', (event) => {
     const { clientX } = /** @type {MouseEvent} */ (event);
     const box = bars.element.getBoundingClientRect();
     const at = Math.floor(((clientX - box.left) / box.width) * sizes.length);
     range.set(Math.min(sizes.length - 1, Math.max(0, at)));
   });
-  tell();
   return [picture.element, h('div', { class: 'controls' }, play.element, range.element), chart];
 }
