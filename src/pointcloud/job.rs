@@ -3,7 +3,7 @@
 use super::fit::{Fit, FitError, Fitter};
 use super::models;
 use super::normals::Estimator;
-use super::read::{Mesh, ReadError, Reader};
+use super::read::{FileMesh, ReadError, Reader};
 use super::thin::{Merger, Spreader, Thinner, check_spread, corners};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::model;
@@ -130,7 +130,7 @@ fn names() -> String {
 
 /// A file or a built-in model on its way to a field.
 pub struct Job {
-    work: Work,
+    state: State,
     info: ModelInfo,
     /// Number of centres to choose.
     wanted: u32,
@@ -141,9 +141,9 @@ pub struct Job {
 }
 
 /// State of the current stage.
-enum Work {
+enum State {
     Reading(Box<Reader>),
-    Facing(Mesh),
+    Facing(FileMesh),
     Merging(Merger),
     Thinning(Thinner),
     Estimating(Cloud, Box<Estimator>),
@@ -167,7 +167,7 @@ impl Job {
         let reader = Box::new(Reader::new(name, bytes)?);
         let info = ModelInfo { name: name.to_owned(), ..ModelInfo::default() };
         Ok(Self {
-            work: Work::Reading(reader),
+            state: State::Reading(reader),
             info,
             wanted: centres,
             given: Vec::new(),
@@ -189,15 +189,15 @@ impl Job {
         let model = model::find(id).ok_or_else(unknown)?;
         let cloud = models::cloud(id).ok_or_else(unknown)?;
         let mut job = Self {
-            work: Work::Failed(unknown()),
+            state: State::Failed(unknown()),
             info: models::info(model),
             wanted: centres,
             given: cloud.position.clone(),
             centres: Vec::new(),
         };
-        job.work = if centres as usize >= cloud.len() {
+        job.state = if centres as usize >= cloud.len() {
             job.centres.clone_from(&cloud.position);
-            Work::Solving(Box::new(models::begin(model)))
+            State::Solving(Box::new(models::begin(model)))
         } else {
             job.spread(cloud)
         };
@@ -209,28 +209,28 @@ impl Job {
     pub fn progress(&self) -> Progress {
         // Begin and length of the stage as shares of the whole time, for a file of some megabytes. A smaller one is
         // done at once.
-        let (stage, label, begins, length, share) = match &self.work {
-            Work::Reading(reader) => (JobStage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
-            Work::Facing(mesh) => {
+        let (stage, label, begins, length, share) = match &self.state {
+            State::Reading(reader) => (JobStage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
+            State::Facing(mesh) => {
                 (JobStage::Normals, "Finding normals from the faces", 0.4, 0.05, mesh.fraction_summed())
             }
-            Work::Merging(merger) => {
+            State::Merging(merger) => {
                 (JobStage::Thinning, "Joining equal points", 0.45, 0.15, merger.fraction())
             }
             // The number of grids that thinning will take is not known.
-            Work::Thinning(_) => (JobStage::Thinning, "Thinning out", 0.6, 0.05, 0.0),
-            Work::Estimating(_, estimator) => {
+            State::Thinning(_) => (JobStage::Thinning, "Thinning out", 0.6, 0.05, 0.0),
+            State::Estimating(_, estimator) => {
                 (JobStage::Normals, "Estimating normals", 0.65, 0.1, estimator.fraction())
             }
-            Work::Spreading(_, spreader) => {
+            State::Spreading(_, spreader) => {
                 (JobStage::Thinning, "Choosing centres", 0.75, 0.05, spreader.fraction())
             }
-            Work::Solving(fitter) => {
+            State::Solving(fitter) => {
                 (JobStage::Solving, "Solving for the surface", 0.8, 0.2, fitter.fraction())
             }
-            Work::Done(_) | Work::Failed(_) => (JobStage::Done, "Done", 1.0, 0.0, 0.0),
+            State::Done(_) | State::Failed(_) => (JobStage::Done, "Done", 1.0, 0.0, 0.0),
         };
-        let done = matches!(self.work, Work::Done(_));
+        let done = matches!(self.state, State::Done(_));
         Progress { stage, label, fraction: begins + share * length, done }
     }
 
@@ -244,15 +244,15 @@ impl Job {
     /// What is wrong with the file, the points or the system. Every later call returns the same error.
     pub fn step(&mut self, budget: u32) -> Result<Progress, JobError> {
         for _ in 0..budget {
-            let work = match &self.work {
-                Work::Done(_) => break,
-                Work::Failed(error) => return Err(error.clone()),
-                _ => core::mem::replace(&mut self.work, Work::Failed(CloudError::Memory.into())),
+            let state = match &self.state {
+                State::Done(_) => break,
+                State::Failed(error) => return Err(error.clone()),
+                _ => core::mem::replace(&mut self.state, State::Failed(CloudError::Memory.into())),
             };
-            self.work = self.advance(work).unwrap_or_else(Work::Failed);
+            self.state = self.advance(state).unwrap_or_else(State::Failed);
         }
-        match &self.work {
-            Work::Failed(error) => Err(error.clone()),
+        match &self.state {
+            State::Failed(error) => Err(error.clone()),
             _ => Ok(self.progress()),
         }
     }
@@ -260,8 +260,8 @@ impl Job {
     /// The field, once it is complete.
     #[must_use]
     pub fn fit(&self) -> Option<&Fit> {
-        match &self.work {
-            Work::Done(fit) => Some(fit),
+        match &self.state {
+            State::Done(fit) => Some(fit),
             _ => None,
         }
     }
@@ -273,84 +273,84 @@ impl Job {
     }
 
     /// Does one unit of work and returns the next state.
-    fn advance(&mut self, work: Work) -> Result<Work, JobError> {
-        Ok(match work {
-            Work::Reading(mut reader) => {
+    fn advance(&mut self, state: State) -> Result<State, JobError> {
+        Ok(match state {
+            State::Reading(mut reader) => {
                 if reader.step(ROWS)? {
                     let mesh = reader.into_mesh();
                     self.info.points = mesh.position.len() as u32;
-                    Work::Facing(mesh)
+                    State::Facing(mesh)
                 } else {
-                    Work::Reading(reader)
+                    State::Reading(reader)
                 }
             }
-            Work::Facing(mut mesh) => {
+            State::Facing(mut mesh) => {
                 if mesh.sum_areas(FACES)? {
                     let (cloud, warnings) = mesh.into_cloud();
                     self.info.warnings = warnings;
                     self.info.normals = cloud.source;
-                    Work::Merging(Merger::new(cloud))
+                    State::Merging(Merger::new(cloud))
                 } else {
-                    Work::Facing(mesh)
+                    State::Facing(mesh)
                 }
             }
-            Work::Merging(mut merger) => {
+            State::Merging(mut merger) => {
                 if merger.step(POINTS)? {
                     let (mut cloud, _) = merger.finish();
                     check_spread(&cloud.position)?;
                     self.bring_near(&mut cloud.position);
                     self.given.clone_from(&cloud.position);
-                    Work::Thinning(Thinner::new(cloud))
+                    State::Thinning(Thinner::new(cloud))
                 } else {
-                    Work::Merging(merger)
+                    State::Merging(merger)
                 }
             }
-            Work::Thinning(mut thinner) => {
+            State::Thinning(mut thinner) => {
                 if !thinner.step(POINTS)? {
-                    return Ok(Work::Thinning(thinner));
+                    return Ok(State::Thinning(thinner));
                 }
                 let cloud = thinner.finish();
                 if cloud.normal.is_empty() {
                     let estimator = Estimator::new(&cloud.position);
-                    Work::Estimating(cloud, Box::new(estimator))
+                    State::Estimating(cloud, Box::new(estimator))
                 } else {
                     self.spread(cloud)
                 }
             }
-            Work::Estimating(mut cloud, mut estimator) => {
+            State::Estimating(mut cloud, mut estimator) => {
                 if estimator.step(PLANES) {
                     self.info.warnings.extend(estimator.finish(&mut cloud)?);
                     self.spread(cloud)
                 } else {
-                    Work::Estimating(cloud, estimator)
+                    State::Estimating(cloud, estimator)
                 }
             }
-            Work::Spreading(cloud, mut spreader) => {
+            State::Spreading(cloud, mut spreader) => {
                 if spreader.step(&cloud.position) {
                     let chosen = cloud.only(spreader.chosen());
                     self.centres.clone_from(&chosen.position);
                     let given = core::mem::take(&mut self.given);
                     let fitter = Fitter::new(&chosen, given, self.info.clone())?;
-                    Work::Solving(Box::new(fitter))
+                    State::Solving(Box::new(fitter))
                 } else {
-                    Work::Spreading(cloud, spreader)
+                    State::Spreading(cloud, spreader)
                 }
             }
-            Work::Solving(mut fitter) => match fitter.step(1)? {
+            State::Solving(mut fitter) => match fitter.step(1)? {
                 Some(mut fit) => {
                     // The fit counts only distinct points.
                     fit.info.points = self.info.points.max(fit.info.points);
-                    Work::Done(Box::new(fit))
+                    State::Done(Box::new(fit))
                 }
-                None => Work::Solving(fitter),
+                None => State::Solving(fitter),
             },
-            over @ (Work::Done(_) | Work::Failed(_)) => over,
+            over @ (State::Done(_) | State::Failed(_)) => over,
         })
     }
 
-    fn spread(&self, cloud: Cloud) -> Work {
+    fn spread(&self, cloud: Cloud) -> State {
         let spreader = Spreader::new(&cloud.position, self.wanted as usize);
-        Work::Spreading(cloud, spreader)
+        State::Spreading(cloud, spreader)
     }
 
     /// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.

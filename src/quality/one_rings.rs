@@ -6,8 +6,7 @@ use super::sheets::Sheets;
 use crate::field::Field;
 use crate::math::{LANES, key, tangent_frame, unkey};
 use crate::slices::pause;
-use crate::spatial::tree::Tree;
-use core::ops::Range;
+use crate::spatial::tree::{Leaf, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Numbers of nearest points that are tried in turn while a cell is not proven complete. The first try takes the points
@@ -61,12 +60,12 @@ impl OneRings {
         rings
     }
 
-    /// Appends the one-rings of the points of a leaf, given by its range and its box.
+    /// Appends the one-rings of the points of a leaf.
     fn add_leaf(
         &mut self,
         sheets: &Sheets,
         field: &mut dyn Field,
-        (range, lo, hi): (Range<usize>, Vec3, Vec3),
+        Leaf { range, lo, hi }: Leaf,
         Scratch { cell, nearby, keys }: &mut Scratch,
     ) {
         let Sheets { tree, normal, .. } = *sheets;

@@ -62,6 +62,13 @@ pub struct Neighbour {
     pub offset: Vec3,
 }
 
+/// What a query looks for: points within a radius of a centre.
+#[derive(Clone, Copy)]
+struct Ball {
+    centre: Vec3,
+    radius: f32,
+}
+
 /// Points that a query has found, by their handles.
 struct Hits {
     len: usize,
@@ -212,7 +219,8 @@ impl CellGrid {
         self.gather_more(centre, radius, found);
     }
 
-    /// Does what [`CellGrid::gather`] does, but appends to `found`.
+    /// Appends to `found` all points within `radius` of `centre`, the boundary included. Their order depends only on the history of
+    /// insertions.
     pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let mut hits = Hits { len: 0, places: [0; 8 * LANES] };
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
@@ -228,7 +236,7 @@ impl CellGrid {
                     while cells != 0 {
                         let cell = cells.trailing_zeros() as usize & 7;
                         cells &= cells - 1;
-                        self.gather_cell(brick.head[cell], (centre, radius), &mut hits, found);
+                        self.gather_cell(brick.head[cell], Ball { centre, radius }, &mut hits, found);
                     }
                 }
             }
@@ -239,8 +247,13 @@ impl CellGrid {
     /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found` whenever it is
     /// full.
     #[inline]
-    fn gather_cell(&self, head: u32, ball: (Vec3, f32), hits: &mut Hits, found: &mut Vec<Neighbour>) {
-        let (centre, radius) = ball;
+    fn gather_cell(
+        &self,
+        head: u32,
+        Ball { centre, radius }: Ball,
+        hits: &mut Hits,
+        found: &mut Vec<Neighbour>,
+    ) {
         let radius_sq = Vec4::splat(radius * radius);
         let mut next = head;
         while next != NONE {

@@ -31,6 +31,17 @@ impl Node {
     }
 }
 
+/// A few points that are near one another.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    /// The points, in tree order.
+    pub(crate) range: core::ops::Range<usize>,
+    /// Smallest corner of their box.
+    pub(crate) lo: Vec3,
+    /// Largest corner of their box.
+    pub(crate) hi: Vec3,
+}
+
 /// Points in tree order: the points of a leaf are contiguous, and leaves near one another are near in memory.
 #[derive(Debug)]
 pub(crate) struct Tree {
@@ -47,7 +58,7 @@ impl Tree {
         Self::of(points.iter().copied().zip(0..).collect())
     }
 
-    /// [`Tree::in_slices`], at once.
+    /// Makes the tree over points with their indices. The points must be finite.
     pub(crate) fn of(items: Vec<(Vec3, u32)>) -> Self {
         slices::complete(Self::in_slices(items))
     }
@@ -89,12 +100,10 @@ impl Tree {
         self.position.len()
     }
 
-    /// Returns all leaves in order, each as its range of points and its box.
-    pub(crate) fn leaves(&self) -> impl Iterator<Item = (core::ops::Range<usize>, Vec3, Vec3)> {
-        self.nodes
-            .iter()
-            .filter(|node| node.second == 0)
-            .map(|node| (node.first as usize..node.end as usize, node.lo, node.hi))
+    /// Returns all leaves in order.
+    pub(crate) fn leaves(&self) -> impl Iterator<Item = Leaf> {
+        let leaves = self.nodes.iter().filter(|node| node.second == 0);
+        leaves.map(|node| Leaf { range: node.first as usize..node.end as usize, lo: node.lo, hi: node.hi })
     }
 
     /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq` around `p`, nearer
@@ -143,7 +152,8 @@ impl Tree {
         best
     }
 
-    /// Returns the squared distance of [`Tree::nearest`].
+    /// Returns the squared distance from `p` to the nearest point other than `except`, if it is below `bound_sq`; otherwise
+    /// `bound_sq`.
     pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
         self.nearest(p, except, bound_sq).0
     }

@@ -3,14 +3,14 @@
 use glam::{DVec3, Vec3};
 use marching_particles::export;
 use marching_particles::particles::{Particles, Slots};
-use marching_particles::pointcloud::read::{Format, MAX_BYTES, Mesh, ReadError, Reader, check_size};
+use marching_particles::pointcloud::read::{FileMesh, Format, MAX_BYTES, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
 use marching_particles::quality;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
 /// Reads a file in steps of `rows` rows.
-fn read_by(rows: u32, name: &str, bytes: &[u8]) -> Result<(Format, Mesh), ReadError> {
+fn read_by(rows: u32, name: &str, bytes: &[u8]) -> Result<(Format, FileMesh), ReadError> {
     let mut reader = Reader::new(name, bytes.to_vec())?;
     let mut before = 0.0;
     while !reader.step(rows)? {
@@ -21,7 +21,7 @@ fn read_by(rows: u32, name: &str, bytes: &[u8]) -> Result<(Format, Mesh), ReadEr
     Ok((reader.format(), reader.into_mesh()))
 }
 
-fn read(name: &str, bytes: impl AsRef<[u8]>) -> (Format, Mesh) {
+fn read(name: &str, bytes: impl AsRef<[u8]>) -> (Format, FileMesh) {
     let result = read_by(3, name, bytes.as_ref());
     result.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
@@ -34,7 +34,7 @@ fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
 }
 
 /// Makes a cloud of what was read from damaged bytes.
-fn made((_, mut mesh): (Format, Mesh)) {
+fn made((_, mut mesh): (Format, FileMesh)) {
     while !mesh.sum_areas(3).expect("memory enough") {}
     let (cloud, _) = mesh.into_cloud();
     assert!(cloud.position.iter().all(|p| p.is_finite()));

@@ -7,7 +7,7 @@
 use super::ball::{Ball, Surroundings};
 use crate::math::sort_few;
 use crate::slices::pause;
-use crate::spatial::tree::Tree;
+use crate::spatial::tree::{Leaf, Tree};
 use core::ops::Range;
 use glam::Vec3;
 
@@ -71,7 +71,7 @@ impl Stars {
         stars.start.push(0);
         let mut scratch = Box::<Scratch>::default();
         let mut pause_at = SLICE;
-        for (range, lo, hi) in tree.leaves() {
+        for Leaf { range, lo, hi } in tree.leaves() {
             if range.start >= pause_at {
                 pause_at = range.start + SLICE;
                 pause().await;

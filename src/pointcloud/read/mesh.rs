@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// Points and faces as they are in a file.
 #[derive(Clone, Debug, Default)]
-pub struct Mesh {
+pub struct FileMesh {
     /// Positions, all finite.
     pub position: Vec<DVec3>,
     /// Normals as they are in the file, of any length: one for each position, or none at all.
@@ -23,7 +23,7 @@ pub struct Mesh {
     summed: usize,
 }
 
-impl Mesh {
+impl FileMesh {
     /// Appends a face. One with fewer than three corners has no area and is dropped.
     pub(super) fn add_polygon(&mut self, corners: &[u32]) -> Result<(), ReadError> {
         if corners.len() < 3 {

@@ -14,7 +14,7 @@ mod stl;
 mod xyz;
 
 pub use format::Format;
-pub use mesh::Mesh;
+pub use mesh::FileMesh;
 
 use input::Input;
 
@@ -135,15 +135,15 @@ fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
 /// Reader of the rows of one format.
 trait RowReader {
     /// Reads a row into `mesh`. Returns false after the last one.
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError>;
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError>;
 }
 
-/// Reads a file to a [`Mesh`], in slices of bounded work.
+/// Reads a file to a [`FileMesh`], in slices of bounded work.
 pub struct Reader {
     format: Format,
     input: Input,
     rows: Box<dyn RowReader>,
-    mesh: Mesh,
+    mesh: FileMesh,
     done: bool,
 }
 
@@ -158,7 +158,7 @@ impl Reader {
         check_size(bytes.len() as u64)?;
         let format = format::sniff(name, &bytes)?;
         let mut input = Input::new(bytes);
-        let mut mesh = Mesh::default();
+        let mut mesh = FileMesh::default();
         let rows: Box<dyn RowReader> = match format {
             Format::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
             Format::Obj => Box::new(obj::Obj::default()),
@@ -206,7 +206,7 @@ impl Reader {
 
     /// Points and faces that were read.
     #[must_use]
-    pub fn into_mesh(self) -> Mesh {
+    pub fn into_mesh(self) -> FileMesh {
         self.mesh
     }
 }

@@ -2,7 +2,7 @@
 //! all others.
 
 use super::input::{Input, coordinate_word, quoted, words};
-use super::mesh::Mesh;
+use super::mesh::FileMesh;
 use super::{ReadError, RowReader, push};
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub(super) struct Obj {
 }
 
 impl RowReader for Obj {
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let Some(range) = input.line() else {
             self.finish(mesh);
             return Ok(false);
@@ -39,7 +39,7 @@ impl RowReader for Obj {
 }
 
 impl Obj {
-    fn statement(&mut self, line: &[u8], input: &Input, mesh: &mut Mesh) -> Result<(), ReadError> {
+    fn statement(&mut self, line: &[u8], input: &Input, mesh: &mut FileMesh) -> Result<(), ReadError> {
         let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
         let mut words = words(line);
         match words.next() {
@@ -54,7 +54,7 @@ impl Obj {
         &mut self,
         words: impl Iterator<Item = &'a [u8]>,
         input: &Input,
-        mesh: &mut Mesh,
+        mesh: &mut FileMesh,
     ) -> Result<(), ReadError> {
         self.corners.clear();
         self.has_faces = true;
@@ -74,7 +74,7 @@ impl Obj {
         mesh.add_polygon(&self.corners)
     }
 
-    fn finish(&mut self, mesh: &mut Mesh) {
+    fn finish(&mut self, mesh: &mut FileMesh) {
         if self.has_corner_normals {
             mesh.normal.resize(mesh.position.len(), DVec3::ZERO);
         } else if !self.has_faces && self.normals.len() == mesh.position.len() {
@@ -85,7 +85,7 @@ impl Obj {
 }
 
 /// Pads the normals with zeros to the number of positions.
-fn pad_normals(mesh: &mut Mesh) -> Result<(), ReadError> {
+fn pad_normals(mesh: &mut FileMesh) -> Result<(), ReadError> {
     let missing = mesh.position.len() - mesh.normal.len();
     if missing > 0 {
         mesh.normal.try_reserve(missing).map_err(|_| ReadError::Memory)?;

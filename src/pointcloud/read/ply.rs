@@ -1,7 +1,7 @@
 //! Reader of PLY files, with any elements and properties in any order, as text or binary in either byte order.
 
 use super::input::{Input, coordinate, coordinate_word, number, quoted, words};
-use super::mesh::Mesh;
+use super::mesh::FileMesh;
 use super::ply_header::{self, COMPONENTS, Element, Encoding, Role, ScalarType};
 use super::{ReadError, RowReader, push};
 use glam::DVec3;
@@ -17,7 +17,7 @@ pub(super) struct Ply {
 }
 
 impl Ply {
-    pub(super) fn new(input: &mut Input, mesh: &mut Mesh) -> Result<Self, ReadError> {
+    pub(super) fn new(input: &mut Input, mesh: &mut FileMesh) -> Result<Self, ReadError> {
         let (encoding, mut elements) = ply_header::read(input)?;
         // Elements after the last one that is used are not read.
         let end = elements.iter().rposition(Element::is_used).map_or(0, |last| last + 1);
@@ -35,7 +35,7 @@ impl Ply {
 }
 
 impl RowReader for Ply {
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let Some(element) = self.elements.get(self.element) else { return Ok(false) };
         if self.row == element.count || element.properties.is_empty() {
             self.element += 1;

@@ -2,7 +2,7 @@
 
 use super::format::{STL_HEADER, STL_TRIANGLE, stl_size};
 use super::input::{Input, coordinate, coordinate_word, quoted, words};
-use super::mesh::Mesh;
+use super::mesh::FileMesh;
 use super::{ReadError, RowReader};
 use crate::math::IndexTable;
 use crate::pointcloud::thin::find_or_add;
@@ -20,7 +20,7 @@ pub(super) struct Text {
 }
 
 impl RowReader for Text {
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let Some(range) = input.line_with_text() else {
             if self.corners.is_empty() {
                 return Ok(false);
@@ -91,7 +91,7 @@ impl Binary {
 }
 
 impl RowReader for Binary {
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let byte = input.offset() as u64;
         if self.row == self.count {
             return Ok(false);

@@ -1,7 +1,7 @@
 //! Reader of XYZ files, with one point per line, with or without a normal, and of CSV files with a header.
 
 use super::input::{Input, coordinate_word, number, quoted};
-use super::mesh::Mesh;
+use super::mesh::FileMesh;
 use super::{ReadError, RowReader, push};
 use glam::DVec3;
 
@@ -54,7 +54,7 @@ pub(super) struct Xyz {
 
 impl Xyz {
     /// Allocates memory for as many points as there are lines, if there is enough: growing would take twice the memory.
-    pub(super) fn new(input: &Input, mesh: &mut Mesh) -> Self {
+    pub(super) fn new(input: &Input, mesh: &mut FileMesh) -> Self {
         /// Minimum number of bytes of a line with a point.
         const SHORTEST: usize = 6;
         let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.remaining() / SHORTEST + 1));
@@ -62,7 +62,7 @@ impl Xyz {
     }
 
     /// Drops the normals if they are probably colours, which columns without names may be.
-    fn finish(&self, mesh: &mut Mesh) {
+    fn finish(&self, mesh: &mut FileMesh) {
         let named = self.columns.as_ref().is_some_and(|columns| columns.named);
         if !named && (self.unit_normals as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
             mesh.normal = Vec::new();
@@ -101,7 +101,7 @@ fn has_decimal_commas(line: &[u8]) -> bool {
 }
 
 impl RowReader for Xyz {
-    fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
+    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let Some(range) = input.line() else {
             self.finish(mesh);
             return Ok(false);
