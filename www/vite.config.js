@@ -74,10 +74,11 @@ const quickBundles = {
   name: 'quick-bundles',
   apply: 'serve',
   enforce: 'pre',
-  resolveId(id, importer = '', { scan = false } = {}) {
+  resolveId(id, importer = '', options) {
     if (!id.startsWith('.') || !id.includes('/wasm/')) return null;
-    // The scan for packages to bundle ends at a file that is not there.
-    return scan ? { id, external: true } : join(dirname(importer), id.replace('/wasm/', '/wasm/dev/'));
+    // The scan for packages to bundle ends at a file that is not there. Vite's types do not have the option.
+    if (/** @type {{scan?: boolean}} */ (options).scan) return { id, external: true };
+    return join(dirname(importer), id.replace('/wasm/', '/wasm/dev/'));
   },
   async load(id) {
     const [file] = id.split('?');
