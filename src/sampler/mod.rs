@@ -27,7 +27,7 @@ pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
-pub use refine::{Place, Refusal};
+pub use refine::{Refusal, Spot};
 pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
 pub use settings::{
     BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode,

@@ -10,7 +10,7 @@ use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, Components, Next, Refusal, Surface};
+use crate::sampler::refine::{self, Components, Next, Refusal, SurfaceFacts};
 use crate::sampler::relaxation::{Limits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
@@ -352,7 +352,7 @@ impl Sampler {
             Err(Refusal::Full)
         } else {
             let witnesses = self.components.points().iter().map(|seed| seed.position);
-            let surface = Surface {
+            let surface = SurfaceFacts {
                 points: self.survey.position.iter().copied().chain(witnesses).collect(),
                 bounds: self.bounds,
                 sizing: sizing.as_ref(),

@@ -23,7 +23,7 @@ mod edit;
 mod subdivide;
 
 pub use build::BuildError;
-pub use subdivide::{Part, Subdivision};
+pub use subdivide::{Stage, Subdivision};
 
 /// No half-edge, vertex or face.
 pub const NONE: u32 = u32::MAX;

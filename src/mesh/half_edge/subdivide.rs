@@ -4,7 +4,7 @@ use super::{HalfEdges, NONE, next};
 
 /// The stages of a subdivision, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Stage {
     /// Make room for what follows.
     Room,
     /// Number the vertices of the finer surface.
@@ -31,7 +31,7 @@ pub struct Subdivision {
     /// Place of each old face among those that are there.
     rank: Vec<u32>,
     ranked: u32,
-    part: Part,
+    stage: Stage,
     next: u32,
 }
 
@@ -56,46 +56,46 @@ impl Subdivision {
             middle: Vec::with_capacity(slots),
             rank: Vec::with_capacity(slots / 3),
             ranked: 0,
-            part: Part::Room,
+            stage: Stage::Room,
             next: 0,
         }
     }
 
     /// What comes next.
     #[must_use]
-    pub fn part(&self) -> Part {
-        self.part
+    pub fn stage(&self) -> Stage {
+        self.stage
     }
 
     /// Goes on with up to `budget` vertices or faces of `coarse`, and returns what is left of it.
     pub fn step(&mut self, coarse: &HalfEdges, mut budget: u32) -> u32 {
-        while budget > 0 && self.part != Part::Done {
+        while budget > 0 && self.stage != Stage::Done {
             let vertices = coarse.vertex_slots() as u32;
             let faces = (coarse.half_edge_slots() / 3) as u32;
-            let slots = match self.part {
-                Part::Room => vertices.max(faces),
-                Part::Vertices => vertices,
-                Part::Faces | Part::Done => faces,
+            let slots = match self.stage {
+                Stage::Room => vertices.max(faces),
+                Stage::Vertices => vertices,
+                Stage::Faces | Stage::Done => faces,
             };
             let end = slots.min(self.next.saturating_add(budget));
-            if self.part == Part::Room {
+            if self.stage == Stage::Room {
                 self.make_room(coarse, end as usize);
             }
             for at in self.next..end {
-                match self.part {
-                    Part::Vertices => self.number(coarse, at),
-                    Part::Faces => self.write(coarse, at),
-                    Part::Room | Part::Done => {}
+                match self.stage {
+                    Stage::Vertices => self.number(coarse, at),
+                    Stage::Faces => self.write(coarse, at),
+                    Stage::Room | Stage::Done => {}
                 }
             }
             budget -= end - self.next;
             self.next = end;
             if end == slots {
                 self.next = 0;
-                self.part = match self.part {
-                    Part::Room => Part::Vertices,
-                    Part::Vertices => Part::Faces,
-                    Part::Faces | Part::Done => Part::Done,
+                self.stage = match self.stage {
+                    Stage::Room => Stage::Vertices,
+                    Stage::Vertices => Stage::Faces,
+                    Stage::Faces | Stage::Done => Stage::Done,
                 };
             }
         }
@@ -114,14 +114,15 @@ impl Subdivision {
         self.fine.twin.resize(fine, NONE);
     }
 
-    /// The finer surface, and for each of its vertices the two ends of the edge that it halves: twice the same for an old vertex.
+    /// The finer surface, and for each of its vertices the two ends of the edge that it halves; `[v, NONE]` where it is the old
+    /// vertex v.
     ///
     /// # Panics
     ///
     /// If there is something left to do.
     #[must_use]
     pub fn finish(self) -> (HalfEdges, Vec<[u32; 2]>) {
-        assert!(self.part == Part::Done, "the subdivision is not at its end");
+        assert!(self.stage == Stage::Done, "the subdivision is not at its end");
         (self.fine, self.ends)
     }
 
@@ -129,7 +130,7 @@ impl Subdivision {
         if !coarse.has_vertex(v) {
             return;
         }
-        self.kept[v as usize] = self.add([v, v]);
+        self.kept[v as usize] = self.add([v, NONE]);
         for h in coarse.around(v) {
             if self.rank[h as usize / 3] == NONE {
                 self.rank[h as usize / 3] = self.ranked;

@@ -2,9 +2,9 @@
 
 use super::LEAST_PARTICLES;
 use super::border;
-use super::frame::Frame;
 use super::layer::{Ground, Layer};
 use super::refusal::Refusal;
+use super::walls::Walls;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::Bounds;
@@ -91,7 +91,7 @@ pub(super) fn join(
         normal: particles.normal.clone(),
         slots: particles.slots.clone(),
         size: Vec::new(),
-        frame: Frame::new(bounds, &particles.position, spacing),
+        walls: Walls::new(bounds, &particles.position, spacing),
     };
     border::clip(&mut layer, ground, spacing)?;
     judge_bend(&layer, if halvings > 1 { MAX_SHARP } else { MAX_SHARP_ONCE })?;

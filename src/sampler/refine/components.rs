@@ -45,7 +45,7 @@ struct Candidate {
 }
 
 /// What is known of the surface before it is refined.
-pub(crate) struct Surface<'a> {
+pub(crate) struct SurfaceFacts<'a> {
     /// The box that is sampled. Coarse fronts grow beyond it.
     pub(crate) bounds: Bounds,
     /// Points spread over the surface in the box, by which a part of it is missed.
@@ -59,7 +59,7 @@ pub(crate) struct Surface<'a> {
     pub(crate) failures: u32,
 }
 
-impl Surface<'_> {
+impl SurfaceFacts<'_> {
     fn bent(&self) -> Refusal {
         Refusal::Bent { at: self.bend.into() }
     }
@@ -107,7 +107,7 @@ impl CoarseFronts {
     pub(crate) fn take_in(
         &mut self,
         field: &mut dyn Field,
-        surface: &Surface,
+        surface: &SurfaceFacts,
         particles: &mut Particles,
         target: Target,
     ) -> Result<Next, Refusal> {
@@ -131,11 +131,11 @@ impl CoarseFronts {
     fn take_first(
         &mut self,
         field: &mut dyn Field,
-        surface: &Surface,
+        surface: &SurfaceFacts,
         particles: &Particles,
         target: Target,
     ) -> Result<(), Refusal> {
-        let &Surface { ref bounds, ref points, sizing, failures, .. } = surface;
+        let &SurfaceFacts { ref bounds, ref points, sizing, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
@@ -183,7 +183,7 @@ impl CoarseFronts {
     fn take_coarser(
         &mut self,
         field: &mut dyn Field,
-        surface: &Surface,
+        surface: &SurfaceFacts,
         particles: &Particles,
         target: Target,
         tried: Candidate,
@@ -191,7 +191,8 @@ impl CoarseFronts {
         let component = &mut self.components[tried.component];
         let known = &component.refinement;
         let is_same = |refinement: &Refinement| {
-            refinement.euler == known.euler && AREA_RATIO.contains(&(refinement.area() / component.area))
+            refinement.shape.euler == known.shape.euler
+                && AREA_RATIO.contains(&(refinement.area() / component.area))
         };
         if let Ok(refinement) = Refinement::new(field, particles, &surface.bounds, target)
             && is_same(&refinement)
@@ -282,7 +283,8 @@ impl Components {
                 component.refinement.target.count = Count::Total(count * component.weight / sum);
             }
         }
-        let to_come = components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
+        let to_come =
+            components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
         Self { components, to_come, joint: None }
     }
 
@@ -308,7 +310,8 @@ impl Components {
 
     /// The level under way, counted from 1, and how many there are.
     pub(crate) fn level(&self) -> (u32, u32) {
-        let to_come = self.components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
+        let to_come =
+            self.components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
         let most = self.most_halvings();
         (most - to_come + 1, most + 1)
     }
@@ -427,7 +430,8 @@ mod tests {
     fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
         let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let bounds = Bounds::cube(1.5);
-        let surface = Surface { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
+        let surface =
+            SurfaceFacts { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
         let refinement = Refinement::new(&mut field, &known, &bounds, target(1)).expect("a good front");

@@ -1,6 +1,6 @@
 //! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
 
-use super::frame::{Frame, Planes};
+use super::walls::{Planes, Walls};
 use crate::differential::Curvature;
 use crate::field::Field;
 use crate::mesh::half_edge::{HalfEdges, NONE, previous};
@@ -87,7 +87,7 @@ pub(super) struct Layer {
     /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
     pub(super) size: Vec<f32>,
     /// The box, and the faces of it on which the particles lie.
-    pub(super) frame: Frame,
+    pub(super) walls: Walls,
 }
 
 impl Layer {
@@ -99,7 +99,7 @@ impl Layer {
             normal: Vec::with_capacity(count),
             slots: Vec::with_capacity(count),
             size: Vec::new(),
-            frame: Frame::default(),
+            walls: Walls::default(),
         }
     }
 
@@ -217,8 +217,8 @@ impl Layer {
             }
             let (p, n) = (self.position[v as usize], self.normal[v as usize]);
             let mut step = step(self, v);
-            let planes = self.frame.planes(v);
-            step = if planes.is_inner() { step - n * step.dot(n) } else { self.frame.along(planes, n, step) };
+            let planes = self.walls.planes(v);
+            step = if planes.is_inner() { step - n * step.dot(n) } else { self.walls.along(planes, n, step) };
             let length = step.length();
             let farthest = MAX_MOVE * spacing * self.size_of(v);
             if length > farthest {
@@ -260,9 +260,9 @@ impl Layer {
             let normal = gradient[k] * inverse_slope;
             let correction = value[k] * inverse_slope;
             let longest = MAX_CORRECTION * spacing * self.size_of(which[k]);
-            let landing = if self.frame.is_near() {
-                let planes = self.frame.planes(which[k]);
-                self.frame.landing(planes, points[k], value[k], gradient[k], longest)
+            let landing = if self.walls.is_near() {
+                let planes = self.walls.planes(which[k]);
+                self.walls.landing(planes, points[k], value[k], gradient[k], longest)
             } else {
                 (correction.abs() <= longest).then(|| points[k] - normal * correction)
             };
@@ -302,7 +302,7 @@ impl Layer {
             return false;
         }
         let [v, w, x, y] = [h, t, previous(h), previous(t)].map(|h| self.mesh.origin(h));
-        if self.frame.is_near() && (self.is_along_border([v, x, y]) || self.is_along_border([w, x, y])) {
+        if self.walls.is_near() && (self.is_along_border([v, x, y]) || self.is_along_border([w, x, y])) {
             return false;
         }
         // Both new faces must look outward.
@@ -340,7 +340,7 @@ impl Layer {
         /// The valence of an inner particle without a defect.
         const SIX: i32 = 6;
         let valence = self.mesh.valence(v) as i32;
-        if self.frame.is_near() && self.mesh.is_border(v) {
+        if self.walls.is_near() && self.mesh.is_border(v) {
             valence - self.wanted_at_border(v)
         } else {
             valence - SIX
@@ -351,7 +351,7 @@ impl Layer {
     /// stays which is bound to more faces.
     pub(super) fn merged(&self, a: u32, b: u32) -> (Vec3, Planes) {
         let [p, q] = [a, b].map(|v| self.position[v as usize]);
-        let [m, n] = [a, b].map(|v| self.frame.planes(v));
+        let [m, n] = [a, b].map(|v| self.walls.planes(v));
         if m == n {
             ((p + q) * 0.5, n)
         } else if m.count() > n.count() {
@@ -373,7 +373,33 @@ impl Layer {
         }
         self.position[v as usize] = position;
         self.normal[v as usize] = normal;
-        self.frame.set(v, planes);
+        self.walls.set(v, planes);
+    }
+
+    /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between two particles of that, or the old
+    /// one v where the ends are `[v, NONE]`.
+    pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2]) {
+        let (position, normal, slots, size, planes) = match ends {
+            [old, NONE] => {
+                let v = old as usize;
+                (
+                    coarse.position[v],
+                    coarse.normal[v],
+                    coarse.slots[v],
+                    coarse.size_of(old),
+                    coarse.walls.planes(old),
+                )
+            }
+            [a, b] => {
+                let (position, normal) = coarse.middle(a, b);
+                (position, normal, Slots::default(), coarse.size_between(a, b), coarse.planes_between(a, b))
+            }
+        };
+        self.position.push(self.walls.pinned(position, planes));
+        self.normal.push(normal);
+        self.slots.push(slots);
+        self.size.extend(coarse.is_graded().then_some(size));
+        self.walls.planes.extend(coarse.walls.is_near().then_some(planes));
     }
 
     /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
@@ -382,7 +408,7 @@ impl Layer {
         if !self.mesh.can_collapse(h) {
             return false;
         }
-        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.frame.planes(v));
+        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));
         if m.is_inner() && n.is_inner() {
             return true;
         }

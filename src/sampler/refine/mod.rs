@@ -21,7 +21,6 @@
 mod border;
 mod coarse;
 mod components;
-mod frame;
 mod layer;
 mod recipe;
 mod refusal;
@@ -29,16 +28,17 @@ mod rings;
 mod sizes;
 mod surgery;
 mod tally;
+mod walls;
 
 pub(crate) use border::grown;
 pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatures};
-pub(crate) use components::{CoarseFronts, Components, Next, Surface};
-pub use refusal::{Place, Refusal};
+pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
+pub use refusal::{Refusal, Spot};
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
-use crate::mesh::half_edge::{Part, Subdivision};
-use crate::particles::{Particles, Slots};
+use crate::mesh::half_edge::{Stage, Subdivision};
+use crate::particles::Particles;
 use crate::sampler::sizing::Sizing;
 use core::ops::RangeInclusive;
 use layer::{BLOCK, Block, Ground, Layer, Springs};
@@ -98,35 +98,53 @@ pub(crate) enum Count {
 struct Refinement {
     target: Target,
     layer: Layer,
+    shape: Shape,
+    level: Level,
+    tools: Tools,
+    /// Of the pass under way.
+    tally: Tally,
+    /// Area of the faces of the level before, until this one has been compared with it.
+    area_before: Option<f64>,
+    task: Task,
+    /// The finished mesh, by the particles at the corners of its faces.
+    corners: Vec<u32>,
+}
+
+/// What holds on every level of a refinement.
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    euler: i64,
+    has_border: bool,
+    /// Wanted number of particles of the last level, once the surface has been measured.
+    wanted: f64,
+}
+
+/// What is to be done on the level under way.
+#[derive(Clone, Debug)]
+struct Level {
+    /// Levels still to come after it.
+    to_come: u32,
+    recipe: Recipe,
+    /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
+    spacing: f32,
+    /// Faces of that lattice.
+    faces: f32,
+}
+
+/// The memory of the passes.
+#[derive(Clone, Debug, Default)]
+struct Tools {
     block: Block,
     surgeon: Surgeon,
     /// Particles near defects, in ascending order.
     near: Vec<u32>,
     /// Half-edges between crowded particles.
     crowded: Vec<u32>,
-    /// Levels still to come.
-    to_come: u32,
-    /// Wanted number of particles of the last level, once the surface has been measured.
-    wanted: f64,
-    euler: i64,
-    has_border: bool,
-    /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
-    spacing: f32,
-    /// Faces of that lattice.
-    faces: f32,
-    recipe: Recipe,
-    /// Of the pass under way.
-    tally: Tally,
-    /// Area of the faces of the level before, until this one has been compared with it.
-    area_before: Option<f64>,
-    work: Work,
-    /// The finished mesh, by the particles at the corners of its faces.
-    corners: Vec<u32>,
 }
 
 /// What is being done.
 #[derive(Clone, Debug)]
-enum Work {
+enum Task {
     /// A pass of the recipe, come to `next` of the particles or half-edges below `end`.
     Pass { pass: usize, next: u32, end: u32 },
     /// The finished level is handed on.
@@ -140,6 +158,13 @@ enum Work {
     Name { rings: Rings, next: usize, kept: usize },
     /// Nothing.
     Done,
+}
+
+impl Level {
+    fn new(target: &Target, to_come: u32, has_border: bool) -> Self {
+        let recipe = Recipe::of(target.halvings, to_come, target.grading.is_some(), has_border);
+        Self { to_come, recipe, spacing: 0.0, faces: 0.0 }
+    }
 }
 
 impl Refinement {
@@ -162,27 +187,19 @@ impl Refinement {
     }
 
     fn of_layer(layer: Layer, block: Block, target: Target) -> Self {
-        let has_border = layer.has_border();
+        let shape = Shape { euler: layer.mesh.euler(), has_border: layer.has_border(), wanted: 0.0 };
         let mut refinement = Self {
             target,
-            euler: layer.mesh.euler(),
-            has_border,
+            level: Level::new(&target, target.halvings, shape.has_border),
             layer,
-            block,
-            surgeon: Surgeon::default(),
-            to_come: target.halvings,
-            wanted: 0.0,
-            spacing: 0.0,
-            faces: 0.0,
-            recipe: Recipe::of(target.halvings, target.halvings, target.grading.is_some(), has_border),
-            near: Vec::new(),
-            crowded: Vec::new(),
+            shape,
+            tools: Tools { block, ..Tools::default() },
             tally: Tally::default(),
             area_before: None,
-            work: Work::Done,
+            task: Task::Done,
             corners: Vec::new(),
         };
-        refinement.work = refinement.begin_pass(0);
+        refinement.task = refinement.begin_pass(0);
         refinement
     }
 
@@ -195,30 +212,30 @@ impl Refinement {
 
     /// The level that is finished next, by how many come after it.
     fn pending(&self) -> u32 {
-        match self.work {
-            Work::Divide(_) | Work::Lift { .. } => self.to_come - 1,
-            Work::Pass { .. } | Work::Show(_) | Work::Name { .. } | Work::Done => self.to_come,
+        match self.task {
+            Task::Divide(_) | Task::Lift { .. } => self.level.to_come - 1,
+            Task::Pass { .. } | Task::Show(_) | Task::Name { .. } | Task::Done => self.level.to_come,
         }
     }
 
     /// Evaluations of the field so far.
     fn evaluations(&self) -> u64 {
-        self.block.evaluations
+        self.tools.block.evaluations
     }
 
     /// Whether there is nothing left to do.
     fn is_done(&self) -> bool {
-        matches!(self.work, Work::Done)
+        matches!(self.task, Task::Done)
     }
 
     /// Estimated share of the work that is done, that of the coarse front included.
     fn fraction(&self) -> f64 {
-        let at = match self.work {
-            Work::Pass { pass, .. } => pass as f64 / self.recipe.passes.len() as f64,
+        let at = match self.task {
+            Task::Pass { pass, .. } => pass as f64 / self.level.recipe.passes.len() as f64,
             _ => 1.0,
         };
         // From a quarter of the share of this level to all of it.
-        coarse_share(self.to_come) * (1.0 + 3.0 * at)
+        coarse_share(self.level.to_come) * (1.0 + 3.0 * at)
     }
 
     /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays
@@ -237,18 +254,18 @@ impl Refinement {
     ) -> Result<(u32, bool), Refusal> {
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
-            let work = core::mem::replace(&mut self.work, Work::Done);
-            let was_whole = matches!(work, Work::Show(_) | Work::Name { .. });
-            let (next, units) = match work {
-                Work::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
-                Work::Show(rings) => self.show(rings, particles),
-                Work::Divide(subdivision) => self.divide(subdivision),
-                Work::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
-                Work::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
-                Work::Done => (Work::Done, 0),
+            let task = core::mem::replace(&mut self.task, Task::Done);
+            let was_whole = matches!(task, Task::Show(_) | Task::Name { .. });
+            let (next, units) = match task {
+                Task::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
+                Task::Show(rings) => self.show(rings, particles),
+                Task::Divide(subdivision) => self.divide(subdivision),
+                Task::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
+                Task::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
+                Task::Done => (Task::Done, 0),
             };
-            has_changed |= was_whole && !matches!(next, Work::Show(_) | Work::Name { .. });
-            self.work = next;
+            has_changed |= was_whole && !matches!(next, Task::Show(_) | Task::Name { .. });
+            self.task = next;
             done += units;
         }
         Ok((done, has_changed))
@@ -266,9 +283,9 @@ impl Refinement {
         {
             return Err(Refusal::Folded { at: tally.widest().into() });
         }
-        if self.wanted == 0.0 {
+        if self.shape.wanted == 0.0 {
             let radius = f64::from(self.target.radius);
-            self.wanted = match self.target.count {
+            self.shape.wanted = match self.target.count {
                 Count::Total(count) => count,
                 Count::PerCell(packing) => {
                     // Half of the cell of a particle on the border lies beyond it.
@@ -277,11 +294,11 @@ impl Refinement {
                 }
             };
         }
-        let share = f64::from(1_u32 << (2 * self.to_come));
-        let euler = self.euler as f64;
+        let share = f64::from(1_u32 << (2 * self.level.to_come));
+        let euler = self.shape.euler as f64;
         let is_graded = self.layer.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
-        let closed = 2.0 * (self.wanted - euler) / share;
+        let closed = 2.0 * (self.shape.wanted - euler) / share;
         // Each particle has the area of two faces.
         let spacing = |faces: f64| {
             let lattice = faces + 2.0 * euler;
@@ -299,24 +316,23 @@ impl Refinement {
                 faces = (closed - tally.border() / (spacing(faces) * share.sqrt())).max(1.0);
             }
         }
-        self.faces = faces as f32;
-        self.spacing = spacing(faces) as f32;
+        self.level.faces = faces as f32;
+        self.level.spacing = spacing(faces) as f32;
         Ok(())
     }
 
     /// The start of a pass of the recipe, or what follows after the last one.
-    fn begin_pass(&mut self, pass: usize) -> Work {
+    fn begin_pass(&mut self, pass: usize) -> Task {
         let mesh = &self.layer.mesh;
-        let Some(&kind) = self.recipe.passes.get(pass) else {
+        let Some(&kind) = self.level.recipe.passes.get(pass) else {
             // Before the columns of the finished level take their place.
-            self.surgeon = Surgeon::default();
-            (self.near, self.crowded) = (Vec::new(), Vec::new());
-            return Work::Show(Rings::new(&self.layer));
+            self.tools = Tools { block: core::mem::take(&mut self.tools.block), ..Tools::default() };
+            return Task::Show(Rings::new(&self.layer));
         };
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
             Pass::Thin => {
-                self.crowded.clear();
+                self.tools.crowded.clear();
                 mesh.half_edge_slots()
             }
             Pass::Measure | Pass::Inspect => {
@@ -324,15 +340,15 @@ impl Refinement {
                 mesh.half_edge_slots() / 3
             }
             Pass::Find => {
-                self.near.clear();
+                self.tools.near.clear();
                 mesh.vertex_slots()
             }
-            Pass::Centre => self.near.len(),
+            Pass::Centre => self.tools.near.len(),
             Pass::Size(_) | Pass::Limit { .. } | Pass::Sweep | Pass::Mend { .. } | Pass::Land => {
                 mesh.vertex_slots()
             }
         };
-        Work::Pass { pass, next: 0, end: end as u32 }
+        Task::Pass { pass, next: 0, end: end as u32 }
     }
 
     /// Goes on with a pass for one block.
@@ -343,11 +359,15 @@ impl Refinement {
         pass: usize,
         next: u32,
         end: u32,
-    ) -> Result<(Work, u32), Refusal> {
-        let springs = Springs { spacing: self.spacing, theta: self.recipe.theta, omega: self.recipe.omega };
+    ) -> Result<(Task, u32), Refusal> {
+        let springs = Springs {
+            spacing: self.level.spacing,
+            theta: self.level.recipe.theta,
+            omega: self.level.recipe.omega,
+        };
         let layer = &mut self.layer;
-        let mut ground = Ground { field, block: &mut self.block };
-        let kind = self.recipe.passes[pass];
+        let mut ground = Ground { field, block: &mut self.tools.block };
+        let kind = self.level.recipe.passes[pass];
         let per_unit = match kind {
             Pass::Flip | Pass::Thin => HALF_EDGES_PER_UNIT,
             Pass::Measure | Pass::Inspect => FACES_PER_UNIT,
@@ -371,32 +391,35 @@ impl Refinement {
             Pass::Sweep => layer.relax(&mut ground, springs, next..last),
             Pass::Flip => layer.flip(next..last),
             Pass::Mend { loss } => {
-                let slack = if self.to_come == self.target.halvings { SLACK } else { f32::INFINITY };
-                let aim = Aim { springs, delta: self.recipe.delta, faces: self.faces, slack, loss };
+                let slack = if self.level.to_come == self.target.halvings { SLACK } else { f32::INFINITY };
+                let aim =
+                    Aim { springs, delta: self.level.recipe.delta, faces: self.level.faces, slack, loss };
                 for v in next..last {
-                    units += TRIAL_UNITS * u32::from(self.surgeon.mend(layer, &mut ground, aim, v));
+                    units += TRIAL_UNITS * u32::from(self.tools.surgeon.mend(layer, &mut ground, aim, v));
                 }
             }
             Pass::Find => {
-                let has_border = self.has_border;
+                let has_border = self.shape.has_border;
                 let is_defect = |&v: &u32| {
                     layer.mesh.has_vertex(v)
                         && layer.excess(v) != 0
                         && (!has_border || layer.mesh.is_border(v) || layer.excess(v) > 1)
                 };
-                self.near.extend((next..last).filter(is_defect));
+                self.tools.near.extend((next..last).filter(is_defect));
             }
             Pass::Centre => {
-                let near = self.near[next as usize..last as usize].iter().copied();
+                let near = self.tools.near[next as usize..last as usize].iter().copied();
                 layer.centre(&mut ground, springs, near);
             }
-            Pass::Thin => self.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.spacing))),
+            Pass::Thin => {
+                self.tools.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.level.spacing)))
+            }
             Pass::Land => {
-                layer.land(&mut ground, self.spacing, next..last);
+                layer.land(&mut ground, self.level.spacing, next..last);
             }
         }
         if last < end {
-            return Ok((Work::Pass { pass, next: last, end }, units));
+            return Ok((Task::Pass { pass, next: last, end }, units));
         }
         self.end_pass(kind)?;
         Ok((self.begin_pass(pass + 1), units))
@@ -404,8 +427,8 @@ impl Refinement {
 
     /// How much the size may differ per unit of length at this level.
     fn rise(&self) -> f32 {
-        let spacing = 2.0 * self.target.radius * (1_u32 << self.to_come) as f32;
-        sizes::slope(self.target.grading.unwrap_or(0.0), self.to_come) / spacing
+        let spacing = 2.0 * self.target.radius * (1_u32 << self.level.to_come) as f32;
+        sizes::slope(self.target.grading.unwrap_or(0.0), self.level.to_come) / spacing
     }
 
     /// What is done once after a pass.
@@ -413,17 +436,17 @@ impl Refinement {
         match kind {
             Pass::Measure => self.measure(),
             Pass::Find => {
-                self.surgeon.widen(&self.layer.mesh, &mut self.near);
+                self.tools.surgeon.widen(&self.layer.mesh, &mut self.tools.near);
                 Ok(())
             }
             Pass::Thin => {
-                self.layer.thin(&mut self.crowded, self.spacing);
+                self.layer.thin(&mut self.tools.crowded, self.level.spacing);
                 Ok(())
             }
             Pass::Inspect => {
                 self.area_before = Some(self.tally.flat_area());
                 match self.tally.inverted() {
-                    Some(at) if self.to_come == 0 => Err(Refusal::Folded { at: at.into() }),
+                    Some(at) if self.level.to_come == 0 => Err(Refusal::Folded { at: at.into() }),
                     _ => Ok(()),
                 }
             }
@@ -431,23 +454,23 @@ impl Refinement {
         }
     }
 
-    fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Work, u32) {
-        let radius = self.target.radius * (1_u32 << self.to_come) as f32;
-        let work = if !rings.step(&self.layer, radius) {
-            Work::Show(rings)
-        } else if self.to_come > 0 {
+    fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Task, u32) {
+        let radius = self.target.radius * (1_u32 << self.level.to_come) as f32;
+        let task = if !rings.step(&self.layer, radius) {
+            Task::Show(rings)
+        } else if self.level.to_come > 0 {
             rings.hand_on(particles);
-            Work::Divide(Subdivision::new(&self.layer.mesh))
+            Task::Divide(Subdivision::new(&self.layer.mesh))
         } else {
             // Of the layer nothing else is needed any more.
             self.corners = core::mem::take(&mut self.layer).mesh.into_corners();
-            Work::Name { rings, next: 0, kept: 0 }
+            Task::Name { rings, next: 0, kept: 0 }
         };
-        (work, BLOCK as u32)
+        (task, BLOCK as u32)
     }
 
     /// Goes on naming the corners of the mesh for a slice.
-    fn name(&mut self, rings: Rings, next: usize, mut kept: usize, particles: &mut Particles) -> Work {
+    fn name(&mut self, rings: Rings, next: usize, mut kept: usize, particles: &mut Particles) -> Task {
         let end = self.corners.len().min(next + CORNERS);
         for k in next..end {
             // Surgery, which removes faces, may have been at work on a last level that is the first one too.
@@ -457,22 +480,22 @@ impl Refinement {
             }
         }
         if end < self.corners.len() {
-            return Work::Name { rings, next: end, kept };
+            return Task::Name { rings, next: end, kept };
         }
         self.corners.truncate(kept);
         rings.hand_on(particles);
-        Work::Done
+        Task::Done
     }
 
-    fn divide(&mut self, mut subdivision: Subdivision) -> (Work, u32) {
+    fn divide(&mut self, mut subdivision: Subdivision) -> (Task, u32) {
         subdivision.step(&self.layer.mesh, BLOCK as u32);
-        if subdivision.part() != Part::Done {
-            return (Work::Divide(subdivision), BLOCK as u32);
+        if subdivision.stage() != Stage::Done {
+            return (Task::Divide(subdivision), BLOCK as u32);
         }
         let (mesh, ends) = subdivision.finish();
         let coarse = Box::new(core::mem::replace(&mut self.layer, Layer::with_room(mesh, ends.len())));
-        self.layer.frame = coarse.frame.finer(ends.len());
-        (Work::Lift { coarse, ends }, BLOCK as u32)
+        self.layer.walls = coarse.walls.finer(ends.len());
+        (Task::Lift { coarse, ends }, BLOCK as u32)
     }
 
     fn lift(
@@ -480,34 +503,21 @@ impl Refinement {
         field: &mut dyn Field,
         coarse: Box<Layer>,
         ends: Vec<[u32; 2]>,
-    ) -> Result<(Work, u32), Refusal> {
+    ) -> Result<(Task, u32), Refusal> {
         let layer = &mut self.layer;
         let start = layer.position.len();
         let end = ends.len().min(start + BLOCK);
-        for &[a, b] in &ends[start..end] {
-            let (position, normal) = if a == b {
-                (coarse.position[a as usize], coarse.normal[a as usize])
-            } else {
-                coarse.middle(a, b)
-            };
-            layer.position.push(position);
-            layer.normal.push(normal);
-            layer.slots.push(if a == b { coarse.slots[a as usize] } else { Slots::default() });
-            layer.size.extend(coarse.is_graded().then(|| coarse.size_between(a, b)));
-            layer.bind_middle(&coarse, [a, b]);
-        }
-        let mut ground = Ground { field, block: &mut self.block };
-        layer.land(&mut ground, self.spacing, start as u32..end as u32);
+        ends[start..end].iter().for_each(|&ends| layer.push_from(&coarse, ends));
+        let mut ground = Ground { field, block: &mut self.tools.block };
+        layer.land(&mut ground, self.level.spacing, start as u32..end as u32);
         let refused = core::mem::take(&mut ground.block.refused);
-        if let Some(&v) = refused.iter().find(|&&v| !layer.rescue(&mut ground, self.spacing, v)) {
+        if let Some(&v) = refused.iter().find(|&&v| !layer.rescue(&mut ground, self.level.spacing, v)) {
             return Err(Refusal::Folded { at: layer.position[v as usize].into() });
         }
         if end < ends.len() {
-            return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
+            return Ok((Task::Lift { coarse, ends }, BLOCK as u32));
         }
-        self.to_come -= 1;
-        self.recipe =
-            Recipe::of(self.target.halvings, self.to_come, self.target.grading.is_some(), self.has_border);
+        self.level = Level::new(&self.target, self.level.to_come - 1, self.shape.has_border);
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }

@@ -31,19 +31,19 @@ pub enum Refusal {
     )]
     Bent {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// The gradient vanishes on the surface.
     #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// The surface has a border that is not at the box.
     #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// The border could not be laid on the faces of the box.
     #[error(
@@ -52,7 +52,7 @@ pub enum Refusal {
     )]
     Cut {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// A part of the surface within the box was missed.
     #[error(
@@ -60,7 +60,7 @@ pub enum Refusal {
     )]
     Missed {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// Most of what the box leaves is near its border.
     #[error(
@@ -69,7 +69,7 @@ pub enum Refusal {
     )]
     Narrow {
         /// A place on a border.
-        at: Place,
+        at: Spot,
     },
     /// A component has too few particles.
     #[error(
@@ -77,7 +77,7 @@ pub enum Refusal {
     )]
     Small {
         /// A place on it.
-        at: Place,
+        at: Spot,
     },
     /// The particles could not be joined to a closed surface beyond doubt.
     #[error(
@@ -86,33 +86,33 @@ pub enum Refusal {
     )]
     Doubtful {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
     /// The surface bends too much between neighbours.
     #[error("The front stands, and is not refined: near {at} the surface bends too much between neighbours.")]
     Sharp {
         /// Where it bends most.
-        at: Place,
+        at: Spot,
     },
     /// A refinement has left the surface, or has led onto another sheet.
     #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
     Folded {
         /// A place there.
-        at: Place,
+        at: Spot,
     },
 }
 
 /// A point in space, told to three decimals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Place(pub [f32; 3]);
+pub struct Spot(pub [f32; 3]);
 
-impl From<Vec3> for Place {
+impl From<Vec3> for Spot {
     fn from(p: Vec3) -> Self {
         Self(p.to_array())
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Spot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Adding 0 takes the sign off −0.
         let [x, y, z] = self.0.map(|x| (x * 1_000.0).round() / 1_000.0 + 0.0);

@@ -1,7 +1,7 @@
 //! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept that pay.
 
-use super::frame::Planes;
 use super::layer::{Ground, Layer, Springs};
+use super::walls::Planes;
 use crate::math::sort_by_key;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
@@ -116,7 +116,7 @@ impl Surgeon {
         self.gather(layer, operation);
         let before = self.energy(layer, aim.springs);
         let state =
-            |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize], layer.frame.planes(v));
+            |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize], layer.walls.planes(v));
         self.saved.clear();
         self.saved.extend(self.patch.iter().map(state));
         let slots = layer.position.len();
@@ -149,7 +149,7 @@ impl Surgeon {
         layer.normal.truncate(slots);
         layer.slots.truncate(slots);
         layer.size.truncate(slots);
-        layer.frame.truncate(slots);
+        layer.walls.truncate(slots);
         false
     }
 

@@ -4,9 +4,9 @@
 //! it runs meet. Faces of the mesh with a vertex beyond the box are then dropped. Since no edge crosses any more, what is left is a
 //! manifold with every border vertex on the box. Its short edges, which the cuts have made, are collapsed.
 
-use super::super::frame::Planes;
 use super::super::layer::{Ground, Layer};
 use super::super::refusal::Refusal;
+use super::super::walls::Planes;
 use super::land_on;
 use crate::math::{Bounds, key, unkey};
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
@@ -35,11 +35,11 @@ pub(crate) fn grown(bounds: &Bounds, radius: f64) -> Bounds {
 ///
 /// Where the surface ends inside the box, or its border could not be laid on the faces.
 pub(in super::super) fn clip(layer: &mut Layer, ground: &mut Ground, spacing: f32) -> Result<(), Refusal> {
-    if !layer.frame.is_near() {
+    if !layer.walls.is_near() {
         return open_end(layer).map_or(Ok(()), |v| Err(border(layer, v)));
     }
-    if !layer.frame.lo.cmplt(layer.frame.hi).all() {
-        return Err(Refusal::Cut { at: layer.frame.lo.into() });
+    if !layer.walls.lo.cmplt(layer.walls.hi).all() {
+        return Err(Refusal::Cut { at: layer.walls.lo.into() });
     }
     let mut is_cut = false;
     for plane in 0..Planes::ALL {
@@ -53,14 +53,14 @@ pub(in super::super) fn clip(layer: &mut Layer, ground: &mut Ground, spacing: f3
         is_cut = true;
         close_open_ends(layer, ground, spacing, v)?;
     }
-    for (p, &planes) in layer.position.iter_mut().zip(&layer.frame.planes) {
-        *p = layer.frame.pinned(p.clamp(layer.frame.lo, layer.frame.hi), planes);
+    for (p, &planes) in layer.position.iter_mut().zip(&layer.walls.planes) {
+        *p = layer.walls.pinned(p.clamp(layer.walls.lo, layer.walls.hi), planes);
     }
     if is_cut {
         tidy(layer, spacing);
     }
     let is_off = |&h: &u32| {
-        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.frame.planes(v));
+        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.walls.planes(v));
         layer.mesh.twin(h) == NONE && a.common(b).is_inner()
     };
     match layer.mesh.edges().find(is_off) {
@@ -74,8 +74,8 @@ fn border(layer: &Layer, v: u32) -> Refusal {
 }
 
 fn is_beyond(layer: &Layer, v: u32, plane: usize) -> bool {
-    let is_on = !layer.frame.planes(v).common(Planes::of(plane)).is_inner();
-    !is_on && layer.frame.depth(layer.position[v as usize], plane) < -layer.frame.slack
+    let is_on = !layer.walls.planes(v).common(Planes::of(plane)).is_inner();
+    !is_on && layer.walls.depth(layer.position[v as usize], plane) < -layer.walls.slack
 }
 
 /// Splits the edges that cross a face.
@@ -84,12 +84,12 @@ fn cut(layer: &mut Layer, ground: &mut Ground, spacing: f32, plane: usize) -> Re
     // A split adds half-edges at the end, which may cross too; but every split makes one edge fewer that does.
     while (h as usize) < layer.mesh.half_edge_slots() {
         let (a, b) = (layer.mesh.origin(h), layer.mesh.target(h));
-        let is_on = |v: u32| !layer.frame.planes(v).common(Planes::of(plane)).is_inner();
+        let is_on = |v: u32| !layer.walls.planes(v).common(Planes::of(plane)).is_inner();
         let is_crossing = is_beyond(layer, a, plane) != is_beyond(layer, b, plane) && !is_on(a) && !is_on(b);
         if is_crossing {
             let common = layer.planes_between(a, b);
             let [p, q] = [a, b].map(|v| layer.position[v as usize]);
-            let [d, e] = [p, q].map(|p| layer.frame.depth(p, plane));
+            let [d, e] = [p, q].map(|p| layer.walls.depth(p, plane));
             let start = p + (q - p) * (d / (d - e)).clamp(0.0, 1.0);
             let planes = common.joined(Planes::of(plane));
             split(layer, ground, h, (start, planes), spacing)?;
@@ -108,8 +108,8 @@ fn split(
     reach: f32,
 ) -> Result<(), Refusal> {
     // The box may be left along the face: what is beyond its other faces is cut later, and need not lie on the surface.
-    let place = layer.frame.pinned(start, planes);
-    let clear = (layer.frame.lo - place).max(place - layer.frame.hi).max_element();
+    let place = layer.walls.pinned(start, planes);
+    let clear = (layer.walls.lo - place).max(place - layer.walls.hi).max_element();
     let (position, normal) = match super::slide(ground, planes.free(), place, reach) {
         Some(landing) => landing,
         None if clear > reach => (place, layer.normal[layer.mesh.origin(h) as usize]),
@@ -134,23 +134,23 @@ fn drop_beyond(layer: &mut Layer, plane: usize) -> Result<(), Refusal> {
 
 /// A border vertex on no face of the box.
 fn open_end(layer: &Layer) -> Option<u32> {
-    (0..layer.position.len() as u32).find(|&v| layer.mesh.is_border(v) && layer.frame.planes(v).is_inner())
+    (0..layer.position.len() as u32).find(|&v| layer.mesh.is_border(v) && layer.walls.planes(v).is_inner())
 }
 
 /// Moves border vertices on no face to the nearest one: a field that ends at the box has no surface beyond, and the front ends
 /// before it.
 fn close_open_ends(layer: &mut Layer, ground: &mut Ground, spacing: f32, first: u32) -> Result<(), Refusal> {
     for v in first..layer.position.len() as u32 {
-        if !layer.mesh.is_border(v) || !layer.frame.planes(v).is_inner() {
+        if !layer.mesh.is_border(v) || !layer.walls.planes(v).is_inner() {
             continue;
         }
         let p = layer.position[v as usize];
-        let depth = |plane: &usize| layer.frame.depth(p, *plane);
+        let depth = |plane: &usize| layer.walls.depth(p, *plane);
         let nearest = (0..Planes::ALL).min_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
         let planes = Planes::of(nearest);
         let is_near = depth(&nearest) <= OPEN_END * spacing;
         let landing =
-            if is_near { land_on(&layer.frame, ground, planes, p, OPEN_END * spacing) } else { None };
+            if is_near { land_on(&layer.walls, ground, planes, p, OPEN_END * spacing) } else { None };
         let Some((position, normal)) = landing else { return Err(border(layer, v)) };
         layer.put(v, position, normal, planes);
     }
@@ -160,7 +160,7 @@ fn close_open_ends(layer: &mut Layer, ground: &mut Ground, spacing: f32, first: 
             continue;
         }
         let (a, b) = (layer.mesh.origin(h), layer.mesh.target(h));
-        let (m, n) = (layer.frame.planes(a), layer.frame.planes(b));
+        let (m, n) = (layer.walls.planes(a), layer.walls.planes(b));
         if m.common(n).is_inner() {
             let start = (layer.position[a as usize] + layer.position[b as usize]) * 0.5;
             split(layer, ground, h, (start, m.joined(n)), 2.0 * spacing)?;
@@ -207,15 +207,15 @@ pub(super) fn collapse(layer: &mut Layer, h: u32, spacing: f32) -> bool {
     let least = least_area(layer, a).min(least_area(layer, b)).min(FLAT * spacing * spacing);
     let (place, planes) = layer.merged(a, b);
     // On a curve the middle would have to be projected.
-    let place = if planes == layer.frame.planes(b) { layer.position[b as usize] } else { place };
-    let before = (layer.position[b as usize], layer.normal[b as usize], layer.frame.planes(b));
+    let place = if planes == layer.walls.planes(b) { layer.position[b as usize] } else { place };
+    let before = (layer.position[b as usize], layer.normal[b as usize], layer.walls.planes(b));
     layer.mesh.begin();
     layer.mesh.collapse(h);
     layer.position[b as usize] = place;
     if planes != before.2 {
         layer.normal[b as usize] = layer.normal[a as usize];
     }
-    layer.frame.set(b, planes);
+    layer.walls.set(b, planes);
     if least_area(layer, b) >= least && !layer.has_face_along_border(b) {
         layer.mesh.keep();
         return true;

@@ -26,7 +26,7 @@ pub(in super::super) fn judge_cover<'a>(
     spacing: f32,
 ) -> Result<(), Refusal> {
     let layers: Vec<&Layer> = layers.collect();
-    let Some(frame) = layers.iter().map(|layer| &layer.frame).find(|frame| frame.is_near()) else {
+    let Some(walls) = layers.iter().map(|layer| &layer.walls).find(|walls| walls.is_near()) else {
         return Ok(());
     };
     // Each vertex with its layer.
@@ -38,7 +38,7 @@ pub(in super::super) fn judge_cover<'a>(
     let tree = Tree::of(vertices.iter().map(|&(layer, v)| layer.position[v as usize]).zip(0..).collect());
     let reach_sq = (FARTHEST * spacing) * (FARTHEST * spacing);
     let mut keys = Vec::new();
-    for &p in points.iter().filter(|&&p| frame.contains(p)) {
+    for &p in points.iter().filter(|&&p| walls.contains(p)) {
         tree.nearest_many(p, NEAR, |_| true, &mut keys);
         let is_near = keys.iter().any(|&key| {
             let (layer, v) = vertices[tree.origin[unkey(key).1 as usize] as usize];

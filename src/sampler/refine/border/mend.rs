@@ -21,11 +21,12 @@ impl Surgeon {
         let size = layer.size_of(v);
         let operations = operations(layer, aim.springs.spacing * size, v);
         let is_tried = operations.iter().any(Option::is_some);
-        // The first one that pays is kept.
-        let _ = operations
-            .into_iter()
-            .flatten()
-            .any(|operation| self.attempt(layer, ground, aim, operation, size));
+        for operation in operations.into_iter().flatten() {
+            // The first one that pays is kept.
+            if self.attempt(layer, ground, aim, operation, size) {
+                break;
+            }
+        }
         is_tried
     }
 }
@@ -36,7 +37,7 @@ fn operations(layer: &Layer, spacing: f32, v: u32) -> [Option<Operation>; 2] {
     let [before, after] = layer.border_edges(v);
     let (short, long) =
         if layer.length(before) <= layer.length(after) { (before, after) } else { (after, before) };
-    let is_corner = layer.frame.planes(v).is_corner();
+    let is_corner = layer.walls.planes(v).is_corner();
     let excess = if is_corner { 0 } else { layer.excess(v) };
     let collapse = || layer.can_merge(short).then_some(Operation::Collapse(short));
     if layer.length(short) < SHORT * spacing || excess < 0 {

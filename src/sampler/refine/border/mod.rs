@@ -14,8 +14,8 @@ pub(super) use clip::clip;
 pub(crate) use clip::grown;
 pub(super) use cover::judge_cover;
 
-use super::frame::{Frame, Planes};
 use super::layer::{Ground, Layer};
+use super::walls::{Planes, Walls};
 use crate::mesh::half_edge::{NONE, next, previous};
 use crate::particles::{SlotFate, Slots};
 use core::ops::Range;
@@ -34,19 +34,19 @@ const COS_150: f32 = -0.866_025_4;
 /// Springs along the border are stiffer per neighbour than all round: 0.7 instead of 0.6 at θ = 0.8.
 const BORDER_PACE: f32 = 0.85;
 
-/// Moves a point onto the surface and the faces of the frame, with the normal there; none if it would move by more than `reach`, or
+/// Moves a point onto the surface and the faces of the walls, with the normal there; none if it would move by more than `reach`, or
 /// out of the box.
 fn land_on(
-    frame: &Frame,
+    walls: &Walls,
     ground: &mut Ground,
     planes: Planes,
     start: Vec3,
     reach: f32,
 ) -> Option<(Vec3, Vec3)> {
-    let place = frame.pinned(start, planes);
+    let place = walls.pinned(start, planes);
     let found = slide(ground, planes.free(), place, reach)?;
-    let inside = found.0.clamp(frame.lo, frame.hi);
-    ((found.0 - inside).abs().max_element() <= frame.slack).then_some((inside, found.1))
+    let inside = found.0.clamp(walls.lo, walls.hi);
+    ((found.0 - inside).abs().max_element() <= walls.slack).then_some((inside, found.1))
 }
 
 /// Moves a point onto the surface along the axes that are free.
@@ -74,7 +74,7 @@ fn slide(ground: &mut Ground, free: Vec3, start: Vec3, reach: f32) -> Option<(Ve
 impl Layer {
     /// The valence of a border particle without a defect.
     pub(super) fn wanted_at_border(&self, v: u32) -> i32 {
-        let planes = self.frame.planes(v);
+        let planes = self.walls.planes(v);
         if !planes.is_corner() {
             return BORDER_VALENCE;
         }
@@ -99,13 +99,13 @@ impl Layer {
     /// Whether three particles lie on one face: on the border they are on one curve, and their triangle is no part of the surface.
     #[inline]
     pub(super) fn is_along_border(&self, corners: [u32; 3]) -> bool {
-        let [a, b, c] = corners.map(|v| self.frame.planes(v));
+        let [a, b, c] = corners.map(|v| self.walls.planes(v));
         !a.common(b).common(c).is_inner()
     }
 
     /// Whether a triangle at `v` has all its corners on one face.
     pub(super) fn has_face_along_border(&self, v: u32) -> bool {
-        self.frame.is_near()
+        self.walls.is_near()
             && self
                 .mesh
                 .around(v)
@@ -130,7 +130,7 @@ impl Layer {
     /// lie beyond the box.
     pub(super) fn fates(&self, v: u32) -> Slots {
         let mut fates = self.slots[v as usize];
-        if !self.frame.planes(v).is_inner() {
+        if !self.walls.planes(v).is_inner() {
             [4, 5].into_iter().for_each(|slot| fates.set(slot, SlotFate::Outside));
         }
         fates
@@ -139,12 +139,12 @@ impl Layer {
     /// What a step by springs is multiplied by.
     #[inline]
     pub(super) fn pace(&self, v: u32) -> f32 {
-        if self.frame.planes(v).is_inner() { 1.0 } else { BORDER_PACE }
+        if self.walls.planes(v).is_inner() { 1.0 } else { BORDER_PACE }
     }
 
     /// The faces of the particle on the middle of an edge: those on which the edge runs along the border.
     pub(super) fn planes_between(&self, a: u32, b: u32) -> Planes {
-        let common = self.frame.planes(a).common(self.frame.planes(b));
+        let common = self.walls.planes(a).common(self.walls.planes(b));
         if common.is_inner() {
             return common;
         }
@@ -152,35 +152,23 @@ impl Layer {
         if is_border(a, b) || is_border(b, a) { common } else { Planes::INNER }
     }
 
-    /// Adds the faces of the next particle, which lies on the middle of the edge of `coarse` from `a` to `b`, or on `a` where these
-    /// are the same; and puts it onto them.
-    pub(super) fn bind_middle(&mut self, coarse: &Self, [a, b]: [u32; 2]) {
-        if coarse.frame.is_near() {
-            let planes = if a == b { coarse.frame.planes(a) } else { coarse.planes_between(a, b) };
-            self.frame.push(planes);
-            if let Some(last) = self.position.last_mut() {
-                *last = self.frame.pinned(*last, planes);
-            }
-        }
-    }
-
     /// Brings a particle back that one step of Newton's method could not: one on the border by more steps, an inner one that came
     /// to lie beyond a face to a place before it. Returns whether that could be done.
     pub(super) fn rescue(&mut self, ground: &mut Ground, spacing: f32, v: u32) -> bool {
-        if !self.frame.is_near() {
+        if !self.walls.is_near() {
             return false;
         }
-        let (p, frame, planes) = (self.position[v as usize], &self.frame, self.frame.planes(v));
+        let (p, walls, planes) = (self.position[v as usize], &self.walls, self.walls.planes(v));
         let landing = if planes.is_inner() {
-            let margin = Vec3::splat(DEPTH * spacing).min((frame.hi - frame.lo) * 0.5);
-            let inside = p.clamp(frame.lo + margin, frame.hi - margin);
+            let margin = Vec3::splat(DEPTH * spacing).min((walls.hi - walls.lo) * 0.5);
+            let inside = p.clamp(walls.lo + margin, walls.hi - margin);
             let free = Vec3::select(inside.cmpeq(p), Vec3::ONE, Vec3::ZERO);
             // Where nothing has to be moved inward, the step has failed for another reason.
             if free == Vec3::ONE { None } else { slide(ground, free, inside, spacing) }
         } else {
-            land_on(frame, ground, planes, p, spacing)
+            land_on(walls, ground, planes, p, spacing)
         };
-        let Some((position, normal)) = landing.filter(|(place, _)| frame.contains(*place)) else {
+        let Some((position, normal)) = landing.filter(|(place, _)| walls.contains(*place)) else {
             return false;
         };
         self.position[v as usize] = position;
@@ -190,12 +178,12 @@ impl Layer {
 
     /// Whether the surface has a border.
     pub(super) fn has_border(&self) -> bool {
-        self.frame.is_near() && self.mesh.edges().any(|h| self.mesh.twin(h) == NONE)
+        self.walls.is_near() && self.mesh.edges().any(|h| self.mesh.twin(h) == NONE)
     }
 
     /// Length of the border along some faces, in units of the spacing that is wanted where it is.
     pub(super) fn border_of(&self, faces: Range<u32>) -> f64 {
-        if !self.frame.is_near() {
+        if !self.walls.is_near() {
             return 0.0;
         }
         let is_border = |&h: &u32| self.mesh.has_half_edge(h) && self.mesh.twin(h) == NONE;

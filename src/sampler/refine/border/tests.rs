@@ -1,9 +1,9 @@
-//! Clipping and surgery along the border are held to the invariants of the mesh and of the frame.
+//! Clipping and surgery along the border are held to the invariants of the mesh and of the walls.
 
-use super::super::frame::{Frame, Planes};
 use super::super::layer::{Block, Ground, Layer, Springs};
 use super::super::surgery::{Aim, Surgeon};
 use super::super::tally::Tally;
+use super::super::walls::{Planes, Walls};
 use super::{clip, grown};
 use crate::field::Field;
 use crate::field::formula::FormulaField;
@@ -44,7 +44,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
         normal: gradient.iter().map(|g| g.normalize_or_zero()).collect(),
         slots: vec![Slots::default(); position.len()],
         size: Vec::new(),
-        frame: Frame::new(bounds, &position, SPACING),
+        walls: Walls::new(bounds, &position, SPACING),
         position,
     };
     // Formulas are moved to one side: which way is up depends on that.
@@ -59,16 +59,16 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
 /// Holds a layer to what the rest of the refinement relies on.
 fn check(layer: &Layer, bounds: &Bounds) {
     layer.mesh.check().expect("a manifold");
-    assert_eq!(layer.frame.planes.len(), layer.position.len());
+    assert_eq!(layer.walls.planes.len(), layer.position.len());
     for v in (0..layer.position.len() as u32).filter(|&v| layer.mesh.has_vertex(v)) {
-        let (p, planes) = (layer.position[v as usize], layer.frame.planes(v));
+        let (p, planes) = (layer.position[v as usize], layer.walls.planes(v));
         assert!(bounds.contains(p), "particle {v} at {p} is outside");
-        assert_eq!(layer.frame.pinned(p, planes), p, "particle {v} at {p} is off its faces");
+        assert_eq!(layer.walls.pinned(p, planes), p, "particle {v} at {p} is off its faces");
         assert_eq!(layer.mesh.is_border(v), !planes.is_inner(), "particle {v} at {p}: {planes:?}");
         assert!(!layer.has_face_along_border(v), "particle {v} at {p} has a triangle along the border");
     }
     for h in layer.mesh.edges().filter(|&h| layer.mesh.twin(h) == NONE) {
-        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.frame.planes(v));
+        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.walls.planes(v));
         assert!(!a.common(b).is_inner(), "a border edge runs between different faces");
     }
 }
@@ -82,26 +82,26 @@ fn the_box_of_a_coarse_front_is_three_spacings_larger() {
 #[test]
 fn a_frame_lies_in_a_box_that_single_precision_cannot_tell() {
     let bounds = Bounds { min: [0.1, -0.1, 1.0], max: [0.3, 0.7, 1.1] };
-    let frame = Frame::new(&bounds, &[Vec3::ONE], 1.0);
-    assert!(bounds.contains(frame.lo) && bounds.contains(frame.hi));
+    let walls = Walls::new(&bounds, &[Vec3::ONE], 1.0);
+    assert!(bounds.contains(walls.lo) && bounds.contains(walls.hi));
     let beyond = |x: f32, up: bool| if up { x.next_up() } else { x.next_down() };
-    assert!(!bounds.contains(frame.lo.map(|x| beyond(x, false))));
-    assert!(!bounds.contains(frame.hi.map(|x| beyond(x, true))));
+    assert!(!bounds.contains(walls.lo.map(|x| beyond(x, false))));
+    assert!(!bounds.contains(walls.hi.map(|x| beyond(x, true))));
 }
 
 #[test]
 fn particles_slide_along_faces_and_corners_stay() {
-    let frame = Frame::new(&Bounds::cube(1.0), &[Vec3::X], 0.1);
+    let walls = Walls::new(&Bounds::cube(1.0), &[Vec3::X], 0.1);
     let n = Vec3::new(0.6, 0.8, 0.0);
-    let step = frame.along(Planes::of(1), n, Vec3::ONE);
+    let step = walls.along(Planes::of(1), n, Vec3::ONE);
     assert!(step.x == 0.0 && step.dot(n).abs() < 1e-6 && step.length() > 0.5, "{step}");
-    assert_eq!(frame.along(Planes::of(1).joined(Planes::of(5)), n, Vec3::ONE), Vec3::ZERO);
+    assert_eq!(walls.along(Planes::of(1).joined(Planes::of(5)), n, Vec3::ONE), Vec3::ZERO);
     // The curve in the face is where f = y − 0.25 vanishes.
-    let landing = frame.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1);
+    let landing = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1);
     assert_eq!(landing, Some(Vec3::new(1.0, 0.25, 0.2)));
-    let too_far = frame.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01);
+    let too_far = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01);
     assert_eq!(too_far, None);
-    let off_the_box = frame.landing(Planes::of(1), Vec3::new(1.0, 0.99, 0.2), -0.05, Vec3::Y, 0.1);
+    let off_the_box = walls.landing(Planes::of(1), Vec3::new(1.0, 0.99, 0.2), -0.05, Vec3::Y, 0.1);
     assert_eq!(off_the_box, None);
 }
 
@@ -124,7 +124,7 @@ proptest! {
         prop_assert_eq!(layer.mesh.euler(), 1);
         let corners = |layer: &Layer| {
             let vertices = 0..layer.position.len() as u32;
-            vertices.filter(|&v| layer.mesh.has_vertex(v) && layer.frame.planes(v).is_corner()).count()
+            vertices.filter(|&v| layer.mesh.has_vertex(v) && layer.walls.planes(v).is_corner()).count()
         };
         prop_assert_eq!(corners(&layer), 4);
 

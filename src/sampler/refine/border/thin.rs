@@ -30,8 +30,10 @@ impl Layer {
                 continue;
             }
             let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
-            let first = if self.room(a, b) <= self.room(b, a) { [a, b] } else { [b, a] };
-            let _ = first.into_iter().any(|v| self.take_out(v, spacing));
+            let (first, second) = if self.room(a, b) <= self.room(b, a) { (a, b) } else { (b, a) };
+            if !self.take_out(first, spacing) {
+                self.take_out(second, spacing);
+            }
         }
     }
 
@@ -47,7 +49,7 @@ impl Layer {
 
     /// Merges a particle into the nearest of its neighbours for which that is allowed; whether it did.
     fn take_out(&mut self, v: u32, spacing: f32) -> bool {
-        if self.frame.planes(v).is_corner() {
+        if self.walls.planes(v).is_corner() {
             return false;
         }
         let mut ways: Vec<u32> = self.mesh.around(v).collect();

@@ -57,7 +57,7 @@ impl Planes {
 
 /// The box of a layer, and the faces on which its particles lie.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Frame {
+pub(super) struct Walls {
     /// The largest box of single-precision numbers in the box that is sampled.
     pub(super) lo: Vec3,
     pub(super) hi: Vec3,
@@ -67,8 +67,8 @@ pub(super) struct Frame {
     pub(super) planes: Vec<Planes>,
 }
 
-impl Frame {
-    /// The frame of particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond
+impl Walls {
+    /// The walls around particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond
     /// it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
@@ -82,7 +82,7 @@ impl Frame {
         Self { lo, hi, slack, planes }
     }
 
-    /// The frame of the next level, with planes still to be filled.
+    /// The walls of the next level, with planes still to be filled.
     pub(super) fn finer(&self, count: usize) -> Self {
         let planes = Vec::with_capacity(if self.is_near() { count } else { 0 });
         Self { slack: 0.5 * self.slack, planes, ..*self }
@@ -108,11 +108,6 @@ impl Frame {
             }
             self.planes[v as usize] = planes;
         }
-    }
-
-    /// Adds the faces of the next particle of a level under way.
-    pub(super) fn push(&mut self, planes: Planes) {
-        self.planes.push(planes);
     }
 
     pub(super) fn truncate(&mut self, len: usize) {
