@@ -27,8 +27,7 @@ const MAX_LEVELS: u32 = 6;
 const MAX_BEND: f64 = 0.9;
 /// Largest product of coarse spacing and curvature for a front that is refined once only. There is no finer front to choose, and
 /// the checks that follow judge whether it is good enough. With 2.3 it was on the chmutov, the rabbit and the figure with sack and
-/// hat, with
-/// 3.0 on the Clebsch cubic.
+/// hat, with 3.0 on the Clebsch cubic.
 const MAX_BEND_ONCE: f64 = 3.2;
 
 /// A coarse front must be joined to triangles in so many rounds of filling holes at most, this share of them beyond dispute, and no

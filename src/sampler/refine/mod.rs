@@ -12,7 +12,7 @@
 //!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes
 //!   them where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G. Dueck and T.
 //!   Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
-//! * *Lloyd's method*, at the last level and near defects only, evens out the cells that the springs leave too small at fives and
+//! * *Lloyd's method*, at the last level of one size and near defects only, evens out the cells that the springs leave too small at fives and
 //!   too large at sevens: Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
 //!
 //! Everything is in single precision and in a fixed order: the same bits natively and in WebAssembly, however a run is cut into
@@ -360,11 +360,8 @@ impl Refinement {
         next: u32,
         end: u32,
     ) -> Result<(Task, u32), Refusal> {
-        let springs = Springs {
-            spacing: self.level.spacing,
-            theta: self.level.recipe.theta,
-            omega: self.level.recipe.omega,
-        };
+        let springs =
+            Springs { spacing: self.level.spacing, theta: self.level.recipe.theta, omega: recipe::OMEGA };
         let layer = &mut self.layer;
         let mut ground = Ground { field, block: &mut self.tools.block };
         let kind = self.level.recipe.passes[pass];
