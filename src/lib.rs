@@ -99,8 +99,9 @@
 //!
 //! ```text
 //! math ← field ← differential ← sampler ← session ← web
-//!           ↑              ↖ quality ← export ↙
-//!       pointcloud   ↖ extent ← session
+//!           ↑      ↑       ↖ quality ← export ↙
+//!       pointcloud  ↑   ↖ extent ← session
+//!                  paper ← lesson ← web
 //! ```
 //!
 //! An arrow points at what is used; `tests/architecture.rs` names every use that is allowed and fails on any other.
@@ -112,8 +113,8 @@
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `slices`: long work that can be left and gone on with, as measuring is.
 //! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
-//! * [`reference`](mod@reference): the paper's algorithms and those it compares them with, written for reading, with a log of every
-//!   event.
+//! * [`paper`]: the paper's algorithms, to be read beside it, and the oracle of the fast fronts.
+//! * [`lesson`]: runs of them with a log of every event, and the methods that the paper compares them with.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.
@@ -128,15 +129,16 @@ pub mod differential;
 pub mod export;
 pub mod extent;
 pub mod field;
+pub mod lesson;
 pub mod math;
 pub mod mesh;
 #[cfg(all(test, feature = "points"))]
 mod page_types;
+pub mod paper;
 pub mod particles;
 #[cfg(feature = "points")]
 pub mod pointcloud;
 pub mod quality;
-pub mod reference;
 pub mod render;
 pub mod sampler;
 pub mod session;

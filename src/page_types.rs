@@ -1,8 +1,9 @@
 //! Writes the types of what crosses to the page as TypeScript, and holds the page's file to them.
 
 use crate::field::model::SolvedModel;
+use crate::lesson::{self, LessonField};
+use crate::paper::Push;
 use crate::pointcloud::job;
-use crate::reference::{self, LessonField};
 use crate::sampler::{Progress, Start};
 use crate::session::{Description, Fault, FieldAnswer, FieldRequest, MeshAnswer, Report};
 use std::collections::BTreeMap;
@@ -80,13 +81,13 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<job::Progress>();
     declarations.add::<job::Fault>();
     declarations.add::<LessonField>();
-    declarations.add::<reference::Settings>();
-    declarations.add::<reference::Progress>();
-    declarations.add::<reference::Chapter>();
-    declarations.add::<reference::Event>();
-    declarations.add::<reference::Life>();
-    declarations.add::<reference::Iterate>();
-    declarations.add::<reference::Push>();
+    declarations.add::<lesson::Settings>();
+    declarations.add::<lesson::Progress>();
+    declarations.add::<lesson::Chapter>();
+    declarations.add::<lesson::Event>();
+    declarations.add::<lesson::Life>();
+    declarations.add::<lesson::Iterate>();
+    declarations.add::<Push>();
     let text: String = std::iter::once(HEAD.to_owned()).chain(declarations.found.into_values()).collect();
 
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/src/engine/core-types.d.ts");

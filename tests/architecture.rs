@@ -50,18 +50,19 @@ const ROOMS: [Room; 4] = [
                     "export",
                 ],
             ),
-            // The paper written for reading, and the oracle of the fast fronts: it shares some words with the sampler, no
-            // algorithm.
-            ("reference", &["math", "field", "differential", "particles", "sampler"]),
+            // The paper written for reading, and the oracle of the fast fronts: it knows nothing of them.
+            ("paper", &["math", "field", "differential", "particles"]),
+            // The lesson shares some words with the sampler, no algorithm.
+            ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
             // Compiled for tests alone: the types of the page.
-            ("page_types", &["field", "pointcloud", "reference", "sampler", "session"]),
+            ("page_types", &["field", "pointcloud", "paper", "lesson", "sampler", "session"]),
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
             ("web/values", &["answer"]),
             ("web/core", &["field", "export", "session"]),
             ("web/points", &["field", "pointcloud"]),
-            ("web/lesson", &["math", "field", "reference", "session"]),
+            ("web/lesson", &["math", "field", "paper", "lesson", "session"]),
             ("web/render", &["render"]),
         ],
     ),

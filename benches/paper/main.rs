@@ -11,9 +11,10 @@ mod steps;
 
 use draw::{Colour, View, draw, write_row};
 use glam::Vec3;
+use marching_particles::lesson::{self, Lesson, Method};
 use marching_particles::math::grouped;
+use marching_particles::paper::Order;
 use marching_particles::quality;
-use marching_particles::reference::{self, Method, Reference};
 use marching_particles::sampler::{LawKind, Sampling};
 use printed::{Line, Printed, TABLE_1, TABLE_2};
 use runs::{End, Job, Outcome, Set, Surface};
@@ -121,8 +122,8 @@ machine makes them longer. Particles, steps and figures are the same on every ma
 
 - **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
   same column, and ratios.
-- **Faithful** is `src/reference`: the paper's algorithms, and those it compares them with, as they are written, one particle after the
-  other, in double precision, without regard for speed. Ratios of times are of faithful runs: like against like.
+- **Faithful** is the paper's algorithms (`src/paper`), and those it compares them with (`src/lesson`), as they are written, one particle
+  after the other, in double precision, without regard for speed. Ratios of times are of faithful runs: like against like.
 - **Fast** is the sampler of the page and the command line, with its default settings.
 - All methods of a table have the same surface and the same radius, or law of the radius: that with which the fast sampler places the
   printed number of particles.
@@ -161,7 +162,7 @@ fn run_line(line: &Line, plan: &Plan) -> Runs {
     let job = Job::new(line.id, line.sampling, plan.count(line.count));
     let method = other_method(line).1;
     let settings = job.faithful();
-    let system = reference::Settings { method, ..settings.clone() };
+    let system = lesson::Settings { method, ..settings.clone() };
     let runs = Runs {
         ours: job.run_faithful(&settings, f64::INFINITY),
         fast: job.run_fast(),
@@ -365,7 +366,7 @@ fn figures(out: &mut dyn Write, plan: &Plan, shown: &Shown) -> io::Result<()> {
     figure_12(album, plan)
 }
 
-fn faithful(job: &Job, change: impl FnOnce(&mut reference::Settings)) -> Set {
+fn faithful(job: &Job, change: impl FnOnce(&mut lesson::Settings)) -> Set {
     let mut settings = job.faithful();
     change(&mut settings);
     job.run_faithful(&settings, f64::INFINITY).set
@@ -404,16 +405,16 @@ fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
 
 fn figures_7_and_8(album: &mut Album) -> io::Result<()> {
     let surface = Surface::of("ellipsoid");
-    let settings = reference::Settings {
+    let settings = lesson::Settings {
         sampling: Sampling::Adaptive,
         law: LawKind::SumOfCurvatures,
         law_scale: 0.2,
         radius_min: 0.03,
         radius_max: 0.15,
         relax_steps: 0,
-        ..reference::Settings::default()
+        ..lesson::Settings::default()
     };
-    let mut run = Reference::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
+    let mut run = Lesson::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
     while !run.step(1_000).is_done {}
     let events = run.events(0, u32::MAX);
     run.seek(u32::MAX);
@@ -465,20 +466,19 @@ fn figure_11(album: &mut Album) -> io::Result<()> {
     let surface = Surface::of("sphere");
     let seed = EYE.normalize_or(Vec3::Z).as_dvec3().to_array();
     let of = |order| {
-        let settings = reference::Settings {
+        let settings = lesson::Settings {
             radius: 0.035,
             order,
             seeds: vec![seed],
             relax_steps: 0,
-            ..reference::Settings::default()
+            ..lesson::Settings::default()
         };
-        let mut run = Reference::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
+        let mut run = Lesson::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
         while !run.step(1_000).is_done {}
         run.seek(u32::MAX);
-        Set::of_reference(run.particles())
+        Set::of_faithful(run.particles())
     };
-    let squares = [of(reference::Order::Queue), of(reference::Order::Stack)]
-        .map(|set| all_of(&set, Vec3::Z, EYE, Colour::Level));
+    let squares = [of(Order::Queue), of(Order::Stack)].map(|set| all_of(&set, Vec3::Z, EYE, Colour::Level));
     album.squares(
         11,
         &squares,

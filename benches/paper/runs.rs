@@ -5,10 +5,11 @@ use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
+use marching_particles::lesson::{self, ChapterKind, Lesson};
 use marching_particles::math::Bounds;
+use marching_particles::paper::Particle;
 use marching_particles::pointcloud::models;
 use marching_particles::quality::{self, Figures, Sizes};
-use marching_particles::reference::{self, ChapterKind, Reference};
 use marching_particles::sampler::{LawKind, Phase, Sampler, Sampling, Settings, SizeMode};
 use std::time::Instant;
 
@@ -57,7 +58,7 @@ pub(crate) struct Set {
 }
 
 impl Set {
-    pub(crate) fn of_reference(particles: &[reference::Particle]) -> Self {
+    pub(crate) fn of_faithful(particles: &[Particle]) -> Self {
         Self {
             position: particles.iter().map(|particle| particle.p().as_vec3()).collect(),
             normal: particles.iter().map(|particle| particle.n().as_vec3()).collect(),
@@ -160,10 +161,10 @@ impl Job {
         Self { surface, sizes, radius }
     }
 
-    /// Settings of the reference for these sizes, with the paper's choices.
-    pub(crate) fn faithful(&self) -> reference::Settings {
+    /// Settings of the lesson for these sizes, with the paper's choices.
+    pub(crate) fn faithful(&self) -> lesson::Settings {
         let diagonal = self.surface.bounds.diagonal();
-        reference::Settings {
+        lesson::Settings {
             sampling: self.sizes.sampling,
             radius: self.radius,
             law: self.sizes.radius_law,
@@ -176,7 +177,7 @@ impl Job {
             },
             max_particles: MOST_PARTICLES,
             max_iterations: MOST_ITERATIONS,
-            ..reference::Settings::default()
+            ..lesson::Settings::default()
         }
     }
 
@@ -227,10 +228,10 @@ impl Job {
     }
 
     /// A method as it is written.
-    pub(crate) fn run_faithful(&self, settings: &reference::Settings, limit_s: f64) -> Outcome {
+    pub(crate) fn run_faithful(&self, settings: &lesson::Settings, limit_s: f64) -> Outcome {
         let clock = Clock::start();
         let mut run =
-            Reference::new(self.surface.field(), &self.surface.bounds, settings).expect("valid settings");
+            Lesson::new(self.surface.field(), &self.surface.bounds, settings).expect("valid settings");
         let [mut generation, mut relaxation, mut last_step] = [clock.seconds(), 0.0, 0.0];
         let mut chapter = 0;
         let mut end = End::Done;
@@ -253,7 +254,7 @@ impl Job {
             }
         }
         run.seek(u32::MAX);
-        let set = Set::of_reference(run.particles());
+        let set = Set::of_faithful(run.particles());
         let progress = run.progress();
         let figures = self.figures(&set);
         let (steps, evaluations) = (progress.steps, progress.evaluations);
@@ -261,7 +262,7 @@ impl Job {
     }
 }
 
-/// Units of work of the reference between two looks at the clock.
+/// Units of work of the lesson between two looks at the clock.
 const UNITS: u32 = 500;
 
 /// The fast sampler at its end. `each` is told the phase of every step.

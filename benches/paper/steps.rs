@@ -1,7 +1,8 @@
-//! Figs 7 and 8: how adaptive children are placed, drawn from the events of the reference in the tangent plane.
+//! Figs 7 and 8: how adaptive children are placed, drawn from the events of the run in the tangent plane.
 
 use glam::{DVec2, DVec3};
-use marching_particles::reference::{Event, Particle, Vector};
+use marching_particles::lesson::{Event, Vector};
+use marching_particles::paper::Particle;
 use std::fmt::Write as _;
 
 /// Side of a panel, and of its caption.

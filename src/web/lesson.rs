@@ -1,11 +1,12 @@
-//! The lesson's bundle: a [`Reference`] behind plain objects and copies of its particles.
+//! The lesson's bundle: a [`lesson::Lesson`] behind plain objects and copies of its particles.
 
 use super::values::{answer, to_js};
 use crate::field::formula::FormulaField;
 use crate::field::rbf::{RbfData, RbfField};
 use crate::field::{Field, Jet};
+use crate::lesson::{self, LessonField, Settings};
 use crate::math::{Bounds, Sym3};
-use crate::reference::{self, LessonField, Particle, Reference, Settings};
+use crate::paper::Particle;
 use crate::session::{Fault, FaultKind};
 use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
@@ -32,7 +33,7 @@ const TYPES: &str = r"import type {
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Lesson {
-    run: Option<Reference>,
+    run: Option<lesson::Lesson>,
 }
 
 fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
@@ -131,7 +132,7 @@ impl Lesson {
     /// The chapters from number `first` on: an array of `LessonChapter`.
     #[wasm_bindgen(unchecked_return_type = "LessonChapter[]")]
     pub fn chapters(&self, first: usize) -> JsValue {
-        let chapters = self.run.as_ref().map(Reference::chapters).unwrap_or_default();
+        let chapters = self.run.as_ref().map(lesson::Lesson::chapters).unwrap_or_default();
         to_js(&chapters.get(first..).unwrap_or_default())
     }
 
@@ -219,21 +220,24 @@ impl Lesson {
 
     /// Digest of the particles at the moment that was sought, 16 hexadecimal digits.
     pub fn digest(&self) -> String {
-        format!("{:016x}", reference::digest(self.run.as_ref().map(Reference::particles).unwrap_or_default()))
+        format!(
+            "{:016x}",
+            lesson::digest(self.run.as_ref().map(lesson::Lesson::particles).unwrap_or_default())
+        )
     }
 
     fn begin(&mut self, field: Result<(Box<dyn Field>, Bounds), Fault>, settings: JsValue) -> JsValue {
         self.run = None;
         let settings = read::<Settings>(settings, FaultKind::Settings);
         answer(field.and_then(|(field, bounds)| {
-            let run = Reference::new(field, &bounds, &settings?)
+            let run = lesson::Lesson::new(field, &bounds, &settings?)
                 .map_err(|error| Fault::new(FaultKind::Settings, &error))?;
             Ok(self.run.insert(run).progress())
         }))
     }
 
     fn column<T>(&self, of: impl Fn(&Particle) -> T) -> Vec<T> {
-        self.run.as_ref().map(Reference::particles).unwrap_or_default().iter().map(of).collect()
+        self.run.as_ref().map(lesson::Lesson::particles).unwrap_or_default().iter().map(of).collect()
     }
 }
 

@@ -332,11 +332,12 @@ fn levels_increase_along_the_columns() {
     assert!(particles.parent[1..].is_sorted());
 }
 
-/// The reference pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there
+/// The paper pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there
 /// are as many, and they are as large.
 #[test]
-fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_reference() {
-    use marching_particles::reference::{self, Reference};
+fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
+    use marching_particles::lesson::{self, Lesson};
+    use marching_particles::paper::Matched;
     for id in ["sphere", "ellipsoid", "torus"] {
         let surface = gallery::find(id).expect("a gallery surface");
         let diagonal = surface.bounds.diagonal();
@@ -353,30 +354,29 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_reference() {
         };
         let sampler = sampled(id, &settings);
         let fast = sampler.particles();
-        let same = reference::Settings {
+        let same = lesson::Settings {
             sampling: Sampling::Adaptive,
             law: LawKind::MaxCurvature,
             law_scale: scale,
             radius_min: least * diagonal,
             radius_max: largest * diagonal,
             seeds: vec![fast.position[0].as_dvec3().to_array()],
-            matched: reference::Matched::Stay,
+            matched: Matched::Stay,
             relax_steps: 0,
-            ..reference::Settings::default()
+            ..lesson::Settings::default()
         };
-        let mut run =
-            Reference::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
+        let mut run = Lesson::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
         while !run.step(1_000).is_done {}
         run.seek(u32::MAX);
-        let of_reference = run.particles();
+        let of_paper = run.particles();
         let mean = |sum: f64, count: usize| sum / count as f64;
         let radius = mean(fast.radius.iter().map(|&r| f64::from(r)).sum(), fast.len());
-        let wanted = mean(of_reference.iter().map(|p| p.radius).sum(), of_reference.len());
-        let count = fast.len() as f64 / of_reference.len() as f64;
+        let wanted = mean(of_paper.iter().map(|p| p.radius).sum(), of_paper.len());
+        let count = fast.len() as f64 / of_paper.len() as f64;
         let context = format!(
-            "{id}: {} particles of mean radius {radius:.5}, the reference {} of {wanted:.5}",
+            "{id}: {} particles of mean radius {radius:.5}, by the paper {} of {wanted:.5}",
             fast.len(),
-            of_reference.len()
+            of_paper.len()
         );
         assert!((count - 1.0).abs() < 0.06, "{context}");
         assert!((radius / wanted - 1.0).abs() < 0.03, "{context}");

@@ -1,11 +1,12 @@
-//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with the reference, particle by
-//! particle.
+//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with the paper as it is written, the
+//! reference, particle by particle.
 
 use crate::smooth::smooth;
 use marching_particles::field::gallery;
+use marching_particles::lesson::{self, Event, Lesson};
+use marching_particles::paper::Particle;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures};
-use marching_particles::reference::{self, Event, Reference};
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
@@ -39,16 +40,16 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
 }
 
 /// The reference with the rules of the fast front, from the same seed.
-fn reference_of(id: &str, sampler: &Sampler) -> Reference {
+fn reference_of(id: &str, sampler: &Sampler) -> Lesson {
     let surface = gallery::find(id).expect("a gallery surface");
     assert_eq!(sampler.counts().seeds, 1, "{id}");
-    let settings = reference::Settings {
+    let settings = lesson::Settings {
         radius: f64::from(sampler.radius() as f32),
         seeds: vec![sampler.particles().position[0].as_dvec3().to_array()],
         relax_steps: 0,
-        ..reference::Settings::of_fast_front()
+        ..lesson::Settings::of_fast_front()
     };
-    let mut run = Reference::new(Box::new(surface.field()), &surface.bounds, &settings)
+    let mut run = Lesson::new(Box::new(surface.field()), &surface.bounds, &settings)
         .unwrap_or_else(|error| panic!("{id}: {error}"));
     while !run.step(1_000).is_done {}
     run.seek(u32::MAX);
@@ -57,7 +58,7 @@ fn reference_of(id: &str, sampler: &Sampler) -> Reference {
 
 /// Number of the first particle whose slots have other fates than in the reference, or of all; and the largest distance between
 /// a particle before it and that of the reference. Those must have the same parent and the same level.
-fn agreement(id: &str, fast: &Particles, reference: &[reference::Particle]) -> (usize, f64) {
+fn agreement(id: &str, fast: &Particles, reference: &[Particle]) -> (usize, f64) {
     let both = fast.len().min(reference.len());
     let first = (0..both).find(|&i| fast.slots[i] != reference[i].slots).unwrap_or(both);
     let mut apart = 0.0_f64;
@@ -119,17 +120,17 @@ fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
         let surface = gallery::find(id).expect("a gallery surface");
         let sampler = front(id, share);
         let (fast, radius) = (sampler.particles(), f64::from(sampler.radius() as f32));
-        let settings = reference::Settings {
+        let settings = lesson::Settings {
             radius,
             seeds: vec![fast.position[0].as_dvec3().to_array()],
             relax_steps: 0,
-            ..reference::Settings::of_fast_front()
+            ..lesson::Settings::of_fast_front()
         };
-        let placed: Vec<reference::Particle> = (0..fast.len())
+        let placed: Vec<Particle> = (0..fast.len())
             .map(|i| {
                 let parent = Some(fast.parent[i]).filter(|&parent| parent != Particles::NO_PARENT);
                 let (position, normal) = (fast.position[i].as_dvec3(), fast.normal[i].as_dvec3());
-                reference::Particle::placed(position, normal, radius, parent, fast.level[i])
+                Particle::placed(position, normal, radius, parent, fast.level[i])
             })
             .collect();
         let mut farthest = 0.0_f64;
@@ -138,7 +139,7 @@ fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
                 [level, level + 1, level + 2].map(|k| fast.level.partition_point(|&own| own < k));
             let field = Box::new(surface.field());
             let there = placed[..end].to_vec();
-            let mut run = Reference::going_on(field, &surface.bounds, &settings, there, first as u32)
+            let mut run = Lesson::going_on(field, &surface.bounds, &settings, there, first as u32)
                 .unwrap_or_else(|error| panic!("{id}: {error}"));
             while !run.chapters().first().is_some_and(|chapter| chapter.is_over) {
                 run.step(1);

@@ -28,6 +28,7 @@ mod mesh_parity;
 mod models;
 mod near_sheets;
 #[cfg(feature = "points")]
+mod paper;
 mod parity;
 #[cfg(feature = "points")]
 mod pointcloud;
@@ -40,7 +41,6 @@ mod quality;
 #[cfg(feature = "points")]
 mod rbf;
 mod readme;
-mod reference;
 mod refine;
 mod relax;
 mod session;

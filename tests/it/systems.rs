@@ -1,15 +1,16 @@
 //! Tests of the two particle systems that the paper compares its methods with: they do what their sources say.
 
 use marching_particles::field::gallery;
-use marching_particles::reference::{Event, Method, Particle, Reference, Settings};
+use marching_particles::lesson::{Event, Lesson, Method, Settings};
+use marching_particles::paper::Particle;
 use marching_particles::sampler::{LawKind, Sampling};
 
-fn start(surface: &str, settings: &Settings) -> Reference {
+fn start(surface: &str, settings: &Settings) -> Lesson {
     let surface = gallery::find(surface).expect("a gallery surface");
-    Reference::new(Box::new(surface.field()), &surface.bounds, settings).expect("valid settings")
+    Lesson::new(Box::new(surface.field()), &surface.bounds, settings).expect("valid settings")
 }
 
-fn run(surface: &str, settings: &Settings) -> Reference {
+fn run(surface: &str, settings: &Settings) -> Lesson {
     let mut run = start(surface, settings);
     while !run.step(10_000).is_done {}
     run.seek(u32::MAX);

@@ -1,4 +1,4 @@
-// Holds the lesson as WebAssembly to the digests that the native one is held to by tests/it/reference.rs.
+// Holds the lesson as WebAssembly to the digests that the native one is held to by tests/it/paper.rs.
 //
 // Usage: node tests/wasm/lesson.mjs, after `cargo xtask wasm lesson`.
 import { readFile } from 'node:fs/promises';

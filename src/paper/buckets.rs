@@ -1,19 +1,29 @@
 //! Space partitioning (§4.4, "any other hierarchical partitioning should work fine"): cubes of one size in an ordered map.
 
-use super::event::Nearby;
-use super::state::Particle;
+use super::particle::Particle;
 use glam::DVec3;
+use serde::Serialize;
 use std::collections::BTreeMap;
+
+/// A particle near another one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonNearby"))]
+pub struct Nearby {
+    /// Its index.
+    pub particle: u32,
+    /// Distance to it.
+    pub distance: f64,
+}
 
 /// Particles by the cube that they are in.
 #[derive(Clone, Debug)]
-pub(super) struct Buckets {
+pub(crate) struct Buckets {
     side: f64,
     cubes: BTreeMap<[i32; 3], Vec<u32>>,
 }
 
 impl Buckets {
-    pub(super) fn new(side: f64, particles: &[Particle]) -> Self {
+    pub(crate) fn new(side: f64, particles: &[Particle]) -> Self {
         let mut buckets = Self { side, cubes: BTreeMap::new() };
         for (i, particle) in particles.iter().enumerate() {
             buckets.insert(particle.p(), i as u32);
@@ -25,12 +35,12 @@ impl Buckets {
         (p / self.side).floor().to_array().map(|k| k as i32)
     }
 
-    pub(super) fn insert(&mut self, p: DVec3, particle: u32) {
+    pub(crate) fn insert(&mut self, p: DVec3, particle: u32) {
         self.cubes.entry(self.cube(p)).or_default().push(particle);
     }
 
     /// The particles within `reach` of a point, by index.
-    pub(super) fn near(&self, particles: &[Particle], centre: DVec3, reach: f64) -> Vec<Nearby> {
+    pub(crate) fn near(&self, particles: &[Particle], centre: DVec3, reach: f64) -> Vec<Nearby> {
         let ([x0, y0, z0], [x1, y1, z1]) = (self.cube(centre - reach), self.cube(centre + reach));
         let mut found = Vec::new();
         for x in x0..=x1 {

@@ -1,6 +1,6 @@
-//! What an iteration of a particle system knows of a particle beside its place.
+//! What moves a particle of a particle system in an iteration, and where to.
 
-use super::state::Particle;
+use crate::paper::Particle;
 use glam::DVec3;
 
 /// A particle moves by no more than this in an iteration, in radii.
@@ -8,7 +8,7 @@ pub(super) const MAX_MOVE: f64 = 0.35;
 
 /// Sums of force and energy over the neighbours of a particle.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Felt {
+pub(super) struct Dynamics {
     /// Sum of the repulsion.
     pub(super) force: DVec3,
     /// How compressed it is: D_i of Witkin and Heckbert, or Σ (overlap / mean radius)².

@@ -11,10 +11,9 @@
 //! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a time step that
 //!   is not small, a pair that has just divided could leave the surface, or get negative radii.
 
-use super::felt::{Felt, MAX_MOVE, Step};
-use super::state::Particle;
-use super::surface::Surface;
-use super::walk::Setup;
+use super::course::Setup;
+use super::dynamics::{Dynamics, MAX_MOVE, Step};
+use crate::paper::{ImplicitSurface, Particle};
 use glam::DVec3;
 
 /// Energies reach as far as this, in σ.
@@ -47,7 +46,7 @@ const LEAST: f64 = 0.05;
 
 /// σ̂.
 fn wanted(setup: &Setup) -> f64 {
-    setup.radius()
+    setup.settings.radius
 }
 
 /// σ_max, which is d/2.
@@ -63,29 +62,38 @@ fn largest(setup: &Setup) -> f64 {
 ///
 /// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source subtracts the two terms as printed; its
 /// erratum adds them. Every pair is met from both sides, each with its own σ.
-pub(super) fn feel(felt: &mut [Felt], (i, own): (usize, &Particle), (j, other): (usize, &Particle)) {
+pub(super) fn interact(
+    dynamics: &mut [Dynamics],
+    (i, own): (usize, &Particle),
+    (j, other): (usize, &Particle),
+) {
     let offset = own.p() - other.p();
     let sigma_sq = own.radius * own.radius;
     let energy = ALPHA * libm::exp(-offset.length_squared() / (2.0 * sigma_sq));
-    felt[i].energy += energy;
-    felt[i].moment += offset.length_squared() * energy;
-    felt[i].force += offset * (energy / sigma_sq);
-    felt[j].force -= offset * (energy / sigma_sq);
+    dynamics[i].energy += energy;
+    dynamics[i].moment += offset.length_squared() * energy;
+    dynamics[i].force += offset * (energy / sigma_sq);
+    dynamics[j].force -= offset * (energy / sigma_sq);
 }
 
 /// "Compute the repulsion radius", "update the position": one time step.
 ///
 /// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface, less φ f ∇f/|∇f|², which leads
 /// back to the surface.
-pub(super) fn step(surface: &mut Surface, setup: &Setup, own: &mut Particle, felt: &mut Felt) -> Step {
+pub(super) fn step(
+    surface: &mut ImplicitSurface,
+    setup: &Setup,
+    own: &mut Particle,
+    dynamics: &mut Dynamics,
+) -> Step {
     let sigma = own.radius;
     let normal = own.n();
-    let force = felt.force * (sigma * sigma);
+    let force = dynamics.force * (sigma * sigma);
     let velocity = force - normal * (normal.dot(force) + PHI * own.height);
-    felt.is_at_rest = velocity.length() < GAMMA * sigma;
+    dynamics.is_at_rest = velocity.length() < GAMMA * sigma;
 
-    let stretch = felt.moment / (sigma * sigma * sigma);
-    let growth = RHO * (WANTED_ENERGY - felt.energy) / (stretch + BETA / largest(setup));
+    let stretch = dynamics.moment / (sigma * sigma * sigma);
+    let growth = RHO * (WANTED_ENERGY - dynamics.energy) / (stretch + BETA / largest(setup));
     // The radius changes whether the particle can go or not.
     own.radius = (sigma + growth * TIME_STEP)
         .max(sigma / MAX_GROWTH)
@@ -106,13 +114,13 @@ pub(super) fn step(surface: &mut Surface, setup: &Setup, own: &mut Particle, fel
 }
 
 /// Whether a particle dies: near equilibrium, σ < δσ̂, and a random number above σ/(δσ̂).
-pub(super) fn dies(setup: &Setup, own: &Particle, felt: &Felt, chance: f64) -> bool {
+pub(super) fn dies(setup: &Setup, own: &Particle, dynamics: &Dynamics, chance: f64) -> bool {
     let share = own.radius / (DELTA * wanted(setup));
-    felt.is_at_rest && share < 1.0 && chance > share
+    dynamics.is_at_rest && share < 1.0 && chance > share
 }
 
 /// Whether a particle divides: near equilibrium, and either σ ≥ σ_max, or D > νÊ and σ > σ̂.
-pub(super) fn divides(setup: &Setup, own: &Particle, felt: &Felt) -> bool {
-    let is_large = felt.energy > NU * WANTED_ENERGY && own.radius > wanted(setup);
-    felt.is_at_rest && (own.radius >= largest(setup) || is_large)
+pub(super) fn divides(setup: &Setup, own: &Particle, dynamics: &Dynamics) -> bool {
+    let is_large = dynamics.energy > NU * WANTED_ENERGY && own.radius > wanted(setup);
+    dynamics.is_at_rest && (own.radius >= largest(setup) || is_large)
 }

@@ -3,16 +3,16 @@
 //! # Differs from the paper
 //!
 //! * The paper names no step lengths.
-//! * A child is added if the free angle τ is at least a share of φ ([`Settings::fit`](super::Settings::fit)).
+//! * A child is added if the free angle τ is at least a share of φ ([`Rules::fit`](super::Rules::fit)).
 //! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than the match tolerance
 //!   allows is not added.
 
-use super::event::{Event, Nearby};
-use super::settings::Order;
-use super::state::is_same_sheet;
-use super::surface::{Circle, Landing, Surface};
-use super::uniform::Frame;
-use super::walk::{Setup, Walk};
+use super::Run;
+use super::buckets::Nearby;
+use super::observer::{ChildSlot, Comparison, Observer};
+use super::particle::{Frame, is_same_sheet};
+use super::projection::Circle;
+use super::surface::Landing;
 use crate::particles::SlotFate;
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
@@ -73,6 +73,10 @@ struct Circumference {
 }
 
 impl Circumference {
+    fn child(&self) -> ChildSlot {
+        ChildSlot { parent: self.parent, slot: self.slot }
+    }
+
     fn place(&self, centre: DVec2) -> DVec3 {
         self.p + self.frame.u * centre.x + self.frame.w * centre.y
     }
@@ -112,23 +116,14 @@ impl Circumference {
     }
 }
 
-impl Walk {
+impl<O: Observer> Run<O> {
     /// Treats a particle: places children in each of the free spaces around it (§5.3).
-    pub(super) fn treat_adaptive(&mut self, surface: &mut Surface, setup: &Setup, log: &mut Vec<Event>) {
-        let next = match setup.settings.order {
-            Order::Queue => self.place.waiting.pop_front(),
-            Order::Stack => self.place.waiting.pop_back(),
-        };
-        let Some(particle) = next else { return };
-        log.push(Event::Taken { particle });
+    pub(super) fn treat_adaptive(&mut self, particle: u32) {
         let own = self.particles[particle as usize];
         // Gather the neighbouring particles (Fig. 8a).
-        let reach = REACH * own.radius;
-        let mut neighbours = self.buckets.near(&self.particles, own.p(), reach);
-        neighbours.retain(|near| near.particle != particle);
-        log.push(Event::Gathered { particle, reach, neighbours: neighbours.clone() });
+        let neighbours = self.gather(particle, REACH * own.radius);
         let frame = self.tangent_frame(particle);
-        self.note_frame(particle, &frame, None, log);
+        self.seen.frame(particle, &frame, None);
         let mut ring = Circumference {
             parent: particle,
             p: own.p(),
@@ -139,28 +134,21 @@ impl Walk {
         };
         ring.around = neighbours.iter().filter_map(|near| self.around(&ring, near)).collect();
         if let Some(parent) = own.parent {
-            self.decide((particle, 0), SlotFate::Parent, Some(parent), log);
+            self.decide(ring.child(), SlotFate::Parent, Some(parent));
             ring.slot = 1;
         }
         // "If we have n existing particles we have n free available spaces."
         let mut touching: Vec<Around> = ring.around.iter().filter(|other| other.touches).copied().collect();
         touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
         if touching.is_empty() {
-            let (parent, angles_rad) = (particle, [0.0, TAU]);
-            log.push(Event::Arc { parent, before: None, behind: None, angles_rad });
-            self.fill_arc(surface, setup, &mut ring, None, log);
+            self.seen.space(particle, None);
+            self.fill_space(&mut ring, None);
         }
         for (k, &before) in touching.iter().enumerate() {
             let behind = touching[(k + 1) % touching.len()];
-            log.push(Event::Arc {
-                parent: particle,
-                before: Some(before.particle),
-                behind: Some(behind.particle),
-                angles_rad: [before.disc.angle(), behind.disc.angle()],
-            });
-            self.fill_arc(surface, setup, &mut ring, Some([before.disc, behind.disc]), log);
+            self.seen.space(particle, Some([before, behind].map(|end| (end.particle, end.disc.angle()))));
+            self.fill_space(&mut ring, Some([before.disc, behind.disc]));
         }
-        self.finish(particle, surface, log);
     }
 
     /// A neighbour of the parent's sheet as a disc.
@@ -175,31 +163,24 @@ impl Walk {
         })
     }
 
-    /// Places children in a free space, from its beginning on, until the next one has no room.
-    fn fill_arc(
-        &mut self,
-        surface: &mut Surface,
-        setup: &Setup,
-        ring: &mut Circumference,
-        ends: Option<[Disc; 2]>,
-        log: &mut Vec<Event>,
-    ) {
+    /// Places children in a free space, from its beginning on, until the next one has no room (Fig. 8).
+    fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[Disc; 2]>) {
         let mut last = ends.map(|[before, _]| before);
         let mut behind = ends.map(|[_, behind]| behind);
-        while ring.slot < MAX_SLOTS && !self.place.is_capped {
-            let of = (ring.parent, ring.slot);
-            let child = pushed(surface, setup, ring, last, log);
+        while ring.slot < MAX_SLOTS && !self.is_capped {
+            let child = self.pushed(ring, last);
+            // "The projection of its diameter", φ, and "the actual free circumference", τ (Fig. 7g).
             let phi_rad = ring.taken(child);
             let tau_rad = match (last, behind) {
                 (Some(last), Some(behind)) => ring.free(child, last, behind),
                 _ => TAU,
             };
-            let fits = tau_rad >= setup.settings.fit * phi_rad;
-            log.push(Event::Room { parent: of.0, slot: of.1, phi_rad, tau_rad, fits });
+            let fits = tau_rad >= self.rules.fit * phi_rad;
+            self.seen.room(ring.child(), phi_rad, tau_rad, fits);
             if fits {
-                self.settle_pushed(surface, setup, ring, child, log);
+                self.settle(ring, child);
             } else {
-                self.decide(of, SlotFate::Matched, None, log);
+                self.decide(ring.child(), SlotFate::Matched, None);
             }
             ring.slot += 1;
             if !fits {
@@ -210,33 +191,84 @@ impl Walk {
         }
     }
 
-    /// "Finally we re-project the children of P on the surface" (§4.3), and adds the child unless a particle is in its way.
-    fn settle_pushed(
-        &mut self,
-        surface: &mut Surface,
-        setup: &Setup,
-        ring: &mut Circumference,
-        child: Disc,
-        log: &mut Vec<Event>,
-    ) {
-        let of = (ring.parent, ring.slot);
+    /// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
+    fn pushed(&mut self, ring: &Circumference, last: Option<Disc>) -> Disc {
+        let of = ring.child();
+        // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
+        let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
+        let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
+        let mut child = self.sized(ring, way * ring.radius);
+        let tangent = tangent.map(|tangent| ring.place(tangent));
+        self.seen.started(of, tangent, ring.place(child.centre), child.radius);
+        // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
+        for _ in 0..MAX_PUSHES {
+            if child.centre.length() >= ring.radius + child.radius {
+                break;
+            }
+            child = self.sized(ring, child.centre + way * (PUSH * ring.radius));
+            self.seen.pushed(of, ring.place(child.centre), child.radius);
+        }
+        // Along the circle until it overlaps least (Fig. 7f).
+        let mut overlap = ring.overlap(child);
+        let mut angle = child.angle();
+        for _ in 0..MAX_PUSHES {
+            if overlap <= 0.0 {
+                break;
+            }
+            angle += TURN_RAD;
+            let turned = DVec2::new(libm::cos(angle), libm::sin(angle));
+            let radius = self.sized(ring, turned * (ring.radius + child.radius)).radius;
+            let next = Disc { centre: turned * (ring.radius + radius), radius };
+            let next_overlap = ring.overlap(next);
+            if next_overlap >= overlap {
+                break;
+            }
+            (child, overlap) = (next, next_overlap);
+            self.seen.turned(of, ring.place(child.centre), radius, overlap);
+        }
+        child
+    }
+
+    /// A child in the tangent plane, with the radius there: "at each step we evaluate the curvature".
+    fn sized(&mut self, ring: &Circumference, centre: DVec2) -> Disc {
+        // Where the curvature has no value, the smallest radius is that of its limit.
+        let radius = self.radius_at(ring.place(centre)).unwrap_or(self.rules.sizes.smallest());
+        Disc { centre, radius }
+    }
+
+    /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a particle is in its way.
+    fn settle(&mut self, ring: &mut Circumference, child: Disc) {
+        let of = ring.child();
         let direction = ring.frame.u * child.centre.x + ring.frame.w * child.centre.y;
         let distance = child.centre.length();
         let direction = direction / distance;
         let circle = Circle { centre: ring.p, normal: ring.frame.n, direction, radius: distance };
-        let landing = self.land(surface, setup, of, &circle, 0.0, log);
-        let landing = match landing {
-            Landing::On { position, .. } if setup.radius_at(surface, position).is_none() => {
-                Landing::Undefined
-            }
+        let landing = match self.land(of, &circle, 0.0) {
+            Landing::On { position, .. } if self.radius_at(position).is_none() => Landing::Undefined,
             landing => landing,
         };
-        let Some((position, normal)) = self.usable(surface, of, landing, log) else { return };
-        let Some(radius) = setup.radius_at(surface, position) else { return };
-        let share = setup.settings.match_tolerance;
+        let Some((position, normal)) = self.usable(of, landing) else { return };
+        let Some(radius) = self.radius_at(position) else { return };
+        if let Some(other) = self.in_the_way(ring, position, normal, radius) {
+            self.decide(of, SlotFate::Matched, Some(other));
+        } else if let Some(particle) = self.add_waiting(of, (position, normal, radius)) {
+            let disc = ring.disc(position, radius);
+            ring.around.push(Around { particle, disc, touches: true });
+        }
+    }
+
+    /// The particle that is nearest to a child, in r_i + r_j, if it is within the match tolerance.
+    fn in_the_way(
+        &mut self,
+        ring: &Circumference,
+        position: DVec3,
+        normal: DVec3,
+        radius: f64,
+    ) -> Option<u32> {
+        let share = self.rules.match_tolerance;
         let nearest = self
             .buckets
-            .near(&self.particles, position, share * (radius + setup.largest()))
+            .near(&self.particles, position, share * (radius + self.rules.sizes.largest()))
             .iter()
             .filter_map(|near| {
                 let other = &self.particles[near.particle as usize];
@@ -246,82 +278,14 @@ impl Walk {
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let collision = nearest.filter(|near| near.0 <= share);
-        log.push(Event::Compared {
-            parent: of.0,
-            slot: of.1,
-            position: position.to_array(),
+        let comparison = Comparison {
+            position,
             against: nearest.map(|near| near.3),
             distance: nearest.map(|near| near.1),
             limit: share * nearest.map_or(radius + ring.radius, |near| near.2),
             corresponds: collision.is_some(),
-        });
-        if let Some((.., other)) = collision {
-            self.decide(of, SlotFate::Matched, Some(other), log);
-        } else if self.particles.len() >= setup.settings.max_particles as usize {
-            self.place.is_capped = true;
-            self.decide(of, SlotFate::Capped, None, log);
-        } else {
-            let particle = self.add(ring.parent, position, normal, radius, log);
-            self.place.waiting.push_back(particle);
-            self.decide(of, SlotFate::Added, Some(particle), log);
-            let disc = ring.disc(position, radius);
-            ring.around.push(Around { particle, disc, touches: true });
-        }
+        };
+        self.seen.compared(ring.child(), &comparison, &self.particles);
+        collision.map(|near| near.3)
     }
-}
-
-/// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
-fn pushed(
-    surface: &mut Surface,
-    setup: &Setup,
-    ring: &Circumference,
-    last: Option<Disc>,
-    log: &mut Vec<Event>,
-) -> Disc {
-    let (parent, slot) = (ring.parent, ring.slot);
-    let mut sized = |centre: DVec2| {
-        // Where the curvature has no value, the smallest radius is that of its limit.
-        let radius = setup.radius_at(surface, ring.place(centre)).unwrap_or(setup.settings.radius_min);
-        Disc { centre, radius }
-    };
-    // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
-    let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
-    let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
-    let mut child = sized(way * ring.radius);
-    log.push(Event::Start {
-        parent,
-        slot,
-        tangent: tangent.map(|tangent| ring.place(tangent).to_array()),
-        position: ring.place(child.centre).to_array(),
-        radius: child.radius,
-    });
-    // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
-    for _ in 0..MAX_PUSHES {
-        if child.centre.length() >= ring.radius + child.radius {
-            break;
-        }
-        child = sized(child.centre + way * (PUSH * ring.radius));
-        let position = ring.place(child.centre).to_array();
-        log.push(Event::Push { parent, slot, position, radius: child.radius });
-    }
-    // Along the circle until it overlaps least (Fig. 7f).
-    let mut overlap = ring.overlap(child);
-    let mut angle = child.angle();
-    for _ in 0..MAX_PUSHES {
-        if overlap <= 0.0 {
-            break;
-        }
-        angle += TURN_RAD;
-        let turned = DVec2::new(libm::cos(angle), libm::sin(angle));
-        let radius = sized(turned * (ring.radius + child.radius)).radius;
-        let next = Disc { centre: turned * (ring.radius + radius), radius };
-        let next_overlap = ring.overlap(next);
-        if next_overlap >= overlap {
-            break;
-        }
-        (child, overlap) = (next, next_overlap);
-        let position = ring.place(child.centre).to_array();
-        log.push(Event::PushOnCircle { parent, slot, position, radius, overlap });
-    }
-    child
 }

@@ -1,23 +1,21 @@
-//! The paper, word for word, in one readable place: its algorithms written sequentially in double precision, with a log of
-//! every event.
+//! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with, with a log of every event.
 //!
-//! Each block stands under the paper's own number. §4.2 to §4.4 with Algorithm 2 are in `uniform`, §4.3 in `surface`, §4.5 in
-//! `relaxation`, §5 in `adaptive`. The two particle systems that the paper compares them with are beside them: the general scheme of
-//! §3 in `system`, what each makes of it in `witkin_heckbert` and `forces` (§6, Table 1). What the paper discusses or leaves open is an
-//! option ([`Settings`]). Nothing here is made for speed. The tests hold the fast fronts to it, particle by particle.
+//! It stands on [`paper`](crate::paper), which it adds to: the same front level by level (`levels`), the filling of the gaps that
+//! fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the general scheme of §3 in `system`, what each makes
+//! of it in `witkin_heckbert` and `forces`. [`Settings`] chooses among them.
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
 //! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
-//! are made again from its snapshot, which gives the same events to the last bit. So [`Reference::seek`] goes to any event,
+//! are made again from its snapshot, which gives the same events to the last bit. So [`Lesson::seek`] goes to any event,
 //! forwards or backwards.
 //!
 //! ```
 //! use marching_particles::field::gallery;
-//! use marching_particles::reference::{Event, Reference, Settings};
+//! use marching_particles::lesson::{Event, Lesson, Settings};
 //!
 //! let sphere = gallery::find("sphere").expect("a surface of the gallery");
 //! let settings = Settings { radius: 0.1, relax_steps: 2, ..Settings::default() };
-//! let mut lesson = Reference::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
+//! let mut lesson = Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
 //! while !lesson.step(1_000).is_done {}
 //!
 //! // The first level treats the seed: all six children are new.
@@ -28,54 +26,41 @@
 //! // Back to the moment before the first event.
 //! lesson.seek(first.first_event);
 //! assert!(lesson.particles().is_empty());
-//! # Ok::<(), marching_particles::reference::ReferenceError>(())
+//! # Ok::<(), marching_particles::lesson::LessonError>(())
 //! ```
 //!
-//! # Differs from the paper
-//!
-//! * Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no particle covers it.
-//!   Components smaller than a cell of the grid may stay without particles.
-//! * A child whose search does not converge is not placed; the paper says nothing of it.
+//! Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no particle covers it. Components
+//! smaller than a cell of the grid may stay without particles.
 
-mod adaptive;
-mod buckets;
+mod course;
+mod dynamics;
 mod event;
-mod felt;
 mod forces;
 mod gaps;
-mod outlook;
-mod relaxation;
-mod run;
+mod levels;
 mod section;
 mod settings;
 mod snapshots;
-mod state;
-mod surface;
+mod survey;
 mod system;
-mod uniform;
-mod walk;
 mod witkin_heckbert;
 
-pub use event::{Event, Nearby, Vector};
-pub use relaxation::Push;
+pub use course::ChapterKind;
+pub use event::{Event, Vector};
 pub use section::Iterate;
-pub use settings::{
-    LessonField, MAX_PARTICLES, Matched, Method, Order, Placing, Projection, ReferenceError, Seeding,
-    Settings, Start,
-};
-pub use state::{Particle, digest};
-pub use walk::ChapterKind;
+pub use settings::{LessonError, LessonField, MAX_PARTICLES, Method, Placing, Seeding, Settings};
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
+use crate::paper::{ImplicitSurface, Particle, Push};
 use crate::sampler::{FateCounts, Sampling};
+use course::{Course, Moment, Setup};
 use glam::DVec3;
-use outlook::{look_around, shuffled};
 use serde::Serialize;
 use snapshots::Snapshots;
-use surface::Surface;
+use std::rc::Rc;
+use survey::{Patch, shuffled, survey};
 use system::QUIET;
-use walk::{Place, Setup, Walk};
 
 /// A part of a run, before which a snapshot is taken.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -151,14 +136,10 @@ struct View {
     particles: Vec<Particle>,
 }
 
-/// A run of the paper's algorithms, and the place in it that is looked at.
-pub struct Reference {
-    setup: Setup,
-    surface: Surface,
-    /// The end of the run so far.
-    walk: Walk,
-    /// Events of the chapter under way.
-    log: Vec<Event>,
+/// A run of the paper's algorithms, or of one that it compares them with, and the place in it that is looked at.
+pub struct Lesson {
+    /// The end of the run so far, with the events of the chapter under way.
+    course: Course,
     chapters: Vec<Chapter>,
     snapshots: Snapshots,
     lives: Vec<Life>,
@@ -166,52 +147,32 @@ pub struct Reference {
     view: View,
 }
 
-impl Reference {
+impl Lesson {
     /// Prepares a run on the surface of `field` in a box, at which it takes a first look: some 36,000 evaluations.
     ///
     /// # Errors
     ///
     /// If a setting or the box is invalid, or if more particles are to be expected than [`MAX_PARTICLES`] and
     /// [`Settings::max_particles`].
-    pub fn new(field: Box<dyn Field>, bounds: &Bounds, settings: &Settings) -> Result<Self, ReferenceError> {
+    pub fn new(field: Box<dyn Field>, bounds: &Bounds, settings: &Settings) -> Result<Self, LessonError> {
         settings.validate()?;
         if !bounds.is_valid() {
-            return Err(ReferenceError::Box);
+            return Err(LessonError::Box);
         }
-        let mut surface = Surface { field, bounds: *bounds, evaluations: 0 };
-        let outlook = look_around(&mut surface);
-        let diameter = extent(outlook.iter().map(|part| part.point));
-        let mut setup = Setup { settings: settings.clone(), candidates: Vec::new(), diameter };
-        let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
-        let expected: f64 = outlook
-            .iter()
-            .filter_map(|part| Some(part.area / cell(setup.radius_at(&mut surface, part.point)?)))
-            .sum();
-        surface.evaluations = 0;
-        let most = settings.max_particles.max(MAX_PARTICLES);
-        let limit = f64::from(most);
-        if expected > limit {
-            // A little more, since the area is an estimate and the number is shown rounded.
-            let factor = 1.01 * (expected / limit).sqrt();
-            let (expected, limit) = (expected as u64, most);
-            return Err(match settings.sampling {
-                Sampling::Uniform => {
-                    let radius = factor * settings.radius;
-                    ReferenceError::TooMany { expected, limit, radius }
-                }
-                Sampling::Adaptive => ReferenceError::TooManySizes { expected, limit, factor },
-            });
-        }
-        setup.candidates = if settings.seeds.is_empty() {
-            shuffled(outlook.iter().map(|part| part.point).collect(), settings.seed)
-        } else {
-            settings.seeds.iter().map(|&seed| seed.into()).collect()
+        let mut surface = ImplicitSurface::new(field, bounds);
+        let patches = survey(&mut surface);
+        check_count(&patches, &mut surface, settings)?;
+        let setup = Setup {
+            settings: settings.clone(),
+            diameter: extent(patches.iter().map(|patch| patch.point)),
+            candidates: if settings.seeds.is_empty() {
+                shuffled(patches.iter().map(|patch| patch.point).collect(), settings.seed)
+            } else {
+                settings.seeds.iter().map(|&seed| seed.into()).collect()
+            },
         };
         Ok(Self {
-            walk: Walk::at(&setup, Place::new(settings.seed), Vec::new()),
-            setup,
-            surface,
-            log: Vec::new(),
+            course: Course::at(&Rc::new(setup), surface, Moment::first(settings), Vec::new()),
             chapters: Vec::new(),
             snapshots: Snapshots::new(),
             lives: Vec::new(),
@@ -220,26 +181,26 @@ impl Reference {
         })
     }
 
-    /// Prepares a run as [`Reference::new`] does that goes on from particles that are there, of which those from number `first` on
+    /// Prepares a run as [`Lesson::new`] does that goes on from particles that are there, of which those from number `first` on
     /// wait to be treated, in their order. A front in single precision can so be followed level by level without its rounding
     /// adding up.
     ///
     /// # Errors
     ///
-    /// As [`Reference::new`].
+    /// As [`Lesson::new`].
     pub fn going_on(
         field: Box<dyn Field>,
         bounds: &Bounds,
         settings: &Settings,
         particles: Vec<Particle>,
         first: u32,
-    ) -> Result<Self, ReferenceError> {
+    ) -> Result<Self, LessonError> {
         let mut run = Self::new(field, bounds, settings)?;
-        let mut place = Place::new(settings.seed);
-        place.waiting = (first..particles.len() as u32).collect();
-        place.fronts = 1;
+        let mut moment = Moment::first(settings);
+        moment.waiting = (first..particles.len() as u32).collect();
+        moment.cursor.fronts = 1;
         run.lives = vec![Life::default(); particles.len()];
-        run.walk = Walk::at(&run.setup, place, particles);
+        run.course = run.course.elsewhere(moment, particles);
         Ok(run)
     }
 
@@ -248,18 +209,18 @@ impl Reference {
     pub fn step(&mut self, budget: u32) -> Progress {
         let mut left = budget;
         while left > 0 && !self.is_done {
-            if !self.walk.is_in_chapter() {
+            if !self.course.is_in_chapter() {
                 self.begin_chapter();
                 continue;
             }
-            let is_over = self.walk.work(&mut self.surface, &self.setup, &mut self.log);
+            let is_over = self.course.work();
             left -= 1;
             if is_over {
                 self.close_chapter(true);
-                self.log.clear();
+                self.course.run.seen.events.clear();
             }
         }
-        if self.walk.is_in_chapter() {
+        if self.course.is_in_chapter() {
             self.close_chapter(false);
         }
         self.progress()
@@ -271,11 +232,11 @@ impl Reference {
         Progress {
             chapters: self.chapters.len() as u32,
             events: self.events_so_far(),
-            particles: self.walk.particles.len() as u32,
-            evaluations: self.walk.place.evaluations,
-            steps: self.walk.place.steps,
-            is_settled: self.walk.place.quiet >= QUIET,
-            is_capped: self.walk.place.is_capped,
+            particles: self.course.run.particles.len() as u32,
+            evaluations: self.course.run.surface.evaluations,
+            steps: self.course.run.steps,
+            is_settled: self.course.cursor.quiet >= QUIET,
+            is_capped: self.course.run.is_capped,
             is_done: self.is_done,
         }
     }
@@ -323,7 +284,7 @@ impl Reference {
         }
         if event == self.events_so_far() {
             // The end is at hand.
-            self.view = View { at: event, particles: self.walk.particles.clone(), ..View::default() };
+            self.view = View { at: event, particles: self.course.run.particles.clone(), ..View::default() };
             return event;
         }
         // The end of a chapter is looked at as its end, not as the beginning of the next one.
@@ -332,7 +293,7 @@ impl Reference {
         self.open(chapter);
         let first = self.chapters[chapter].first_event;
         if !is_ahead || self.view.at < first {
-            self.view.particles = self.walk_to(chapter).particles;
+            self.view.particles = self.course_to(chapter).run.particles;
             self.view.at = first;
         }
         for k in self.view.at..event {
@@ -355,29 +316,29 @@ impl Reference {
         if particle as usize >= self.view.particles.len() {
             return Vec::new();
         }
-        let walk = Walk::at(&self.setup, Place::new(0), self.view.particles.clone());
-        walk.pushes(&self.setup, particle).collect()
+        let moment = Moment::first(&self.course.setup.settings);
+        self.course.elsewhere(moment, self.view.particles.clone()).run.pushes(particle).collect()
     }
 
     /// The box that is sampled.
     #[must_use]
     pub fn bounds(&self) -> &Bounds {
-        &self.surface.bounds
+        &self.course.run.surface.bounds
     }
 
     fn begin_chapter(&mut self) {
-        let before = self.walk.particles.len();
-        let place = self.walk.place.clone();
-        let Some(kind) = self.walk.begin_chapter(&mut self.surface, &self.setup, &mut self.log) else {
+        let before = self.course.run.particles.len();
+        let moment = self.course.moment();
+        let Some(kind) = self.course.begin_chapter() else {
             self.is_done = true;
             return;
         };
         match kind {
             ChapterKind::Relaxation { .. } | ChapterKind::Iteration { .. } => {
                 // The first iteration begins with the seed, which its events add.
-                self.snapshots.add_moving(place, &self.walk.particles[..before]);
+                self.snapshots.add_moving(moment, &self.course.run.particles[..before]);
             }
-            _ => self.snapshots.add_placed(place, before),
+            _ => self.snapshots.add_placed(moment, before),
         }
         self.chapters.push(Chapter {
             kind,
@@ -396,10 +357,11 @@ impl Reference {
 
     /// Brings what is said of the last chapter up to date with its events.
     fn close_chapter(&mut self, is_over: bool) {
-        let after = self.walk.particles.len();
+        let after = self.course.run.particles.len();
+        let log = &self.course.run.seen.events;
         let Some(chapter) = self.chapters.last_mut() else { return };
         for (event, number) in
-            self.log[chapter.events as usize..].iter().zip(chapter.first_event + chapter.events..)
+            log[chapter.events as usize..].iter().zip(chapter.first_event + chapter.events..)
         {
             match *event {
                 Event::Seed { .. } | Event::Added { .. } => {
@@ -426,7 +388,7 @@ impl Reference {
                 _ => {}
             }
         }
-        chapter.events = self.log.len() as u32;
+        chapter.events = log.len() as u32;
         chapter.after = after as u32;
         chapter.is_over = is_over;
     }
@@ -442,7 +404,8 @@ impl Reference {
         if self.view.chapter == Some(chapter) && self.view.events.len() == known.events as usize {
             return;
         }
-        self.view.events = if known.is_over { self.replay(chapter) } else { self.log.clone() };
+        self.view.events =
+            if known.is_over { self.replay(chapter) } else { self.course.run.seen.events.clone() };
         if self.view.chapter != Some(chapter) {
             // No particle has been looked at in this chapter yet.
             self.view.at = 0;
@@ -451,25 +414,73 @@ impl Reference {
     }
 
     /// Makes the events of a chapter that is over again.
-    fn replay(&mut self, chapter: usize) -> Vec<Event> {
-        let mut walk = self.walk_to(chapter);
-        let mut log = Vec::with_capacity(self.chapters[chapter].events as usize);
-        walk.do_chapter(&mut self.surface, &self.setup, &mut log);
-        debug_assert_eq!(log.len(), self.chapters[chapter].events as usize, "a replay gives the same events");
-        log
+    fn replay(&self, chapter: usize) -> Vec<Event> {
+        let mut course = self.course_to(chapter);
+        course.do_chapter();
+        let events = course.run.seen.events;
+        debug_assert_eq!(
+            events.len(),
+            self.chapters[chapter].events as usize,
+            "a replay gives the same events"
+        );
+        events
     }
 
     /// The run at the beginning of a chapter.
-    fn walk_to(&mut self, chapter: usize) -> Walk {
-        let (from, place, particles) = self.snapshots.before(chapter, &self.walk.particles);
-        let mut walk = Walk::at(&self.setup, place, particles);
-        let mut log = Vec::new();
+    fn course_to(&self, chapter: usize) -> Course {
+        let (from, moment, particles) = self.snapshots.before(chapter, &self.course.run.particles);
+        let mut course = self.course.elsewhere(moment, particles);
         for _ in from..chapter {
-            walk.do_chapter(&mut self.surface, &self.setup, &mut log);
-            log.clear();
+            course.do_chapter();
+            course.run.seen.events.clear();
         }
-        walk
+        course
     }
+}
+
+/// Refuses a run of more particles than are followed.
+fn check_count(
+    patches: &[Patch],
+    surface: &mut ImplicitSurface,
+    settings: &Settings,
+) -> Result<(), LessonError> {
+    let sizes = settings.rules().sizes;
+    let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
+    let expected: f64 = patches
+        .iter()
+        .filter_map(|patch| Some(patch.area / cell(sizes.radius_at(surface, patch.point)?)))
+        .sum();
+    let most = settings.max_particles.max(MAX_PARTICLES);
+    let limit = f64::from(most);
+    if expected <= limit {
+        return Ok(());
+    }
+    // A little more, since the area is an estimate and the number is shown rounded.
+    let factor = 1.01 * (expected / limit).sqrt();
+    let (expected, limit) = (expected as u64, most);
+    Err(match settings.sampling {
+        Sampling::Uniform => LessonError::TooMany { expected, limit, radius: factor * settings.radius },
+        Sampling::Adaptive => LessonError::TooManySizes { expected, limit, factor },
+    })
+}
+
+/// FNV-1a hash of the bits of all particles.
+#[must_use]
+pub fn digest(particles: &[Particle]) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut word = |bits: u64| {
+        for byte in bits.to_le_bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    };
+    for particle in particles {
+        let vectors = [particle.position, particle.normal];
+        vectors.as_flattened().iter().chain([&particle.radius]).for_each(|number| word(number.to_bits()));
+        word(u64::from(particle.parent.unwrap_or(u32::MAX)));
+        word(u64::from(particle.level));
+        word(u64::from(particle.slots.0) << 1 | u64::from(particle.is_done));
+    }
+    hash
 }
 
 /// Length of the diagonal of the box around some points; 0 if there is none.
@@ -482,7 +493,7 @@ fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::snapshots::Snapshots;
-    use super::{Event, Method, Reference, Settings, digest};
+    use super::{Event, Lesson, Method, Settings, digest};
     use crate::field::gallery;
 
     #[test]
@@ -495,7 +506,7 @@ mod tests {
             ..Settings::default()
         };
         let start =
-            || Reference::new(Box::new(sphere.field()), &sphere.bounds, &settings).expect("valid settings");
+            || Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings).expect("valid settings");
         let (mut all, mut few) = (start(), start());
         few.snapshots = Snapshots::with_most(1_000);
         while !all.step(1_000).is_done {}

@@ -1,9 +1,9 @@
 //! Answers about the field that no event holds and that a drawing needs: the curve in which a plane cuts the surface, and the
 //! iterates of Newton's method in space from a given point.
 
-use super::Reference;
+use super::Lesson;
 use super::event::Vector;
-use super::surface::Trial;
+use crate::paper::Trial;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -22,28 +22,20 @@ pub struct Iterate {
 /// Most cells of a section along a side.
 const MAX_CELLS: u32 = 200;
 
-impl Reference {
+impl Lesson {
     /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of half side `half` around the
     /// point: line segments as x₀, y₀, x₁, y₁, x along `right` and y along `up`, from a grid of `cells`² cells (at most 200²).
-    pub fn section(
-        &mut self,
-        centre: Vector,
-        right: Vector,
-        up: Vector,
-        half: f64,
-        cells: u32,
-    ) -> Vec<[f64; 4]> {
+    pub fn section(&self, centre: Vector, right: Vector, up: Vector, half: f64, cells: u32) -> Vec<[f64; 4]> {
         let cells = cells.clamp(1, MAX_CELLS) as usize;
-        let evaluations = self.surface.evaluations;
+        let mut surface = self.course.run.surface.clone();
         let [centre, right, up] = [centre, right, up].map(DVec3::from);
         let at = |k: usize| half * (2.0 * k as f64 / cells as f64 - 1.0);
         let values: Vec<f64> = (0..(cells + 1) * (cells + 1))
             .map(|k| {
                 let (x, y) = (at(k % (cells + 1)), at(k / (cells + 1)));
-                self.surface.sample(centre + right * x + up * y).value
+                surface.sample(centre + right * x + up * y).value
             })
             .collect();
-        self.surface.evaluations = evaluations;
         let node = |i: usize, j: usize| ([at(i), at(j)], values[j * (cells + 1) + i]);
         let mut segments = Vec::new();
         for j in 0..cells {
@@ -63,9 +55,9 @@ impl Reference {
     }
 
     /// The steps of Newton's method from a point, until it has come to the surface or left the neighbourhood of `reach`.
-    pub fn newton(&mut self, start: Vector, reach: f64) -> Vec<Iterate> {
-        let evaluations = self.surface.evaluations;
-        let residual = self.setup.residual(self.setup.largest());
+    pub fn newton(&self, start: Vector, reach: f64) -> Vec<Iterate> {
+        let rules = &self.course.run.rules;
+        let residual = rules.residual * rules.sizes.largest();
         let mut steps = Vec::new();
         let mut note = |trial: Trial| {
             steps.push(Iterate {
@@ -74,8 +66,7 @@ impl Reference {
                 slope: trial.sample.slope,
             });
         };
-        self.surface.land_by_newton(start.into(), reach, residual, &mut note);
-        self.surface.evaluations = evaluations;
+        self.course.run.surface.clone().land_by_newton(start.into(), reach, residual, &mut note);
         steps
     }
 }

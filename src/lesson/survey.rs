@@ -1,6 +1,6 @@
 //! A first look at the box: points of the surface at which fronts may begin, and the area that each stands for.
 
-use super::surface::Surface;
+use crate::paper::ImplicitSurface;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -8,10 +8,10 @@ use rand_pcg::Pcg32;
 /// Cells of the grid along the longest side of the box. A component smaller than a cell may be missed.
 const CELLS: f64 = 32.0;
 
-/// A point near the surface.
-pub(super) struct Part {
+/// A point near the surface, and the part of the surface around it.
+pub(super) struct Patch {
     pub(super) point: DVec3,
-    /// Area of the surface that it stands for.
+    /// Area of that part.
     pub(super) area: f64,
 }
 
@@ -19,7 +19,7 @@ pub(super) struct Part {
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of projected area,
 /// where s is the spacing, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
-pub(super) fn look_around(surface: &mut Surface) -> Vec<Part> {
+pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<Patch> {
     let (lo, size) = (surface.bounds.lo(), surface.bounds.hi() - surface.bounds.lo());
     let cells = (size * (CELLS / size.max_element())).ceil();
     let step = size / cells;
@@ -32,7 +32,7 @@ pub(super) fn look_around(surface: &mut Surface) -> Vec<Part> {
             values.extend((0..nodes[0]).map(|i| surface.sample(at([i, j, k])).value));
         }
     }
-    let mut parts = Vec::new();
+    let mut patches = Vec::new();
     for k in 0..nodes[2] {
         for j in 0..nodes[1] {
             for i in 0..nodes[0] {
@@ -52,13 +52,13 @@ pub(super) fn look_around(surface: &mut Surface) -> Vec<Part> {
                     let section = step.x * step.y * step.z / step[axis];
                     let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);
                     if area.is_finite() {
-                        parts.push(Part { point, area });
+                        patches.push(Patch { point, area });
                     }
                 }
             }
         }
     }
-    parts
+    patches
 }
 
 /// The points with one first that `seed` chooses.

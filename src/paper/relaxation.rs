@@ -1,11 +1,10 @@
 //! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without fission, death and adaptive
 //! radii; in non-uniform sampling (§5.4) forces between discs that overlap.
 
-use super::buckets::Buckets;
-use super::event::{Event, Nearby, Vector};
-use super::surface::{Landing, Surface};
-use super::walk::{Setup, Walk};
-use crate::sampler::Sampling;
+use super::Run;
+use super::buckets::{Buckets, Nearby};
+use super::observer::{Move, Observer};
+use super::rules::{Rules, Sizes};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -17,7 +16,7 @@ pub struct Push {
     #[serde(flatten)]
     pub near: Nearby,
     /// Its repulsion, along the offset between the two.
-    pub force: Vector,
+    pub force: [f64; 3],
     /// Energy of the pair.
     pub energy: f64,
 }
@@ -26,13 +25,13 @@ pub struct Push {
 const RANGE: f64 = 3.0;
 
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps.
-pub(super) const OVERLAP_REACH: f64 = 1.15;
+pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
 /// Size of a relaxation step in uniform sampling: large enough to mend local faults in ten steps, and stable.
 const STEP: f64 = 0.6;
 
 /// Size of a relaxation step in non-uniform sampling.
-pub(super) const OVERLAP_STEP: f64 = 0.33;
+pub(crate) const OVERLAP_STEP: f64 = 0.33;
 
 /// A particle moves by no more than this in a step, in radii.
 const MAX_MOVE: f64 = 0.35;
@@ -52,29 +51,36 @@ fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
 
 /// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other apart by their overlap. The paper
 /// gives no formula.
-pub(super) fn overlap(distance: f64, both: f64) -> (f64, f64) {
+pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
     let overlap = (OVERLAP_REACH * both - distance).max(0.0);
     let share = 2.0 * overlap / both;
     // Two particles at one position have no direction to move apart in.
     (if distance > 0.0 { overlap / distance } else { 0.0 }, share * share)
 }
 
-/// The size of a step.
-fn step_size(setup: &Setup) -> f64 {
-    setup.settings.step_size.unwrap_or(match setup.settings.sampling {
-        Sampling::Uniform => STEP,
-        Sampling::Adaptive => OVERLAP_STEP,
+/// The size of a step: the share of the force by which a particle moves.
+fn step_size(rules: &Rules) -> f64 {
+    rules.step_size.unwrap_or(match rules.sizes {
+        Sizes::Same(_) => STEP,
+        Sizes::ByCurvature { .. } => OVERLAP_STEP,
     })
 }
 
-impl Walk {
+impl<O: Observer> Run<O> {
+    /// A relaxation step: all forces, then all moves.
+    pub fn relax(&mut self) {
+        self.begin_step();
+        for particle in 0..self.particles.len() {
+            self.move_particle(particle);
+        }
+        self.end_step();
+    }
+
     /// Begins a step: sums the repulsion on every particle where it is.
-    pub(super) fn begin_step(&mut self, setup: &Setup, log: &mut Vec<Event>) {
-        self.buckets = Buckets::new(setup.cube(), &self.particles);
-        let energy = self.repulsion(setup);
+    pub(crate) fn begin_step(&mut self) {
+        let energy = self.sum_repulsion();
         self.largest_move = 0.0;
-        let (step, size) = (self.place.steps + 1, step_size(setup));
-        log.push(Event::StepBegins { step, size, energy });
+        self.seen.step_begins(self.steps + 1, step_size(&self.rules), energy);
     }
 
     /// Fills the forces and returns the energy per particle.
@@ -82,35 +88,39 @@ impl Walk {
     /// # Differs from the paper
     ///
     /// Pairs on two sheets do not count.
-    fn repulsion(&mut self, setup: &Setup) -> f64 {
+    fn sum_repulsion(&mut self) -> f64 {
+        self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
         let mut energy = 0.0;
-        self.forces.clear();
+        let mut forces = core::mem::take(&mut self.forces);
+        forces.clear();
         for i in 0..self.particles.len() as u32 {
             let mut force = DVec3::ZERO;
-            for push in self.pushes(setup, i) {
+            for push in self.pushes(i) {
                 force += DVec3::from(push.force);
                 // Each pair is met twice.
                 energy += 0.5 * push.energy;
             }
             let normal = self.particles[i as usize].n();
-            self.forces.push(force - normal * normal.dot(force));
+            forces.push(force - normal * normal.dot(force));
         }
+        self.forces = forces;
         energy / self.particles.len() as f64
     }
 
     /// Returns the repulsion of a particle by each of its neighbours at their present positions.
-    pub(super) fn pushes(&self, setup: &Setup, particle: u32) -> impl Iterator<Item = Push> {
+    pub(crate) fn pushes(&self, particle: u32) -> impl Iterator<Item = Push> {
         let own = &self.particles[particle as usize];
-        let reach = match setup.settings.sampling {
-            Sampling::Uniform => RANGE * own.radius,
-            Sampling::Adaptive => OVERLAP_REACH * (own.radius + setup.largest()),
+        let sizes = self.rules.sizes;
+        let reach = match sizes {
+            Sizes::Same(_) => RANGE * own.radius,
+            Sizes::ByCurvature { most, .. } => OVERLAP_REACH * (own.radius + most),
         };
         let around = self.buckets.near(&self.particles, own.p(), reach).into_iter();
         around.filter(move |near| near.particle != particle).map(move |near| {
             let other = &self.particles[near.particle as usize];
-            let (push, pair) = match setup.settings.sampling {
-                Sampling::Uniform => gaussian(near.distance, own.radius),
-                Sampling::Adaptive => overlap(near.distance, own.radius + other.radius),
+            let (push, pair) = match sizes {
+                Sizes::Same(_) => gaussian(near.distance, own.radius),
+                Sizes::ByCurvature { .. } => overlap(near.distance, own.radius + other.radius),
             };
             let weight = same_sheet_weight(own.n().dot(other.n()));
             let force = (own.p() - other.p()) * (weight * push);
@@ -119,45 +129,25 @@ impl Walk {
     }
 
     /// Moves a particle by its force and brings it back onto the surface.
-    pub(super) fn move_particle(
-        &mut self,
-        surface: &mut Surface,
-        setup: &Setup,
-        particle: usize,
-        log: &mut Vec<Event>,
-    ) {
+    pub(crate) fn move_particle(&mut self, particle: usize) {
         let own = self.particles[particle];
         let force = self.forces[particle];
         let reach = MAX_MOVE * own.radius;
-        let target = own.p() + (force * step_size(setup)).clamp_length_max(reach);
-        let landing = surface.land_by_newton(target, reach, setup.residual(own.radius), &mut |_| {});
-        let landed = match landing {
-            Landing::On { position, normal } if surface.contains(position) && normal.dot(own.n()) > 0.0 => {
-                Some((position, normal))
-            }
-            _ => None,
-        };
+        let target = own.p() + (force * step_size(&self.rules)).clamp_length_max(reach);
+        let landed = self.come_back(&own, target, reach);
         let (position, normal) = landed.unwrap_or((own.p(), own.n()));
         self.largest_move = self.largest_move.max(position.distance(own.p()) / own.radius);
-        let radius = setup.radius_at(surface, position).unwrap_or(own.radius);
+        let radius = self.radius_at(position).unwrap_or(own.radius);
         let moved = &mut self.particles[particle];
         (moved.position, moved.normal, moved.radius) = (position.to_array(), normal.to_array(), radius);
-        log.push(Event::Moved {
-            particle: particle as u32,
-            force: force.to_array(),
-            target: target.to_array(),
-            position: position.to_array(),
-            normal: normal.to_array(),
-            radius,
-            is_kept: landed.is_none(),
-        });
+        let step = Move { force, target, is_kept: landed.is_none() };
+        self.seen.moved(particle as u32, &step, moved);
     }
 
     /// Ends a step: the energy where the particles are now.
-    pub(super) fn end_step(&mut self, setup: &Setup, log: &mut Vec<Event>) {
-        self.place.steps += 1;
-        self.buckets = Buckets::new(setup.cube(), &self.particles);
-        let energy = self.repulsion(setup);
-        log.push(Event::StepEnds { step: self.place.steps, energy, largest_move: self.largest_move });
+    pub(crate) fn end_step(&mut self) {
+        self.steps += 1;
+        let energy = self.sum_repulsion();
+        self.seen.step_ends(self.steps, energy, self.largest_move);
     }
 }

@@ -1,7 +1,8 @@
 //! The beginnings of chapters, from which their events are made again.
 
-use super::state::Particle;
-use super::walk::Place;
+use super::course::Moment;
+use crate::paper::Particle;
+use crate::particles::Slots;
 
 /// The snapshots hold no more particles than this together, or twice as many for a moment: about 40 MB.
 const MOST: usize = 400_000;
@@ -9,9 +10,9 @@ const MOST: usize = 400_000;
 /// State of the run at the beginning of a chapter. The way back restores it and replays the events that follow.
 enum Snapshot {
     /// The first so many particles, as they were placed: until the first one is moved, nothing more is needed.
-    Placed(Place, usize),
+    Placed(Moment, usize),
     /// All particles.
-    Whole(Place, Vec<Particle>),
+    Whole(Moment, Vec<Particle>),
     /// Nothing: the chapter is reached from an earlier one.
     Dropped,
 }
@@ -32,18 +33,18 @@ impl Snapshots {
     }
 
     /// Adds the beginning of the next chapter, in which particles are only placed.
-    pub(super) fn add_placed(&mut self, place: Place, count: usize) {
-        self.all.push(Snapshot::Placed(place, count));
+    pub(super) fn add_placed(&mut self, moment: Moment, count: usize) {
+        self.all.push(Snapshot::Placed(moment, count));
     }
 
     /// Adds the beginning of the next chapter, in which particles are moved.
-    pub(super) fn add_moving(&mut self, place: Place, particles: &[Particle]) {
+    pub(super) fn add_moving(&mut self, moment: Moment, particles: &[Particle]) {
         let first = *self.first_moving.get_or_insert(self.all.len());
         if !(self.all.len() - first).is_multiple_of(self.stride) {
             self.all.push(Snapshot::Dropped);
             return;
         }
-        self.all.push(Snapshot::Whole(place, particles.to_vec()));
+        self.all.push(Snapshot::Whole(moment, particles.to_vec()));
         self.held += particles.len();
         while self.held > self.most && self.all.len() - first > self.stride {
             self.stride *= 2;
@@ -65,21 +66,21 @@ impl Snapshots {
 
     /// The last chapter up to this one whose beginning is kept, and that beginning. `now` are the particles at the end of the run
     /// so far.
-    pub(super) fn before(&self, chapter: usize, now: &[Particle]) -> (usize, Place, Vec<Particle>) {
+    pub(super) fn before(&self, chapter: usize, now: &[Particle]) -> (usize, Moment, Vec<Particle>) {
         let mut from = chapter;
         loop {
             match &self.all[from] {
-                Snapshot::Whole(place, particles) => return (from, place.clone(), particles.clone()),
-                Snapshot::Placed(place, count) => {
+                Snapshot::Whole(moment, particles) => return (from, moment.clone(), particles.clone()),
+                Snapshot::Placed(moment, count) => {
                     let first = self.first_moving.map(|first| &self.all[first]);
                     let placed =
                         if let Some(Snapshot::Whole(_, particles)) = first { particles } else { now };
                     let mut particles = placed[..*count].to_vec();
-                    for &waiting in &place.waiting {
+                    for &waiting in &moment.waiting {
                         let particle = &mut particles[waiting as usize];
-                        *particle = particle.untreated();
+                        (particle.is_done, particle.slots) = (false, Slots::default());
                     }
-                    return (from, place.clone(), particles);
+                    return (from, moment.clone(), particles);
                 }
                 // The first chapter of all is never dropped.
                 Snapshot::Dropped => from -= 1,

@@ -2,7 +2,8 @@
 //!
 //! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is
 //! applied on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception
-//! of the split criterion)": forces, step and landing are those of `relaxation`.
+//! of the split criterion)": forces, step and landing are those of
+//! `paper::relaxation`.
 //!
 //! # Differs from the paper
 //!
@@ -12,11 +13,9 @@
 //! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
-use super::felt::{Felt, MAX_MOVE, Step};
-use super::relaxation::{OVERLAP_REACH, OVERLAP_STEP, overlap};
-use super::state::Particle;
-use super::surface::{Landing, Surface};
-use super::walk::Setup;
+use super::dynamics::{Dynamics, MAX_MOVE, Step};
+use super::event::Log;
+use crate::paper::{OVERLAP_REACH, OVERLAP_STEP, Particle, Run, overlap};
 
 /// A disc meets those that are not larger within this many radii.
 pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
@@ -34,41 +33,42 @@ const CROWDED: f64 = {
 };
 
 /// "Compute the energy", "compute the velocity": the overlap of two discs pushes both. A pair is met from the larger one.
-pub(super) fn feel(felt: &mut [Felt], (i, own): (usize, &Particle), (j, other): (usize, &Particle)) {
+pub(super) fn interact(
+    dynamics: &mut [Dynamics],
+    (i, own): (usize, &Particle),
+    (j, other): (usize, &Particle),
+) {
     let is_met_here = other.radius < own.radius || other.radius == own.radius && j < i;
     if !is_met_here {
         return;
     }
     let offset = own.p() - other.p();
     let (push, energy) = overlap(offset.length(), own.radius + other.radius);
-    felt[i].force += offset * push;
-    felt[j].force -= offset * push;
-    felt[i].energy += energy;
-    felt[j].energy += energy;
+    dynamics[i].force += offset * push;
+    dynamics[j].force -= offset * push;
+    dynamics[i].energy += energy;
+    dynamics[j].energy += energy;
 }
 
 /// "Update the position": a step of the relaxation, and back onto the surface, with the radius there.
-pub(super) fn step(surface: &mut Surface, setup: &Setup, own: &Particle, felt: &Felt) -> Step {
+pub(super) fn step(run: &mut Run<Log>, own: &Particle, dynamics: &Dynamics) -> Step {
     let normal = own.n();
-    let force = felt.force - normal * normal.dot(felt.force);
+    let force = dynamics.force - normal * normal.dot(dynamics.force);
     let reach = MAX_MOVE * own.radius;
     let target = own.p() + (force * OVERLAP_STEP).clamp_length_max(reach);
-    let arrived = match surface.land_by_newton(target, reach, setup.residual(own.radius), &mut |_| {}) {
-        Landing::On { position, normal: there } if surface.contains(position) && there.dot(normal) > 0.0 => {
-            let radius = setup.radius_at(surface, position).unwrap_or(own.radius);
-            Some(Particle { position: position.to_array(), normal: there.to_array(), radius, ..*own })
-        }
-        _ => None,
-    };
+    let arrived = run.come_back(own, target, reach).map(|(position, normal)| {
+        let radius = run.radius_at(position).unwrap_or(own.radius);
+        Particle { position: position.to_array(), normal: normal.to_array(), radius, ..*own }
+    });
     Step { force, target, arrived }
 }
 
 /// Whether a particle dies, given a random number in [0, 1).
-pub(super) fn dies(felt: &Felt, chance: f64) -> bool {
-    felt.is_at_rest && felt.energy > CROWDED && chance > CROWDED / felt.energy
+pub(super) fn dies(dynamics: &Dynamics, chance: f64) -> bool {
+    dynamics.is_at_rest && dynamics.energy > CROWDED && chance > CROWDED / dynamics.energy
 }
 
 /// Whether a particle divides.
-pub(super) fn divides(felt: &Felt) -> bool {
-    felt.is_at_rest && felt.energy < FREE
+pub(super) fn divides(dynamics: &Dynamics) -> bool {
+    dynamics.is_at_rest && dynamics.energy < FREE
 }

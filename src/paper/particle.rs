@@ -1,4 +1,4 @@
-//! The particles of the reference.
+//! A particle, and the test of which particles are of one sheet.
 
 use crate::particles::Slots;
 use glam::DVec3;
@@ -28,12 +28,12 @@ pub struct Particle {
     pub is_done: bool,
     /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's particles are beside it for long.
     #[serde(skip)]
-    pub(super) height: f64,
+    pub(crate) height: f64,
 }
 
 impl Particle {
     /// A particle on the surface that no other has placed.
-    pub(super) fn seed(position: DVec3, normal: DVec3, radius: f64, front: u32) -> Self {
+    pub(crate) fn seed(position: DVec3, normal: DVec3, radius: f64, front: u32) -> Self {
         Self { front, ..Self::placed(position, normal, radius, None, 0) }
     }
 
@@ -64,38 +64,25 @@ impl Particle {
     pub fn n(&self) -> DVec3 {
         self.normal.into()
     }
-
-    /// The particle as it was before it was treated.
-    pub(super) fn untreated(mut self) -> Self {
-        self.is_done = false;
-        self.slots = Slots::default();
-        self
-    }
 }
 
-/// FNV-1a hash of the bits of all particles.
-#[must_use]
-pub fn digest(particles: &[Particle]) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut word = |bits: u64| {
-        for byte in bits.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
-    for particle in particles {
-        let vectors = [particle.position, particle.normal];
-        vectors.as_flattened().iter().chain([&particle.radius]).for_each(|number| word(number.to_bits()));
-        word(u64::from(particle.parent.unwrap_or(u32::MAX)));
-        word(u64::from(particle.level));
-        word(u64::from(particle.slots.0) << 1 | u64::from(particle.is_done));
-    }
-    hash
+/// The tangent frame of a particle (Fig. 3).
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Unit normal N̂.
+    pub n: DVec3,
+    /// V̂⁰: unit tangent vector towards the first child.
+    pub u: DVec3,
+    /// N̂ × V̂⁰.
+    pub w: DVec3,
+    /// Whether the particle is a seed, whose first child is no parent.
+    pub is_seed: bool,
 }
 
 /// Whether a particle at `offset` from a point with the unit normal `normal` is of the same sheet: it faces the same way, and
 /// rises by no more than 45° from the tangent plane. Below the distance `slack` the direction between the two tells nothing.
 #[must_use]
-pub(super) fn is_same_sheet(offset: DVec3, normal: DVec3, other: DVec3, slack: f64) -> bool {
+pub(crate) fn is_same_sheet(offset: DVec3, normal: DVec3, other: DVec3, slack: f64) -> bool {
     let rise = offset.dot(normal);
     normal.dot(other) > 0.0 && rise * rise <= 0.5 * (offset.length_squared() + slack * slack)
 }

@@ -1,13 +1,13 @@
-//! The surface f = 0, and how a child comes to it: on a circle around its parent (§4.3), or by Newton's method in space.
+//! How a child comes to the surface, paper §4.3: on a circle around its parent.
 
-use crate::differential::{Curvature, exact_curvature};
-use crate::field::Field;
-use crate::math::Bounds;
+use super::Run;
+use super::observer::{ChildSlot, Observer};
+use super::particle::Particle;
+use super::rules::Projection;
+use super::surface::{ImplicitSurface, Landing, MAX_NEWTON, Trial};
+use crate::particles::SlotFate;
 use core::f64::consts::PI;
 use glam::DVec3;
-
-/// Most evaluations of Newton's method; a good guess takes two.
-const MAX_NEWTON: u32 = 12;
 
 /// Largest turn of a step on the circle, as the tangent of half the angle: about 23°.
 const MAX_TURN: f64 = 0.2;
@@ -27,59 +27,24 @@ const ARC_SAMPLES: u32 = 32;
 /// Most steps in a bracket.
 const MAX_BRACKET: u32 = 40;
 
-/// The field, its box and how often it was asked.
-pub(super) struct Surface {
-    pub(super) field: Box<dyn Field>,
-    pub(super) bounds: Bounds,
-    pub(super) evaluations: u64,
-}
-
-/// f and ∇f at a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
-    pub(super) value: f64,
-    pub(super) gradient: DVec3,
-    pub(super) slope: f64,
-}
-
-impl Sample {
-    /// Whether the point counts as one of the surface, with a normal.
-    fn is_zero(&self, residual: f64) -> bool {
-        self.slope > 0.0 && self.slope.is_finite() && self.value.abs() <= residual * self.slope
-    }
-}
-
-/// An evaluation on the way to the surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Trial {
-    pub(super) step: u32,
-    pub(super) theta_rad: Option<f64>,
-    pub(super) position: DVec3,
-    pub(super) sample: Sample,
-    pub(super) bracket_rad: Option<[f64; 2]>,
-}
-
-/// Where a search ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Landing {
-    On { position: DVec3, normal: DVec3 },
-    NotConverged,
-    Undefined,
-}
-
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).
 ///
 /// Its points are p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre out and takes |N| = |V| = 2r.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Circle {
-    pub(super) centre: DVec3,
-    pub(super) normal: DVec3,
-    pub(super) direction: DVec3,
-    pub(super) radius: f64,
+pub(crate) struct Circle {
+    /// The parent's place, p.
+    pub(crate) centre: DVec3,
+    /// The parent's unit normal N̂.
+    pub(crate) normal: DVec3,
+    /// Unit tangent vector V̂ towards the child.
+    pub(crate) direction: DVec3,
+    /// 2r, or in adaptive sampling r_i + r_j.
+    pub(crate) radius: f64,
 }
 
 impl Circle {
-    pub(super) fn point(&self, theta_rad: f64) -> DVec3 {
+    /// The point at the angle θ from the tangent plane.
+    pub(crate) fn point(&self, theta_rad: f64) -> DVec3 {
         let (sin, cos) = (libm::sin(theta_rad), libm::cos(theta_rad));
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
     }
@@ -91,37 +56,14 @@ impl Circle {
     }
 }
 
-impl Surface {
-    pub(super) fn sample(&mut self, p: DVec3) -> Sample {
-        self.evaluations += 1;
-        let jet = self.field.jet(p);
-        Sample { value: jet.value, gradient: jet.gradient, slope: jet.gradient.length() }
-    }
-
-    /// Second fundamental form [a, b, c] of the surface at p in the tangent frame (u, w): the normal turns by `[a b; b c]`.
-    pub(super) fn second_form(&mut self, p: DVec3, u: DVec3, w: DVec3) -> [f64; 3] {
-        self.evaluations += 1;
-        let jet = self.field.jet(p);
-        [(u, u), (u, w), (w, w)].map(|(a, b)| a.dot(jet.hessian.apply(b)) / jet.gradient.length())
-    }
-
-    /// Principal curvatures of the level set through p.
-    pub(super) fn curvature(&mut self, p: DVec3) -> Curvature<f64, DVec3> {
-        self.evaluations += 1;
-        exact_curvature(&self.field.jet(p))
-    }
-
-    pub(super) fn contains(&self, p: DVec3) -> bool {
-        p.cmpge(self.bounds.lo()).all() && p.cmple(self.bounds.hi()).all()
-    }
-
+impl ImplicitSurface {
     /// §4.3: moves a child along the circle until it has converged on the surface.
     ///
     /// # Differs from the paper
     ///
     /// The paper turns by α_j π, where α_j is f "scaled between −1 and 1". Here the turn is that of Newton's method in θ,
     /// −f / (df/dθ) to first order, limited to 23°. Where that does not converge, brackets of the arc are searched.
-    pub(super) fn land_on_circle(
+    pub(crate) fn land_on_circle(
         &mut self,
         circle: &Circle,
         start_rad: f64,
@@ -225,38 +167,54 @@ impl Surface {
         }
         None
     }
+}
 
-    /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the point is on the surface or has
-    /// moved by more than `reach`.
-    pub(super) fn land_by_newton(
-        &mut self,
-        start: DVec3,
-        reach: f64,
-        residual: f64,
-        note: &mut dyn FnMut(Trial),
-    ) -> Landing {
-        let mut position = start;
-        for step in 0..MAX_NEWTON {
-            let sample = self.sample(position);
-            note(Trial { step, theta_rad: None, position, sample, bracket_rad: None });
-            if sample.is_zero(residual) {
-                return Landing::On { position, normal: sample.gradient / sample.slope };
+impl<O: Observer> Run<O> {
+    /// Moves a child onto the surface (§4.3), from an angle on its circle.
+    pub(crate) fn land(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> Landing {
+        let residual = self.rules.residual * self.particles[child.parent as usize].radius;
+        let seen = &mut self.seen;
+        let mut note = |trial: Trial| seen.tried(child, &trial);
+        let landing = match self.rules.projection {
+            Projection::Circle => self.surface.land_on_circle(circle, theta_rad, residual, &mut note),
+            Projection::Newton => {
+                let start = circle.point(theta_rad);
+                self.surface.land_by_newton(start, circle.radius, residual, &mut note)
             }
-            position -= sample.gradient * (sample.value / (sample.slope * sample.slope));
-            if !position.is_finite() {
-                return Landing::Undefined;
-            }
-            if position.distance(start) > reach {
-                return Landing::NotConverged;
-            }
+        };
+        if let Landing::On { position, normal } = landing {
+            self.seen.landed(child, position, normal, position.distance(circle.centre));
         }
-        Landing::NotConverged
+        landing
     }
 
-    /// Whether f comes to zero at a point of the surface, and not to a pole: |f| grows away from a zero.
-    pub(super) fn is_zero(&mut self, position: DVec3, normal: DVec3, step: f64) -> bool {
-        let [here, above, below] =
-            [0.0, step, -step].map(|step| self.sample(position + normal * step).value.abs());
-        above > here || below > here
+    /// Where a child landed, if it may be a particle there; otherwise its fate is decided.
+    pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
+        let fate = match landing {
+            Landing::NotConverged => SlotFate::NotConverged,
+            Landing::Undefined => SlotFate::Undefined,
+            // The circle may meet the far side of a rim or of a thin sheet.
+            Landing::On { normal, .. } if normal.dot(self.particles[child.parent as usize].n()) <= 0.0 => {
+                SlotFate::NotConverged
+            }
+            Landing::On { position, .. } if !self.surface.contains(position) => SlotFate::Outside,
+            Landing::On { position, normal } => return Some((position, normal)),
+        };
+        self.decide(child, fate, None);
+        None
+    }
+
+    /// Where a particle that is moved to `target` comes back to the surface; `None` at the border of the box, where the field ends, or
+    /// around a fold.
+    pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
+        let residual = self.rules.residual * own.radius;
+        match self.surface.land_by_newton(target, reach, residual, &mut |_| {}) {
+            Landing::On { position, normal }
+                if self.surface.contains(position) && normal.dot(own.n()) > 0.0 =>
+            {
+                Some((position, normal))
+            }
+            _ => None,
+        }
     }
 }

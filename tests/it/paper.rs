@@ -1,24 +1,27 @@
-//! Tests of the reference: what the paper says holds of it, going back is exact, and its digests are those of every platform.
+//! Tests of the paper's algorithms and of the lesson's engine, which runs them: what the paper says holds, going back is exact, and
+//! the digests are those of every platform.
 //!
-//! A change that is meant to move particles rewrites the golden file: `UPDATE_GOLDEN=1 cargo test --test it reference::`.
+//! A change that is meant to move particles rewrites the golden file: `UPDATE_GOLDEN=1 cargo test --test it paper::`.
 
 use crate::golden;
 use glam::DVec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
-use marching_particles::reference::{
-    ChapterKind, Event, LessonField, Matched, Method, Order, Particle, Placing, Projection, Reference,
-    ReferenceError, Seeding, Settings, digest,
+use marching_particles::lesson::{
+    ChapterKind, Event, Lesson, LessonError, LessonField, Method, Placing, Seeding, Settings, digest,
+};
+use marching_particles::paper::{
+    ImplicitSurface, Matched, Order, Particle, Projection, Rules, Run, Sizes, sum_of_curvatures,
 };
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
 
-fn start(surface: &str, settings: &Settings) -> Result<Reference, ReferenceError> {
+fn start(surface: &str, settings: &Settings) -> Result<Lesson, LessonError> {
     let surface = gallery::find(surface).expect("a gallery surface");
-    Reference::new(Box::new(surface.field()), &surface.bounds, settings)
+    Lesson::new(Box::new(surface.field()), &surface.bounds, settings)
 }
 
-fn run(surface: &str, settings: &Settings) -> Reference {
+fn run(surface: &str, settings: &Settings) -> Lesson {
     let mut run = start(surface, settings).unwrap_or_else(|error| panic!("{surface}: {error}"));
     while !run.step(1_000).is_done {}
     run.seek(u32::MAX);
@@ -91,6 +94,27 @@ fn back_is_exact_to_the_last_bit() {
             assert_eq!(pair[0].first_event + pair[0].events, pair[1].first_event);
             assert_eq!(pair[0].after, pair[1].before);
         }
+    }
+}
+
+#[test]
+fn the_paper_by_itself_gives_the_particles_of_the_lesson() {
+    let surface = gallery::find("ellipsoid").expect("a gallery surface");
+    let adaptive = Settings { law: LawKind::SumOfCurvatures, ..adaptive() };
+    let by_curvature = Sizes::ByCurvature {
+        law: sum_of_curvatures,
+        scale: adaptive.law_scale,
+        least: adaptive.radius_min,
+        most: adaptive.radius_max,
+    };
+    for (sizes, settings) in [(Sizes::Same(0.08), coarse()), (by_curvature, adaptive)] {
+        let settings = Settings { seeds: vec![[0.0, 0.0, 0.5]], ..settings };
+        let zeros = ImplicitSurface::new(Box::new(surface.field()), &surface.bounds);
+        let mut alone = Run::new(zeros, Rules::with_sizes(sizes), ());
+        assert!(alone.begin_at(DVec3::from(settings.seeds[0]), 0));
+        alone.sample(settings.relax_steps);
+        let lesson = run("ellipsoid", &settings);
+        assert_eq!(digest(alone.particles()), digest(lesson.particles()), "{settings:?}");
     }
 }
 
@@ -332,7 +356,7 @@ fn two_seeds_together_meet() {
 
 #[test]
 fn a_section_lies_on_the_surface() {
-    let mut run = start("sphere", &coarse()).expect("valid settings");
+    let run = start("sphere", &coarse()).expect("valid settings");
     let segments = run.section([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.3, 60);
     assert!(segments.len() > 60);
     for [x0, y0, x1, y1] in segments {
@@ -383,12 +407,12 @@ fn the_limit_on_particles_ends_the_front() {
 /// Contents of the golden file.
 #[derive(Serialize, Deserialize)]
 struct Golden {
-    runs: Vec<Lesson>,
+    runs: Vec<GoldenRun>,
 }
 
 /// A run with its expected result.
 #[derive(Serialize, Deserialize)]
-struct Lesson {
+struct GoldenRun {
     name: String,
     field: LessonField,
     settings: Settings,
@@ -407,7 +431,7 @@ fn lessons_have_the_digests_that_other_platforms_give() {
     for lesson in &mut golden.runs {
         let LessonField { formula, parameters, bounds } = &lesson.field;
         let field = FormulaField::parse(formula, parameters).expect("the formula can be read");
-        let mut run = Reference::new(Box::new(field.without_powers()), bounds, &lesson.settings)
+        let mut run = Lesson::new(Box::new(field.without_powers()), bounds, &lesson.settings)
             .unwrap_or_else(|error| panic!("{}: {error}", lesson.name));
         while !run.step(1_000).is_done {}
         let events = run.progress().events;
@@ -421,5 +445,5 @@ fn lessons_have_the_digests_that_other_platforms_give() {
         golden::compare(&lesson.name, &mut lesson.half, half, &mut faults);
         golden::compare(&lesson.name, &mut lesson.digest, end, &mut faults);
     }
-    golden::finish("lessons.json", &golden, &faults, "reference");
+    golden::finish("lessons.json", &golden, &faults, "paper");
 }

@@ -1,8 +1,11 @@
-//! What a reader of the paper may choose: the points that its text leaves open or discusses.
+//! What a run of the lesson is asked for: the method, the rules of the paper, and what goes beyond it.
 
+use crate::differential::Curvature;
 use crate::field::formula::Parameter;
 use crate::math::Bounds;
+use crate::paper::{Matched, Order, Projection, Rules, Sizes, Start, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// A run that is not asked for more follows no more particles than this: a log of more is not read event by event.
@@ -34,50 +37,6 @@ pub enum Method {
     WitkinHeckbert,
     /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces between discs.
     Forces,
-}
-
-/// How a child is moved onto the surface (§4.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
-#[serde(rename_all = "snake_case")]
-pub enum Projection {
-    /// Along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
-    Circle,
-    /// By Newton's method in space, "the most common technique", which does not keep it.
-    Newton,
-}
-
-/// Where the search on the circle begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
-#[serde(rename_all = "snake_case")]
-pub enum Start {
-    /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
-    Tangent,
-    /// Where the normal curvature of the parent puts the surface, sin θ₀ = −κ_V r.
-    Curvature,
-}
-
-/// Which of the particles that are not done is treated next (§4.4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
-#[serde(rename_all = "snake_case")]
-pub enum Order {
-    /// The one that has waited longest: this gives the rings of Fig. 11.
-    Queue,
-    /// The one that came last, as the word "stack" in the text says.
-    Stack,
-}
-
-/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
-#[serde(rename_all = "snake_case")]
-pub enum Matched {
-    /// It leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
-    Leave,
-    /// It stays, and so do the new children. No two particles are then closer than the match radius.
-    Stay,
 }
 
 /// When a child is compared with the particles that exist.
@@ -201,12 +160,37 @@ impl Settings {
         Self { placing: Placing::LevelByLevel, matched: Matched::Stay, ..Self::default() }
     }
 
+    /// The rules of the paper's algorithms.
+    pub(super) fn rules(&self) -> Rules {
+        let sizes = match self.sampling {
+            Sampling::Uniform => Sizes::Same(self.radius),
+            Sampling::Adaptive => Sizes::ByCurvature {
+                law: law(self.law),
+                scale: self.law_scale,
+                least: self.radius_min,
+                most: self.radius_max,
+            },
+        };
+        Rules {
+            sizes,
+            projection: self.projection,
+            start: self.start,
+            order: self.order,
+            matched: self.matched,
+            match_tolerance: self.match_tolerance,
+            fit: self.fit,
+            residual: self.residual,
+            step_size: self.step_size,
+            max_particles: self.max_particles as usize,
+        }
+    }
+
     /// Checks every value.
     ///
     /// # Errors
     ///
     /// The first one that is out of its range, or does not go with another.
-    pub fn validate(&self) -> Result<(), ReferenceError> {
+    pub fn validate(&self) -> Result<(), LessonError> {
         let ranges = [
             ("match_tolerance", self.match_tolerance, 0.1, 0.95),
             ("residual", self.residual, 1e-10, 0.01),
@@ -226,14 +210,14 @@ impl Settings {
         };
         for (name, value, min, max) in sizes.into_iter().chain(ranges) {
             if !(min..=max).contains(&value) {
-                return Err(ReferenceError::OutOfRange { name, value, min, max });
+                return Err(LessonError::OutOfRange { name, value, min, max });
             }
         }
         match (self.method, self.sampling) {
-            (Method::WitkinHeckbert, Sampling::Adaptive) => return Err(ReferenceError::OneSize),
+            (Method::WitkinHeckbert, Sampling::Adaptive) => return Err(LessonError::OneSize),
             (Method::WitkinHeckbert, _) if !(0.0..=f64::MAX).contains(&self.radius_max) => {
                 let (name, value) = ("radius_max", self.radius_max);
-                return Err(ReferenceError::OutOfRange { name, value, min: 0.0, max: f64::MAX });
+                return Err(LessonError::OutOfRange { name, value, min: 0.0, max: f64::MAX });
             }
             _ => {}
         }
@@ -241,24 +225,36 @@ impl Settings {
             && (self.order, self.projection, self.matched)
                 != (Order::Queue, Projection::Circle, Matched::Stay)
         {
-            return Err(ReferenceError::Levels);
+            return Err(LessonError::Levels);
         }
         if (self.method, self.sampling) == (Method::Front, Sampling::Adaptive)
             && (self.placing, self.projection, self.gaps)
                 != (Placing::OneByOne, Projection::Circle, GapPolicy::Leave)
         {
-            return Err(ReferenceError::Adaptive);
+            return Err(LessonError::Adaptive);
         }
         if self.seeding == Seeding::Together && self.seeds.is_empty() {
-            return Err(ReferenceError::Seeds);
+            return Err(LessonError::Seeds);
         }
         Ok(())
     }
 }
 
+/// The radius of an adaptive particle, from the curvature and a scale.
+fn law(kind: LawKind) -> fn(&Curvature<f64, DVec3>, f64) -> f64 {
+    match kind {
+        LawKind::SumOfCurvatures => sum_of_curvatures,
+        LawKind::MaxCurvature => |curvature, scale| scale / curvature.max_abs(),
+        // The middle of an equilateral triangle of side 2r, inscribed in a sphere, is this far from the sphere.
+        LawKind::ChordError => {
+            |curvature, error| 0.5 * (3.0 * error * (2.0 / curvature.max_abs() - error)).max(0.0).sqrt()
+        }
+    }
+}
+
 /// Why a run cannot begin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ReferenceError {
+pub enum LessonError {
     /// A setting is no number within its range.
     #[error("{name} is {value}, but must lie between {min} and {max}")]
     OutOfRange {
@@ -286,7 +282,7 @@ pub enum ReferenceError {
     /// Seeds that begin together have to be known.
     #[error("seeds that begin together have to be given")]
     Seeds,
-    /// More particles than the reference follows.
+    /// More particles than a run follows.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \
          choose a radius of {radius:.2e} or more"
@@ -299,7 +295,7 @@ pub enum ReferenceError {
         /// Radius with which there would be no more.
         radius: f64,
     },
-    /// More particles than the reference follows, in adaptive sampling.
+    /// More particles than a run follows, in adaptive sampling.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \
          choose radii {factor:.2} times as large"

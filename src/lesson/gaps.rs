@@ -1,9 +1,9 @@
 //! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation (§4.5).
 
+use super::course::Course;
 use super::event::Event;
-use super::surface::{Circle, Landing, Surface};
-use super::walk::{Setup, Walk};
 use crate::math::frame_of;
+use crate::paper::{ChildSlot, Circle, Landing};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
@@ -16,59 +16,54 @@ const WIDEST: f64 = 1.25;
 /// Neighbours within this many radii border a gap.
 const REACH: f64 = 3.4;
 
-impl Walk {
+impl Course {
     /// Fills the widest gap beside a particle, if another one has room there.
-    pub(super) fn fill_beside(
-        &mut self,
-        surface: &mut Surface,
-        setup: &Setup,
-        beside: u32,
-        log: &mut Vec<Event>,
-    ) {
-        let own = self.particles[beside as usize];
-        let (p, n, r) = (own.p(), own.n(), setup.radius());
+    pub(super) fn fill_beside(&mut self, beside: u32) {
+        let run = &mut self.run;
+        let own = run.particles[beside as usize];
+        let (p, n, r) = (own.p(), own.n(), self.setup.settings.radius);
         let (u, w) = frame_of(own.normal);
         let (u, w): (DVec3, DVec3) = (u.into(), w.into());
         // Neighbours keep their direction in the tangent plane and their distance in space. The unit is 2r.
-        let plane: Vec<DVec2> = self
+        let plane: Vec<DVec2> = run
             .buckets
-            .near(&self.particles, p, REACH * r)
+            .near(&run.particles, p, REACH * r)
             .iter()
             .filter_map(|near| {
-                let other = &self.particles[near.particle as usize];
+                let other = &run.particles[near.particle as usize];
                 let flat = DVec2::new((other.p() - p).dot(u), (other.p() - p).dot(w));
                 let is_listed = near.particle != beside && other.n().dot(n) > 0.0 && flat.length() > 0.0;
                 is_listed.then(|| flat * (near.distance / (flat.length() * 2.0 * r)))
             })
             .collect();
         let centre = widest_gap(&plane);
-        log.push(Event::Gap { particle: beside, width: centre.map(|centre| centre.length() * 2.0 * r) });
+        run.seen.push(Event::Gap { particle: beside, width: centre.map(|centre| centre.length() * 2.0 * r) });
         let Some(centre) = centre else { return };
-        if self.particles.len() >= setup.settings.max_particles as usize {
+        if run.particles.len() >= run.rules.max_particles {
             return;
         }
         let direction = (u * centre.x + w * centre.y) / centre.length();
         let circle = Circle { centre: p, normal: n, direction, radius: centre.length() * 2.0 * r };
         let Landing::On { position, normal } =
-            surface.land_on_circle(&circle, 0.0, setup.residual(r), &mut |_| {})
+            run.surface.land_on_circle(&circle, 0.0, run.rules.residual * r, &mut |_| {})
         else {
             return;
         };
-        let is_free = self
+        let is_free = run
             .buckets
-            .near(&self.particles, position, NARROWEST * 2.0 * r)
+            .near(&run.particles, position, NARROWEST * 2.0 * r)
             .iter()
-            .all(|near| self.particles[near.particle as usize].n().dot(normal) <= 0.0);
-        if !is_free || !surface.contains(position) || normal.dot(n) <= 0.0 {
+            .all(|near| run.particles[near.particle as usize].n().dot(normal) <= 0.0);
+        if !is_free || !run.surface.contains(position) || normal.dot(n) <= 0.0 {
             return;
         }
         // It has neighbours all around and places no children.
-        let particle = self.add(beside, position, normal, r, log);
-        self.decide((particle, 0), SlotFate::Parent, Some(beside), log);
+        let parent = run.add(beside, position, normal, r);
+        run.decide(ChildSlot { parent, slot: 0 }, SlotFate::Parent, Some(beside));
         for slot in 1..6 {
-            self.decide((particle, slot), SlotFate::Matched, None, log);
+            run.decide(ChildSlot { parent, slot }, SlotFate::Matched, None);
         }
-        self.finish(particle, surface, log);
+        run.finish(parent);
     }
 }
 

@@ -1,0 +1,126 @@
+//! Uniform sampling level by level, as the fast front does it: the children of a generation level are predicted and compared, then
+//! those that are free are projected together and compared again.
+//!
+//! A child's place depends on its parent alone, so the children of a level can be projected in any order. The fates are still decided
+//! in the order of the queue.
+
+use super::course::{Course, Predicted};
+use crate::paper::{
+    ChildSlot, Circle, Comparison, DIRECTIONS, Frame, Nearby, Observer, REACH, RISE_SLACK, is_same_sheet,
+    predicted_angle,
+};
+use crate::particles::SlotFate;
+use glam::DVec3;
+
+/// Particles within this many radii tell the curvature around a parent: the six ideal neighbours are at 2, the next ring at 3.46.
+const RING: f64 = 2.6;
+
+/// Weight of "equal curvature in all directions" in that fit.
+const ISOTROPY: f64 = 0.005;
+
+impl Course {
+    /// First stage: predicts the children of the next particle and compares them there. Those that are free wait to be projected.
+    pub(super) fn predict_next(&mut self) {
+        let Some(particle) = self.run.waiting.pop_front() else { return };
+        self.run.seen.taken(particle);
+        let (radius, limit) = (self.setup.settings.radius, self.run.rules.match_radius());
+        let neighbours = self.run.gather(particle, REACH * radius);
+        let frame = self.run.tangent_frame(particle);
+        let p = self.run.particles[particle as usize].p();
+        let form = if frame.is_seed {
+            self.run.surface.second_form(p, frame.u, frame.w)
+        } else {
+            self.fitted_form(radius, particle, &frame, &neighbours)
+        };
+        self.run.seen.frame(particle, &frame, Some(form));
+        if let Some(parent) = self.run.particles[particle as usize].parent {
+            self.run.decide(ChildSlot { parent: particle, slot: 0 }, SlotFate::Parent, Some(parent));
+        }
+        for slot in frame.slots() {
+            let child = ChildSlot { parent: particle, slot: slot as u32 };
+            let circle =
+                Circle { centre: p, normal: frame.n, direction: frame.direction(slot), radius: 2.0 * radius };
+            let theta_rad = predicted_angle(form, DIRECTIONS[slot], radius);
+            let place = circle.point(theta_rad);
+            // The normal turns with the offset.
+            let [cos, sin] = DIRECTIONS[slot];
+            let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
+            let normal = (frame.n + turn * (2.0 * radius * libm::cos(theta_rad))).normalize_or(frame.n);
+            self.run.seen.proposed(child, circle.direction, theta_rad, place);
+            let settled = neighbours.iter().map(|near| {
+                let other = &self.run.particles[near.particle as usize];
+                (other.p(), other.n(), Some(near.particle))
+            });
+            let predicted = self.predicted.iter().map(|child| (child.place, child.normal, None));
+            let nearest = settled
+                .chain(predicted)
+                .filter(|(q, m, _)| is_same_sheet(*q - place, normal, *m, RISE_SLACK * limit))
+                .map(|(q, _, particle)| (q.distance(place), particle))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let (distance, against) =
+                nearest.map_or((None, None), |(distance, other)| (Some(distance), other));
+            let corresponds = distance.is_some_and(|distance| distance <= limit);
+            let comparison = Comparison { position: place, against, distance, limit, corresponds };
+            self.run.seen.compared(child, &comparison, &self.run.particles);
+            if corresponds {
+                self.run.decide(child, SlotFate::Matched, against);
+            } else if self.run.particles.len() + self.predicted.len() >= self.run.rules.max_particles {
+                self.run.is_capped = true;
+                self.run.decide(child, SlotFate::Capped, None);
+            } else {
+                self.predicted.push_back(Predicted { child, circle, theta_rad, place, normal });
+            }
+        }
+        self.run.finish(particle);
+    }
+
+    /// Second stage: projects the next child and decides its fate where it lands.
+    pub(super) fn settle_next(&mut self) {
+        let Some(Predicted { child, circle, theta_rad, .. }) = self.predicted.pop_front() else { return };
+        let landing = self.run.land(child, &circle, theta_rad);
+        let Some((position, normal)) = self.run.usable(child, landing) else { return };
+        let neighbours = self.run.buckets.near(&self.run.particles, position, self.run.rules.match_radius());
+        match self.run.corresponding(child, position, normal, &neighbours) {
+            Some(other) => self.run.decide(child, SlotFate::Matched, Some(other)),
+            None => {
+                // There is room: the children that were predicted have been counted.
+                self.run.add_waiting(child, (position, normal, self.setup.settings.radius));
+            }
+        }
+    }
+
+    /// Second fundamental form [a, b, c] fitted to the normals around a particle by least squares.
+    fn fitted_form(&self, radius: f64, particle: u32, frame: &Frame, neighbours: &[Nearby]) -> [f64; 3] {
+        let p = self.run.particles[particle as usize].p();
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        let (mut xa, mut ya, mut xb, mut yb) = (0.0, 0.0, 0.0, 0.0);
+        for near in neighbours.iter().filter(|near| near.distance <= RING * radius) {
+            let other = &self.run.particles[near.particle as usize];
+            let (offset, turn) = (other.p() - p, other.n() - frame.n);
+            // A normal that differs by more than 60° lies beyond a crease or on another sheet.
+            if turn.length_squared() > 1.0 {
+                continue;
+            }
+            let [x, y] = [offset.dot(frame.u), offset.dot(frame.w)];
+            let [a, b] = [turn.dot(frame.u), turn.dot(frame.w)];
+            (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+            (xa, ya, xb, yb) = (xa + x * a, ya + y * a, xb + x * b, yb + y * b);
+        }
+        // Normal equations of a x + b y, b x + c y, with the prior (a − c)² + b²; solved by Cramer's rule.
+        let pull = ISOTROPY * (xx + yy);
+        let matrix = [
+            DVec3::new(xx + pull, xy, -pull),
+            DVec3::new(xy, xx + yy + pull, xy),
+            DVec3::new(-pull, xy, yy + pull),
+        ];
+        let right = DVec3::new(xa, ya + xb, yb);
+        let [c0, c1, c2] = matrix;
+        let determinant = c0.dot(c1.cross(c2));
+        let form = [
+            right.dot(c1.cross(c2)) / determinant,
+            c0.dot(right.cross(c2)) / determinant,
+            c0.dot(c1.cross(right)) / determinant,
+        ];
+        if form.iter().all(|value| value.is_finite()) { form } else { [0.0; 3] }
+    }
+}

@@ -1,0 +1,223 @@
+//! The two particle systems that the paper compares its methods with: the general scheme of §3, line by line.
+//!
+//! ```text
+//! Create a set of particles lying on the surface             add_seeds: one particle
+//! while Convergence is not reached do                        is_over
+//!     Compute the repulsion radius (or radii)                a part of Dynamics, applied with the move
+//!     Compute the energy of the set of particles             interact
+//!     Compute the velocity of the set of particles           interact
+//!     Update the position of the particles                   move_by_system
+//!     Split or kill particles when necessary                 decide_on
+//! end while
+//! ```
+//!
+//! What moves a particle and when it divides or dies is in `witkin_heckbert` and `forces`. An iteration is a chapter.
+//!
+//! # Differs from the paper
+//!
+//! * The paper detects convergence by the number of particles and their residual motion and gives no numbers (§3). Here a run has
+//!   settled after [`QUIET`] consecutive iterations without fission and death and with a mean motion of at most [`REST`].
+//! * The first particle does not die, so that there always is one.
+
+use super::course::{ChapterKind, Course};
+use super::dynamics::{Dynamics, Step};
+use super::event::Event;
+use super::settings::Method;
+use super::{forces, witkin_heckbert};
+use crate::math::frame_of;
+use crate::paper::{Buckets, Particle};
+use glam::DVec3;
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
+/// Consecutive iterations of rest after which a run has settled.
+pub(super) const QUIET: u32 = 20;
+
+/// Mean move in an iteration, in radii, up to which particles count as not moving.
+const REST: f64 = 0.005;
+
+/// A random number in [0, 1).
+fn uniform(random: &mut Pcg32) -> f64 {
+    f64::from(random.next_u32() >> 8) / 16_777_216.0
+}
+
+/// A random unit vector in the tangent plane: that of a point of the square that is in the unit disc.
+fn tangent(normal: [f64; 3], random: &mut Pcg32) -> DVec3 {
+    let (u, v) = frame_of(normal);
+    loop {
+        let [a, b] = [0, 1].map(|_| 2.0 * uniform(random) - 1.0);
+        let length_sq = a * a + b * b;
+        if length_sq > 1e-4 && length_sq <= 1.0 {
+            return (DVec3::from(u) * a + DVec3::from(v) * b) / length_sq.sqrt();
+        }
+    }
+}
+
+impl Course {
+    fn is_over(&self) -> bool {
+        self.run.particles.is_empty()
+            || self.run.is_capped
+            || self.cursor.quiet >= QUIET
+            || self.run.steps >= self.setup.settings.max_iterations
+    }
+
+    /// Begins the next iteration; `None` at the end of the run.
+    pub(super) fn begin_iteration(&mut self) -> Option<ChapterKind> {
+        if self.run.particles.is_empty() {
+            self.add_seeds();
+            self.run.waiting.clear();
+        }
+        if self.is_over() {
+            return None;
+        }
+        let sum: f64 = self.run.particles.iter().map(|particle| particle.radius).sum();
+        let mean = sum / self.run.particles.len() as f64;
+        self.interact(mean);
+        let iteration = self.run.steps + 1;
+        let particles = self.run.particles.len() as u32;
+        let energy = self.dynamics.iter().map(|own| own.energy).sum::<f64>() / f64::from(particles);
+        self.run.seen.push(Event::IterationBegins { iteration, particles, energy });
+        // Every particle moves, then every particle is decided on.
+        self.left = 2 * particles;
+        self.dying.clear();
+        self.run.largest_move = 0.0;
+        Some(ChapterKind::Iteration { iteration })
+    }
+
+    /// "Compute the energy", "compute the velocity": sums over all pairs within reach. `mean` is the mean radius.
+    fn interact(&mut self, mean: f64) {
+        let is_gaussian = self.setup.settings.method == Method::WitkinHeckbert;
+        let reach = if is_gaussian { witkin_heckbert::RANGE } else { forces::RANGE };
+        let particles = &self.run.particles;
+        self.run.buckets = Buckets::new(reach * mean, particles);
+        self.dynamics.clear();
+        self.dynamics.resize(particles.len(), Dynamics::default());
+        for (i, own) in particles.iter().enumerate() {
+            for near in self.run.buckets.near(particles, own.p(), reach * own.radius) {
+                let j = near.particle as usize;
+                let other = &particles[j];
+                // Particles that face away from each other are on two sides of a thin part.
+                if j == i || own.n().dot(other.n()) <= 0.0 {
+                    continue;
+                }
+                if is_gaussian {
+                    witkin_heckbert::interact(&mut self.dynamics, (i, own), (j, other));
+                } else {
+                    forces::interact(&mut self.dynamics, (i, own), (j, other));
+                }
+            }
+        }
+    }
+
+    /// One unit of an iteration.
+    pub(super) fn iterate(&mut self) {
+        // Children that are born in this iteration have their turn in the next one.
+        let living = self.dynamics.len();
+        let done = 2 * living - self.left as usize;
+        if done < living {
+            self.move_by_system(done);
+        } else {
+            self.decide_on(done - living);
+        }
+        self.left -= 1;
+        if self.left == 0 {
+            self.end_iteration();
+        }
+    }
+
+    /// "Update the position of the particles", and the radius with it.
+    fn move_by_system(&mut self, i: usize) {
+        let method = self.setup.settings.method;
+        let own = self.run.particles[i];
+        let dynamics = &mut self.dynamics[i];
+        let Step { force, target, arrived } = match method {
+            Method::WitkinHeckbert => {
+                let particle = &mut self.run.particles[i];
+                witkin_heckbert::step(&mut self.run.surface, &self.setup, particle, dynamics)
+            }
+            Method::Front | Method::Forces => forces::step(&mut self.run, &own, dynamics),
+        };
+        let particle = &mut self.run.particles[i];
+        if let Some(arrived) = arrived {
+            *particle = arrived;
+        }
+        dynamics.moved = particle.p().distance(own.p()) / particle.radius;
+        if method == Method::Forces {
+            dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
+        }
+        self.run.largest_move = self.run.largest_move.max(dynamics.moved);
+        self.run.seen.push(Event::Moved {
+            particle: i as u32,
+            force: force.to_array(),
+            target: target.to_array(),
+            position: particle.position,
+            normal: particle.normal,
+            radius: particle.radius,
+            is_kept: arrived.is_none(),
+        });
+    }
+
+    /// "Split or kill particles when necessary".
+    fn decide_on(&mut self, i: usize) {
+        let (own, dynamics) = (self.run.particles[i], self.dynamics[i]);
+        let chance = uniform(&mut self.cursor.random);
+        let (dies, divides) = match self.setup.settings.method {
+            Method::WitkinHeckbert => (
+                witkin_heckbert::dies(&self.setup, &own, &dynamics, chance),
+                witkin_heckbert::divides(&self.setup, &own, &dynamics),
+            ),
+            Method::Front | Method::Forces => (forces::dies(&dynamics, chance), forces::divides(&dynamics)),
+        };
+        let most = self.run.rules.max_particles;
+        if dies && i > 0 {
+            self.dying.push(i as u32);
+        } else if divides && self.run.particles.len() < most {
+            let direction = tangent(own.normal, &mut self.cursor.random);
+            let Some(data) = self.children(&own, direction) else { return };
+            let child = self.run.particles.len() as u32;
+            self.run.particles[i] = data[0];
+            self.run.particles.push(data[1]);
+            let (data, energy) = (Box::new(data), dynamics.energy);
+            self.run.seen.push(Event::Divided { particle: i as u32, child, data, energy });
+            self.run.is_capped = self.run.particles.len() >= most;
+        }
+    }
+
+    /// The two children of a particle, half a radius to either side of it; `None` if one does not come to the surface.
+    ///
+    /// The sources do not say where they are put.
+    fn children(&mut self, parent: &Particle, direction: DVec3) -> Option<[Particle; 2]> {
+        let method = self.setup.settings.method;
+        let mut child = |side: f64| {
+            let start = parent.p() + direction * (side * parent.radius);
+            let (position, normal) = self.run.come_back(parent, start, parent.radius)?;
+            let radius = match method {
+                // Both together cover the area that their parent has covered.
+                Method::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
+                Method::Front | Method::Forces => self.run.radius_at(position)?,
+            };
+            let level = parent.level + 1;
+            Some(Particle { level, ..Particle::seed(position, normal, radius, parent.front) })
+        };
+        Some([child(0.5)?, child(-0.5)?])
+    }
+
+    fn end_iteration(&mut self) {
+        let has_changed = !self.dying.is_empty() || self.run.particles.len() > self.dynamics.len();
+        for &particle in self.dying.iter().rev() {
+            self.run.particles.remove(particle as usize);
+            let energy = self.dynamics[particle as usize].energy;
+            self.run.seen.push(Event::Died { particle, energy });
+        }
+        let mean_move = self.dynamics.iter().map(|own| own.moved).sum::<f64>() / self.dynamics.len() as f64;
+        let is_quiet = !has_changed && mean_move <= REST;
+        self.cursor.quiet = if is_quiet { self.cursor.quiet + 1 } else { 0 };
+        self.run.steps += 1;
+        self.run.seen.push(Event::IterationEnds {
+            iteration: self.run.steps,
+            particles: self.run.particles.len() as u32,
+            largest_move: self.run.largest_move,
+            mean_move,
+        });
+    }
+}

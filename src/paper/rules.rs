@@ -1,0 +1,153 @@
+//! What a reader of the paper may choose: the points that its text leaves open or discusses.
+
+use super::surface::ImplicitSurface;
+use crate::differential::Curvature;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// How a child is moved onto the surface (§4.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
+#[serde(rename_all = "snake_case")]
+pub enum Projection {
+    /// Along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
+    Circle,
+    /// By Newton's method in space, "the most common technique", which does not keep it.
+    Newton,
+}
+
+/// Where the search on the circle begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
+    Tangent,
+    /// Where the normal curvature of the parent puts the surface, sin θ₀ = −κ_V r.
+    Curvature,
+}
+
+/// Which of the particles that are not done is treated next (§4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// The one that has waited longest: this gives the rings of Fig. 11.
+    Queue,
+    /// The one that came last, as the word "stack" in the text says.
+    Stack,
+}
+
+/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
+#[serde(rename_all = "snake_case")]
+pub enum Matched {
+    /// It leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
+    Leave,
+    /// It stays, and so do the new children. No two particles are then closer than the match radius.
+    Stay,
+}
+
+/// The repulsion radii of the particles.
+#[derive(Clone, Copy, Debug)]
+pub enum Sizes {
+    /// This radius everywhere (§4).
+    Same(f64),
+    /// A radius that follows the curvature (§5.2), between two limits, "in order to avoid very small or very large particles".
+    ByCurvature {
+        /// The radius, from the principal curvatures of the level set and `scale`.
+        law: fn(&Curvature<f64, DVec3>, f64) -> f64,
+        /// What the law scales the curvature with "in order to be used as a distance measurement".
+        scale: f64,
+        /// The smallest radius.
+        least: f64,
+        /// The largest radius.
+        most: f64,
+    },
+}
+
+impl Sizes {
+    /// Smallest radius of a particle.
+    pub(crate) fn smallest(&self) -> f64 {
+        match *self {
+            Self::Same(radius) => radius,
+            Self::ByCurvature { least, .. } => least,
+        }
+    }
+
+    /// Largest radius of a particle.
+    pub(crate) fn largest(&self) -> f64 {
+        match *self {
+            Self::Same(radius) => radius,
+            Self::ByCurvature { most, .. } => most,
+        }
+    }
+
+    /// Radius of a particle at a point; `None` where the curvature is undefined.
+    pub(crate) fn radius_at(&self, surface: &mut ImplicitSurface, p: DVec3) -> Option<f64> {
+        match *self {
+            Self::Same(radius) => Some(radius),
+            Self::ByCurvature { law, scale, least, most } => {
+                let curvature = surface.curvature(p);
+                curvature.is_defined().then(|| law(&curvature, scale).clamp(least, most))
+            }
+        }
+    }
+}
+
+/// The paper's law of the radius (§5.2): inversely as κ = κ₁ + κ₂.
+#[must_use]
+pub fn sum_of_curvatures(curvature: &Curvature<f64, DVec3>, scale: f64) -> f64 {
+    scale / (2.0 * curvature.mean().abs())
+}
+
+/// The choices of a run.
+#[derive(Clone, Debug)]
+pub struct Rules {
+    /// The radii of the particles.
+    pub sizes: Sizes,
+    /// How a child comes to the surface.
+    pub projection: Projection,
+    /// Where that begins.
+    pub start: Start,
+    /// Which particle is treated next.
+    pub order: Order,
+    /// Whether matched particles leave the neighbours.
+    pub matched: Matched,
+    /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value.
+    pub match_tolerance: f64,
+    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes.
+    pub fit: f64,
+    /// A point is on the surface if |f|/|∇f| is at most this, in r. The paper names no value.
+    pub residual: f64,
+    /// Size of a relaxation step; the usual one if it is not given.
+    pub step_size: Option<f64>,
+    /// The run stops at this many particles.
+    pub max_particles: usize,
+}
+
+impl Rules {
+    /// The choices of the paper; where it names no value, those of the fast sampler.
+    #[must_use]
+    pub fn with_sizes(sizes: Sizes) -> Self {
+        Self {
+            sizes,
+            projection: Projection::Circle,
+            start: Start::Tangent,
+            // The text says stack, but the rings of Fig. 11 are those of a queue.
+            order: Order::Queue,
+            matched: Matched::Leave,
+            match_tolerance: 0.7,
+            fit: 0.5,
+            residual: 1e-4,
+            step_size: None,
+            max_particles: usize::MAX,
+        }
+    }
+
+    /// Distance below which a child is identified with a particle, in uniform sampling.
+    pub(crate) fn match_radius(&self) -> f64 {
+        2.0 * self.sizes.largest() * self.match_tolerance
+    }
+}

@@ -1,0 +1,134 @@
+//! The surface f = 0, and the way to it by Newton's method in space.
+
+use crate::differential::{Curvature, exact_curvature};
+use crate::field::Field;
+use crate::math::Bounds;
+use glam::DVec3;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Most evaluations of Newton's method; a good guess takes two.
+pub(super) const MAX_NEWTON: u32 = 12;
+
+/// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their evaluations apart.
+#[derive(Clone)]
+pub struct ImplicitSurface {
+    field: Rc<RefCell<Box<dyn Field>>>,
+    pub(crate) bounds: Bounds,
+    /// Evaluations of the field.
+    pub(crate) evaluations: u64,
+}
+
+/// f and ∇f at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// f.
+    pub value: f64,
+    /// ∇f.
+    pub gradient: DVec3,
+    /// |∇f|.
+    pub slope: f64,
+}
+
+impl Sample {
+    /// Whether the point counts as one of the surface, with a normal.
+    pub(super) fn is_zero(&self, residual: f64) -> bool {
+        self.slope > 0.0 && self.slope.is_finite() && self.value.abs() <= residual * self.slope
+    }
+}
+
+/// An evaluation on the way to the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// Number of the evaluation, from 0.
+    pub step: u32,
+    /// Angle on the circle; none in space.
+    pub theta_rad: Option<f64>,
+    /// The place.
+    pub position: DVec3,
+    /// The field there.
+    pub sample: Sample,
+    /// Angles between which f changes its sign, in the bracketed search.
+    pub bracket_rad: Option<[f64; 2]>,
+}
+
+/// Where a search ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Landing {
+    /// On the surface.
+    On {
+        /// The place.
+        position: DVec3,
+        /// Unit normal there.
+        normal: DVec3,
+    },
+    /// Nowhere: no zero was found.
+    NotConverged,
+    /// Where the field has no value.
+    Undefined,
+}
+
+impl ImplicitSurface {
+    /// The zeros of `field` in a box.
+    #[must_use]
+    pub fn new(field: Box<dyn Field>, bounds: &Bounds) -> Self {
+        Self { field: Rc::new(RefCell::new(field)), bounds: *bounds, evaluations: 0 }
+    }
+
+    pub(crate) fn sample(&mut self, p: DVec3) -> Sample {
+        self.evaluations += 1;
+        let jet = self.field.borrow_mut().jet(p);
+        Sample { value: jet.value, gradient: jet.gradient, slope: jet.gradient.length() }
+    }
+
+    /// Second fundamental form [a, b, c] of the surface at p in the tangent frame (u, w): the normal turns by `[a b; b c]`.
+    pub(crate) fn second_form(&mut self, p: DVec3, u: DVec3, w: DVec3) -> [f64; 3] {
+        self.evaluations += 1;
+        let jet = self.field.borrow_mut().jet(p);
+        [(u, u), (u, w), (w, w)].map(|(a, b)| a.dot(jet.hessian.apply(b)) / jet.gradient.length())
+    }
+
+    /// Principal curvatures of the level set through p.
+    pub(crate) fn curvature(&mut self, p: DVec3) -> Curvature<f64, DVec3> {
+        self.evaluations += 1;
+        exact_curvature(&self.field.borrow_mut().jet(p))
+    }
+
+    pub(crate) fn contains(&self, p: DVec3) -> bool {
+        p.cmpge(self.bounds.lo()).all() && p.cmple(self.bounds.hi()).all()
+    }
+
+    /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the point is on the surface or has
+    /// moved by more than `reach`.
+    pub(crate) fn land_by_newton(
+        &mut self,
+        start: DVec3,
+        reach: f64,
+        residual: f64,
+        note: &mut dyn FnMut(Trial),
+    ) -> Landing {
+        let mut position = start;
+        for step in 0..MAX_NEWTON {
+            let sample = self.sample(position);
+            note(Trial { step, theta_rad: None, position, sample, bracket_rad: None });
+            if sample.is_zero(residual) {
+                return Landing::On { position, normal: sample.gradient / sample.slope };
+            }
+            position -= sample.gradient * (sample.value / (sample.slope * sample.slope));
+            if !position.is_finite() {
+                return Landing::Undefined;
+            }
+            if position.distance(start) > reach {
+                return Landing::NotConverged;
+            }
+        }
+        Landing::NotConverged
+    }
+
+    /// Whether f comes to zero at a point of the surface, and not to a pole: |f| grows away from a zero.
+    pub(crate) fn is_zero(&mut self, position: DVec3, normal: DVec3, step: f64) -> bool {
+        let [here, above, below] =
+            [0.0, step, -step].map(|step| self.sample(position + normal * step).value.abs());
+        above > here || below > here
+    }
+}
