@@ -118,7 +118,8 @@ The jobs and figures of *MarchingParticles: Fast Generation of Particles for the
 by this program. `cargo xtask paper` has written this page and drawn its pictures.
 
 On {}; {} jobs at a time, load average {load} when they began. Times are seconds of processor time of one thread; other work on the
-machine makes them longer. Particles, steps and figures are the same on every machine.
+machine makes them longer. Particles, steps and figures are the same on every machine, but
+for runs that are cut off.
 
 - **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
   same column, and ratios.
