@@ -22,8 +22,9 @@
 //! let mut run = Run::new(surface, Rules::with_sizes(Sizes::Same(0.1)), ());
 //! run.begin_at([0.0, 0.0, 1.0].into(), 0);
 //! run.sample(10);
-//! // About as many as hexagons of this width fit on the unit sphere: 4π / (2√3 r²) = 363.
-//! assert!((350..375).contains(&run.particles().len()));
+//! // About as many as hexagons of this width fit on the unit sphere, 4π / (2√3 r²) = 363, and some more where fronts meet.
+//! let count = run.particles().len();
+//! assert!((363..420).contains(&count), "{count} particles");
 //! ```
 //!
 //! # Differs from the paper
