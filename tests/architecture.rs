@@ -84,7 +84,7 @@ const ROOMS: [Room; 4] = [
                 &["settings", "fates", "probe", "projection", "neighbours", "sheet", "discovery", "sizing"],
             ),
             ("relaxation", &["probe", "projection", "neighbours", "sheet", "sizing"]),
-            ("refine", &["sizing"]),
+            ("refine", &["probe", "sizing"]),
             ("message", &["discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
             ("attempt", &["settings", "projection", "neighbours", "discovery", "sizing", "refine"]),

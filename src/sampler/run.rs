@@ -346,6 +346,7 @@ impl Sampler {
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
         let target = self.attempt.target(&self.settings)?;
         let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;
+        let before = probe.evaluations();
         let next = if let Some(point) = self.components.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
         } else if self.tools.front.is_capped() {
@@ -359,8 +360,9 @@ impl Sampler {
                 bend: *bend,
                 failures: *failures,
             };
-            self.tools.coarse.take_in(probe.field, &surface, &mut self.output.particles, target)
+            self.tools.coarse.take_in(probe, &surface, &mut self.output.particles, target)
         };
+        self.counts.generation_evaluations += probe.evaluations() - before;
         Some(match next {
             Ok(Next::Front(fewer)) => {
                 *halvings = fewer;
@@ -397,12 +399,10 @@ impl Sampler {
     }
 
     fn refine(&mut self, probe: &mut Probe, left: &mut u32, mut refinement: Box<Components>) -> PhaseState {
-        let before = refinement.evaluations();
+        let before = probe.evaluations();
         let sizing = self.attempt.refining.as_ref().and_then(|refining| refining.sizing.as_ref());
-        let step = refinement.step(probe.field, sizing, &mut self.output.particles, *left);
-        let evaluations = refinement.evaluations() - before;
-        probe.count(evaluations);
-        self.counts.generation_evaluations += evaluations;
+        let step = refinement.step(probe, sizing, &mut self.output.particles, *left);
+        self.counts.generation_evaluations += probe.evaluations() - before;
         match step {
             Err(refusal) => {
                 if let Some(refining) = &mut self.attempt.refining {

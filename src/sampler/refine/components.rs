@@ -8,10 +8,10 @@ use super::coarse::{halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target, border};
 use crate::differential::{Curvature, curvatures};
-use crate::field::Field;
 use crate::math::{Bounds, Forest};
 use crate::mesh::build::{Options, triangulate};
 use crate::particles::Particles;
+use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
 use core::mem;
 use core::ops::RangeInclusive;
@@ -106,14 +106,14 @@ impl CoarseFronts {
     /// Why the first front is not good enough.
     pub(crate) fn take_in(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         surface: &SurfaceFacts,
         particles: &mut Particles,
         target: Target,
     ) -> Result<Next, Refusal> {
         match self.candidates.pop() {
-            None => self.take_first(field, surface, particles, target)?,
-            Some(candidate) => self.take_coarser(field, surface, particles, target, candidate),
+            None => self.take_first(probe, surface, particles, target)?,
+            Some(candidate) => self.take_coarser(probe, surface, particles, target, candidate),
         }
         if let Some(candidate) = self.candidates.last() {
             return Ok(Next::Front(candidate.halvings));
@@ -130,7 +130,7 @@ impl CoarseFronts {
 
     fn take_first(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         surface: &SurfaceFacts,
         particles: &Particles,
         target: Target,
@@ -144,11 +144,11 @@ impl CoarseFronts {
             return Err(surface.bent());
         }
         for part in &parts {
-            let refinement = Refinement::new(field, part, bounds, target)?;
+            let refinement = Refinement::new(probe, part, bounds, target)?;
             let mut part = part.clone();
             part.keep_within(bounds);
             if self.are_several {
-                let largest = largest_curvatures(field, &part.position).into_iter().fold(0.0, f64::max);
+                let largest = largest_curvatures(probe.field, &part.position).into_iter().fold(0.0, f64::max);
                 let bend = largest * 2.0 * f64::from(target.radius);
                 let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.halvings));
                 let candidate = Candidate {
@@ -161,7 +161,7 @@ impl CoarseFronts {
                 }
             }
             let area = refinement.area();
-            let weight = area * sizing.map_or(1.0, |sizing| density(field, sizing, &part.position));
+            let weight = area * sizing.map_or(1.0, |sizing| density(probe, sizing, &part.position));
             // A lone component hands its levels on by itself.
             let particles = if self.are_several { part } else { Particles::default() };
             self.components.push(Component { refinement, area, weight, particles });
@@ -182,7 +182,7 @@ impl CoarseFronts {
     /// Takes a coarser front of a component, or tries one that is less so.
     fn take_coarser(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         surface: &SurfaceFacts,
         particles: &Particles,
         target: Target,
@@ -194,7 +194,7 @@ impl CoarseFronts {
             refinement.shape.euler == known.shape.euler
                 && AREA_RATIO.contains(&(refinement.area() / component.area))
         };
-        if let Ok(refinement) = Refinement::new(field, particles, &surface.bounds, target)
+        if let Ok(refinement) = Refinement::new(probe, particles, &surface.bounds, target)
             && is_same(&refinement)
         {
             component.refinement = refinement;
@@ -244,9 +244,9 @@ fn split(particles: &Particles) -> Vec<Particles> {
 }
 
 /// Particles per area that the radius field asks for at these points, evenly spread over a component.
-fn density(field: &mut dyn Field, sizing: &Sizing, points: &[Vec3]) -> f64 {
+fn density(probe: &mut Probe, sizing: &Sizing, points: &[Vec3]) -> f64 {
     let mut curvature = vec![Curvature::default(); points.len()];
-    curvatures(field, points, &mut curvature);
+    curvatures(probe.field, points, &mut curvature);
     let cells = points.iter().zip(&curvature).map(|(&p, curvature)| {
         let radius = f64::from(sizing.radius(p, curvature));
         1.0 / (radius * radius)
@@ -286,11 +286,6 @@ impl Components {
         let to_come =
             components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
         Self { components, to_come, joint: None }
-    }
-
-    /// Evaluations of the field so far.
-    pub(crate) fn evaluations(&self) -> u64 {
-        self.components.iter().map(|component| component.refinement.evaluations()).sum()
     }
 
     /// Whether there is nothing left to do.
@@ -342,13 +337,13 @@ impl Components {
     /// Why the refinement cannot go on.
     pub(crate) fn step(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         sizing: Option<&Sizing>,
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
         if let [lone] = &mut self.components[..] {
-            return lone.refinement.step(field, sizing, particles, budget);
+            return lone.refinement.step(probe, sizing, particles, budget);
         }
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
@@ -371,7 +366,7 @@ impl Components {
                 self.joint = Some(Joint::default());
                 continue;
             }
-            let (units, _) = component.refinement.step(field, sizing, &mut component.particles, 1)?;
+            let (units, _) = component.refinement.step(probe, sizing, &mut component.particles, 1)?;
             done += units;
             if self.components.iter().all(|component| component.refinement.is_done()) {
                 self.joint = Some(Joint::default());
@@ -412,6 +407,7 @@ mod tests {
     use super::*;
     use crate::field::formula::FormulaField;
     use crate::particles::Slots;
+    use crate::sampler::probe::ProbeMemory;
 
     /// A spiral over the unit sphere, with about the radius of so many particles.
     fn sphere(count: u32) -> Particles {
@@ -429,12 +425,14 @@ mod tests {
     #[test]
     fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
         let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let mut memory = ProbeMemory::default();
+        let mut probe = Probe::new(&mut field, &mut memory);
         let bounds = Bounds::cube(1.5);
         let surface =
             SurfaceFacts { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
-        let refinement = Refinement::new(&mut field, &known, &bounds, target(1)).expect("a good front");
+        let refinement = Refinement::new(&mut probe, &known, &bounds, target(1)).expect("a good front");
         let area = refinement.area();
         let mut fronts = CoarseFronts {
             components: vec![Component { refinement, area, weight: area, particles: known }],
@@ -449,14 +447,14 @@ mod tests {
             assert!(tried.len() < 9, "{tried:?}");
             // Too few particles, and then enough.
             let particles = sphere(if candidate.halvings > 2 { 20 } else { 1_000 });
-            fronts.take_coarser(&mut field, &surface, &particles, target(candidate.halvings), candidate);
+            fronts.take_coarser(&mut probe, &surface, &particles, target(candidate.halvings), candidate);
         }
         assert_eq!(tried, [4, 3, 2]);
         assert_eq!(fronts.components[0].refinement.target.halvings, 2);
         assert_eq!(fronts.components[0].particles.len(), 1_000);
         // None is tried that is no coarser than what there is.
         let candidate = Candidate { component: 0, halvings: 3, seed };
-        fronts.take_coarser(&mut field, &surface, &sphere(20), target(3), candidate);
+        fronts.take_coarser(&mut probe, &surface, &sphere(20), target(3), candidate);
         assert!(fronts.candidates.is_empty());
         assert_eq!(fronts.components[0].particles.len(), 1_000);
     }

@@ -2,9 +2,9 @@
 
 use super::walls::{Planes, Walls};
 use crate::differential::Curvature;
-use crate::field::Field;
 use crate::mesh::half_edge::{HalfEdges, NONE, previous};
 use crate::particles::Slots;
+use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
 
 /// Particles that are brought back onto the surface together: the field is evaluated in lanes.
@@ -40,8 +40,8 @@ impl Springs {
 }
 
 /// The field, with the memory that it takes to evaluate it at blocks of particles.
-pub(super) struct Ground<'a> {
-    pub(super) field: &'a mut dyn Field,
+pub(super) struct Ground<'a, 'field> {
+    pub(super) probe: &'a mut Probe<'field>,
     pub(super) block: &'a mut Block,
 }
 
@@ -52,14 +52,10 @@ pub(super) struct Block {
     /// Where they were before the move.
     before: Vec<Vec3>,
     points: Vec<Vec3>,
-    value: Vec<f32>,
-    gradient: Vec<Vec3>,
     /// Principal curvatures at the particles of the block, from which their sizes follow.
     pub(super) curvature: Vec<Curvature>,
     /// Those that could not be brought back.
     pub(super) refused: Vec<u32>,
-    /// Evaluations of the field so far.
-    pub(super) evaluations: u64,
 }
 
 impl Block {
@@ -245,38 +241,40 @@ impl Layer {
     /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
     /// faces of the box on which they lie. Those that could not be go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32) {
-        let Block { which, before, points, value, gradient, refused, evaluations, .. } = &mut *ground.block;
-        let n = points.len();
-        if value.len() < n {
-            value.resize(n, 0.0);
-            gradient.resize(n, Vec3::ZERO);
-        }
-        *evaluations += n as u64;
-        ground.field.gradients(points, &mut value[..n], &mut gradient[..n]);
+        let Block { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
-        for k in 0..n {
-            let v = which[k] as usize;
-            let inverse_slope = 1.0 / gradient[k].length();
-            let normal = gradient[k] * inverse_slope;
-            let correction = value[k] * inverse_slope;
-            let longest = MAX_CORRECTION * spacing * self.size_of(which[k]);
-            let landing = if self.walls.is_near() {
-                let planes = self.walls.planes(which[k]);
-                self.walls.landing(planes, points[k], value[k], gradient[k], longest)
-            } else {
-                (correction.abs() <= longest).then(|| points[k] - normal * correction)
-            };
-            // Written so that NaN fails.
-            if let Some(position) = landing
-                && normal.dot(self.normal[v]) >= MIN_AGREEMENT
-            {
-                self.position[v] = position;
-                self.normal[v] = normal;
-            } else {
-                self.position[v] = before[k];
-                refused.push(which[k]);
+        for first in (0..points.len()).step_by(BATCH) {
+            let range = first..points.len().min(first + BATCH);
+            let (value, gradient) = ground.probe.gradients(&points[range.clone()]);
+            let moved = which[range.clone()].iter().zip(&before[range.clone()]).zip(&points[range]);
+            for (((&v, &before), &p), (&value, &gradient)) in moved.zip(value.iter().zip(gradient)) {
+                if let Some((position, normal)) = self.landing(v, p, value, gradient, spacing) {
+                    self.position[v as usize] = position;
+                    self.normal[v as usize] = normal;
+                } else {
+                    self.position[v as usize] = before;
+                    refused.push(v);
+                }
             }
         }
+    }
+
+    /// Where a particle at `p` comes to lie by one step of Newton's method, with the normal there; none if it cannot be brought back.
+    #[inline]
+    fn landing(&self, v: u32, p: Vec3, value: f32, gradient: Vec3, spacing: f32) -> Option<(Vec3, Vec3)> {
+        let inverse_slope = 1.0 / gradient.length();
+        let normal = gradient * inverse_slope;
+        let correction = value * inverse_slope;
+        let longest = MAX_CORRECTION * spacing * self.size_of(v);
+        let position = if self.walls.is_near() {
+            self.walls.landing(self.walls.planes(v), p, value, gradient, longest)
+        } else {
+            (correction.abs() <= longest).then(|| p - normal * correction)
+        };
+        // Written so that NaN fails.
+        position
+            .filter(|_| normal.dot(self.normal[v as usize]) >= MIN_AGREEMENT)
+            .map(|position| (position, normal))
     }
 
     /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its

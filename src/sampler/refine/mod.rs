@@ -35,10 +35,10 @@ pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatu
 pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
 pub use refusal::{Refusal, Spot};
 
-use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::mesh::half_edge::{Stage, Subdivision};
 use crate::particles::Particles;
+use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
 use core::ops::RangeInclusive;
 use layer::{BLOCK, Block, Ground, Layer, Springs};
@@ -175,13 +175,13 @@ impl Refinement {
     ///
     /// Why the front is not good enough.
     fn new(
-        field: &mut dyn Field,
+        probe: &mut Probe,
         particles: &Particles,
         bounds: &Bounds,
         target: Target,
     ) -> Result<Self, Refusal> {
         let mut block = Block::default();
-        let mut ground = Ground { field, block: &mut block };
+        let mut ground = Ground { probe, block: &mut block };
         let layer = coarse::join(&mut ground, particles, bounds, target.halvings)?;
         Ok(Self::of_layer(layer, block, target))
     }
@@ -218,11 +218,6 @@ impl Refinement {
         }
     }
 
-    /// Evaluations of the field so far.
-    fn evaluations(&self) -> u64 {
-        self.tools.block.evaluations
-    }
-
     /// Whether there is nothing left to do.
     fn is_done(&self) -> bool {
         matches!(self.task, Task::Done)
@@ -247,7 +242,7 @@ impl Refinement {
     /// Why the refinement cannot go on.
     fn step(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         sizing: Option<&Sizing>,
         particles: &mut Particles,
         budget: u32,
@@ -257,10 +252,10 @@ impl Refinement {
             let task = core::mem::replace(&mut self.task, Task::Done);
             let was_whole = matches!(task, Task::Show(_) | Task::Name { .. });
             let (next, units) = match task {
-                Task::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
+                Task::Pass { pass, next, end } => self.pass(probe, sizing, pass, next, end)?,
                 Task::Show(rings) => self.show(rings, particles),
                 Task::Divide(subdivision) => self.divide(subdivision),
-                Task::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
+                Task::Lift { coarse, ends } => self.lift(probe, coarse, ends)?,
                 Task::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
                 Task::Done => (Task::Done, 0),
             };
@@ -354,7 +349,7 @@ impl Refinement {
     /// Goes on with a pass for one block.
     fn pass(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         sizing: Option<&Sizing>,
         pass: usize,
         next: u32,
@@ -363,7 +358,7 @@ impl Refinement {
         let springs =
             Springs { spacing: self.level.spacing, theta: self.level.recipe.theta, omega: recipe::OMEGA };
         let layer = &mut self.layer;
-        let mut ground = Ground { field, block: &mut self.tools.block };
+        let mut ground = Ground { probe, block: &mut self.tools.block };
         let kind = self.level.recipe.passes[pass];
         let per_unit = match kind {
             Pass::Flip | Pass::Thin => HALF_EDGES_PER_UNIT,
@@ -497,7 +492,7 @@ impl Refinement {
 
     fn lift(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         coarse: Box<Layer>,
         ends: Vec<[u32; 2]>,
     ) -> Result<(Task, u32), Refusal> {
@@ -505,7 +500,7 @@ impl Refinement {
         let start = layer.position.len();
         let end = ends.len().min(start + BLOCK);
         ends[start..end].iter().for_each(|&ends| layer.push_from(&coarse, ends));
-        let mut ground = Ground { field, block: &mut self.tools.block };
+        let mut ground = Ground { probe, block: &mut self.tools.block };
         layer.land(&mut ground, self.level.spacing, start as u32..end as u32);
         let refused = core::mem::take(&mut ground.block.refused);
         if let Some(&v) = refused.iter().find(|&&v| !layer.rescue(&mut ground, self.level.spacing, v)) {

@@ -34,9 +34,9 @@ impl Layer {
         let range = particles.start as usize..particles.end as usize;
         let curvature = &mut ground.block.curvature;
         curvature.resize(range.len(), Curvature::default());
-        ground.block.evaluations += range.len() as u64;
+        ground.probe.count(range.len() as u64);
         let points = &self.position[range.clone()];
-        curvatures(ground.field, points, curvature);
+        curvatures(ground.probe.field, points, curvature);
         for ((size, &p), curvature) in self.size[range].iter_mut().zip(points).zip(curvature) {
             let whole = sizing.radius(p, curvature) / unit;
             let (half, quarter) = (whole.sqrt(), whole.sqrt().sqrt());

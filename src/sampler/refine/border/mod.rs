@@ -53,11 +53,9 @@ fn land_on(
 fn slide(ground: &mut Ground, free: Vec3, start: Vec3, reach: f32) -> Option<(Vec3, Vec3)> {
     let mut p = start;
     for _ in 0..STEPS {
-        let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
-        ground.block.evaluations += 1;
-        ground.field.gradients(&[p], &mut value, &mut gradient);
-        let slope = gradient[0] * free;
-        let step = slope * (value[0] / slope.length_squared());
+        let (value, gradient) = ground.probe.gradient(p);
+        let slope = gradient * free;
+        let step = slope * (value / slope.length_squared());
         p -= step;
         // Written so that NaN fails.
         let is_within = p.distance(start) <= reach;
@@ -65,7 +63,7 @@ fn slide(ground: &mut Ground, free: Vec3, start: Vec3, reach: f32) -> Option<(Ve
             return None;
         }
         if step.length() <= AT_REST * reach {
-            return gradient[0].try_normalize().map(|normal| (p, normal));
+            return gradient.try_normalize().map(|normal| (p, normal));
         }
     }
     None

@@ -10,6 +10,7 @@ use crate::field::formula::FormulaField;
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::Slots;
+use crate::sampler::probe::{Probe, ProbeMemory};
 use glam::Vec3;
 use proptest::prelude::*;
 
@@ -118,7 +119,9 @@ proptest! {
         let mut field = saddle();
         let mut layer = grid(&mut field, &bounds, shift);
         let mut block = Block::default();
-        let mut ground = Ground { field: &mut field, block: &mut block };
+        let mut memory = ProbeMemory::default();
+        let mut probe = Probe::new(&mut field, &mut memory);
+        let mut ground = Ground { probe: &mut probe, block: &mut block };
         clip(&mut layer, &mut ground, SPACING).expect("the saddle can be clipped");
         check(&layer, &bounds);
         prop_assert_eq!(layer.mesh.euler(), 1);
