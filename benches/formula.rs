@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use marching_particles::field::Field;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Sym3;
 use rand_core::Rng;
@@ -14,7 +14,7 @@ use std::hint::black_box;
 /// Number of points in a batch, that of a large generation level.
 const POINTS: usize = 4096;
 
-fn field(id: &str) -> FormulaField {
+fn field(id: &str) -> Formula {
     gallery::find(id).unwrap_or_else(|| panic!("no surface {id}")).field()
 }
 
@@ -44,7 +44,7 @@ fn evaluation(criterion: &mut Criterion) {
     }
     let text = gallery::find("barth-sextic").map_or("x", |surface| surface.formula);
     group.bench_function("parse/barth-sextic", |bench| {
-        bench.iter(|| FormulaField::parse(black_box(text), &[]));
+        bench.iter(|| Formula::as_written(black_box(text), &[]));
     });
     group.finish();
 }

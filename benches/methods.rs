@@ -6,7 +6,11 @@
 //! curvature, and names of surfaces take these alone.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
-use marching_particles::field::formula::FormulaField;
+#[path = "../tests/it/settings.rs"]
+#[macro_use]
+mod settings;
+
+use marching_particles::field::formula::Formula;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
 use marching_particles::math::Bounds;
@@ -103,7 +107,7 @@ fn row(make: &dyn Fn() -> Box<dyn Field>, bounds: &Bounds, settings: Settings, s
     let start = Instant::now();
     let mut row: Option<Row> = None;
     for seed in 0..seeds {
-        let settings = Settings { seed, ..settings };
+        let settings = settings!(seed; ..settings);
         let mut seconds = 0.0;
         let mut sampler = Sampler::new();
         for _ in 0..RUNS {
@@ -166,7 +170,7 @@ type Source = (&'static str, Box<dyn Fn() -> Box<dyn Field>>, Bounds);
 
 fn sources(plan: &Plan) -> Vec<Source> {
     let surfaces = gallery::SURFACES.iter().filter(|surface| plan.has(surface.id)).map(|surface| {
-        let field: FormulaField = surface.field();
+        let field: Formula = surface.field();
         let make: Box<dyn Fn() -> Box<dyn Field>> = Box::new(move || Box::new(field.clone()));
         (surface.id, make, surface.bounds)
     });
@@ -200,16 +204,13 @@ fn main() -> io::Result<()> {
         )?;
         let mut reasons = Vec::new();
         for (id, make, bounds) in sources(&plan) {
-            let settings = Settings {
-                size_mode: SizeMode::Count,
+            let settings = settings!(size_mode: SizeMode::Count,
                 count,
                 sampling: plan.sampling,
-                max_particles: count.saturating_mul(2),
-                ..Settings::default()
-            };
+                max_particles: count.saturating_mul(2); ..Settings::default());
             let front = row(&*make, &bounds, settings, plan.seeds);
             write_row(out, id, "front", &front, is_adaptive)?;
-            let refined = row(&*make, &bounds, Settings { method: Method::Refined, ..settings }, plan.seeds);
+            let refined = row(&*make, &bounds, settings!(method: Method::Refined; ..settings), plan.seeds);
             match &refined.levels {
                 Ok(levels) => {
                     write_row(out, "", &format!("refined {levels} ×"), &refined, is_adaptive)?;

@@ -10,12 +10,16 @@
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 #![allow(missing_docs, reason = "the macros' items have none")]
 
+#[path = "../tests/it/settings.rs"]
+#[macro_use]
+mod settings;
+
 use criterion::{BatchSize, Criterion, Throughput, criterion_group};
 use fast_surface_nets::ndshape::{RuntimeShape, Shape};
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::Vec3;
 use marching_particles::field::Field;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
@@ -33,7 +37,7 @@ const FULL: u32 = 1_000_000;
 const HALF: [f32; 3] = [1.0, 0.7, 0.5];
 
 struct Job {
-    field: FormulaField,
+    field: Formula,
     bounds: Bounds,
     settings: Settings,
 }
@@ -43,17 +47,14 @@ impl Job {
     /// runs do the front once.
     fn new(count: u32) -> Self {
         let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
-        let by_count = Settings {
-            size_mode: SizeMode::Count,
+        let by_count = settings!(size_mode: SizeMode::Count,
             count,
             relax_steps: 0,
-            max_particles: count + count / 10,
-            ..Settings::default()
-        };
+            max_particles: count + count / 10; ..Settings::default());
         let mut job = Self { field: surface.field(), bounds: surface.bounds, settings: by_count };
         let found = job.run();
         let radius_share = found.radius() / job.bounds.diagonal();
-        job.settings = Settings { size_mode: SizeMode::Radius, radius_share, relax_steps: 10, ..by_count };
+        job.settings = settings!(size_mode: SizeMode::Radius, radius_share, relax_steps: 10; ..by_count);
         job
     }
 
@@ -76,7 +77,7 @@ fn finish(sampler: &mut Sampler, field: &mut dyn Field) {
 
 /// A mesher, which samples the field on a grid with the same batched evaluation and extracts the surface.
 struct Mesher {
-    field: FormulaField,
+    field: Formula,
     shape: RuntimeShape<u32, 3>,
     size: [u32; 3],
     step: f32,
@@ -154,7 +155,7 @@ fn parts(criterion: &mut Criterion, set: &str, count: u32) {
     });
     job.settings = whole;
     group.bench_function("whole job", |bencher| bencher.iter(|| black_box(job.run())));
-    job.settings = Settings { size_mode: SizeMode::Count, ..whole };
+    job.settings = settings!(size_mode: SizeMode::Count; ..whole);
     group.bench_function("whole job by count", |bencher| bencher.iter(|| black_box(job.run())));
     let options = Options::default();
     group.bench_function("quality", |bencher| {
@@ -233,7 +234,7 @@ fn ratio(count: u32, rounds: usize) {
 fn search_share(id: &str, count: u32, rounds: usize) {
     let surface = gallery::find(id).expect("a gallery surface");
     let mut field = surface.field();
-    let mut settings = Settings { size_mode: SizeMode::Count, count, ..Settings::default() };
+    let mut settings = settings!(size_mode: SizeMode::Count, count; ..Settings::default());
     let mut shares: Vec<[f64; 3]> = Vec::new();
     let mut cells = None;
     for round in 0..=rounds {
@@ -260,7 +261,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         if round == 0 {
             // A wanted count runs the front twice; from here on the radius is given, and it runs once.
             let radius_share = sampler.radius() / surface.bounds.diagonal();
-            settings = Settings { radius_share, ..Settings::default() };
+            settings = settings!(radius_share; ..Settings::default());
         } else {
             shares.push([surveyed, seeding, (surveyed + seeding) / whole]);
             cells = sampler.undecided_cells();
@@ -284,7 +285,7 @@ fn bunny(count: u32, rounds: usize) {
     let mut field = RbfField::new(fit.data.clone()).expect("a field");
     let mut ellipsoid = Job::new(count);
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {
-        let by_count = Settings { size_mode: SizeMode::Count, count, relax_steps: 0, ..Settings::default() };
+        let by_count = settings!(size_mode: SizeMode::Count, count, relax_steps: 0; ..Settings::default());
         let start = Instant::now();
         let run = |field: &mut RbfField, settings: &Settings| {
             let mut sampler = Sampler::new();
@@ -297,9 +298,9 @@ fn bunny(count: u32, rounds: usize) {
             // A run that meets a count does the front twice, so the timed runs are given the radius.
             Sampling::Uniform => {
                 let radius_share = run(&mut field, &by_count).1.radius() / fit.bounds.diagonal();
-                Settings { radius_share, ..Settings::default() }
+                settings!(radius_share; ..Settings::default())
             }
-            Sampling::Adaptive => Settings { sampling, ..Settings::default() },
+            Sampling::Adaptive => settings!(sampling; ..Settings::default()),
         };
         let mut times: Vec<[f64; 3]> = Vec::new();
         let mut particles = 0;

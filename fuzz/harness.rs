@@ -3,7 +3,7 @@
 //! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files in `seeds/`.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::pointcloud::job::Job;
@@ -36,7 +36,7 @@ impl Random {
 pub fn formula(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut random = Random::of(bytes);
-    let mut field = match FormulaField::parse(&text, &[]) {
+    let mut field = match Formula::as_written(&text, &[]) {
         Ok(field) => field,
         Err(error) => {
             let (start, end) = (error.span.start, error.span.end);
@@ -46,7 +46,7 @@ pub fn formula(bytes: &[u8]) {
         }
     };
     let printed = field.normal_form();
-    match FormulaField::parse(&printed, &[]) {
+    match Formula::as_written(&printed, &[]) {
         Ok(again) => assert!(field.same_tree(&again), "{text} → {printed}"),
         // What is printed may be longer than what may be typed.
         Err(error) => assert!(printed.len() > text.len(), "{text} → {printed}: {error}"),
@@ -60,7 +60,7 @@ pub fn formula(bytes: &[u8]) {
     }
     check_batch(&mut field, random.point(2.0).as_vec3(), 1 + random.0.next_u32() as usize % 40);
     // A sum is its own only factor, provided that its last term cancels nothing.
-    if let Ok(mut sum) = FormulaField::parse(&format!("({text}) + x^2 + 0.618034"), &[]) {
+    if let Ok(mut sum) = Formula::as_written(&format!("({text}) + x^2 + 0.618034"), &[]) {
         for name in sum.auto().to_vec() {
             sum.set_parameter(&name, random.between(-2.0, 2.0)).expect("a finite value");
         }
@@ -73,7 +73,7 @@ pub fn formula(bytes: &[u8]) {
 }
 
 /// The bounds of a sum over a box around a point hold the value there, and say where it has none.
-pub fn check_value(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3) {
+pub fn check_value(field: &mut Formula, p: DVec3, below: DVec3, above: DVec3) {
     let mut out = [Enclosure::UNKNOWN];
     field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
     let [Enclosure { value: bounds, defined, .. }] = out;
@@ -89,7 +89,7 @@ pub fn check_value(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec
 
 /// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes between two points, given as shares of
 /// its size.
-pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
+pub fn check_enclosure(field: &mut Formula, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
     let around = Bounds::new(lo, lo + size);
     field.enclose(0, &[around], &mut out);
@@ -129,14 +129,14 @@ pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places:
 }
 
 /// How far rounding may move the value at a point, by the bounds there: terms may be millions of times as large as their sum.
-fn rounding(field: &mut FormulaField, p: DVec3) -> f64 {
+fn rounding(field: &mut Formula, p: DVec3) -> f64 {
     let mut out = [Enclosure::UNKNOWN];
     field.enclose(0, &[Bounds::point(p)], &mut out);
     out[0].value.hi - out[0].value.lo
 }
 
 /// Derivatives by transformation of the formula are those of forward jets.
-fn check_derivatives(field: &mut FormulaField, p: DVec3) {
+fn check_derivatives(field: &mut Formula, p: DVec3) {
     let numbers = |jet: Jet| {
         let (g, h) = (jet.gradient, jet.hessian);
         [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]
@@ -159,7 +159,7 @@ fn check_derivatives(field: &mut FormulaField, p: DVec3) {
 }
 
 /// A point gives the same bits alone and in a batch, and the same value whatever is asked for with it.
-fn check_batch(field: &mut FormulaField, first: Vec3, length: usize) {
+fn check_batch(field: &mut Formula, first: Vec3, length: usize) {
     let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
     let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
     let mut hessian = vec![Sym3::default(); length];
@@ -248,13 +248,11 @@ pub fn request(bytes: &[u8]) {
 pub fn whole_request(bytes: &[u8]) {
     let Some((field, settings)) = parsed(bytes) else { return };
     // Small runs, so that there are many.
-    let settings = Settings {
-        max_particles: settings.max_particles.min(500),
-        relax_steps: settings.relax_steps.min(3),
-        radius_share: settings.radius_share.max(0.02),
-        count: settings.count.min(500),
-        ..settings
-    };
+    let mut settings = settings;
+    settings.max_particles = settings.max_particles.min(500);
+    settings.relax_steps = settings.relax_steps.min(3);
+    settings.radius_share = settings.radius_share.max(0.02);
+    settings.count = settings.count.min(500);
     let mut session = Session::new();
     let Some(outcome) = run(&mut session, &field, &settings, 20_000) else { return };
     if outcome.digest.is_multiple_of(8) {
@@ -290,17 +288,17 @@ pub fn run(
         return None;
     }
     let evaluations = loop {
-        let progress = session.step(budget);
+        let progress = session.run.step(budget);
         if progress.stop_reason.is_some() {
             break progress.evaluations;
         }
     };
     assert!(evaluations < MOST, "{}: {evaluations} evaluations", context());
-    for (p, n) in session.particles().position.iter().zip(&session.particles().normal) {
+    for (p, n) in session.run.particles().position.iter().zip(&session.run.particles().normal) {
         assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-4, "{}: {p} {n}", context());
     }
-    let (search, sampled) = (session.sampler().search(), session.sampler().sampled());
+    let (search, sampled) = (session.run.sampler().search(), session.run.sampler().sampled());
     let is_whole = search != Search::Proven || sampled.missing == Some(sampled.without.len());
     assert!(is_whole, "{}: {sampled:?}", context());
-    Some(Outcome { digest: session.particles().digest(), search })
+    Some(Outcome { digest: session.run.particles().digest(), search })
 }

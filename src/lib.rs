@@ -1,31 +1,24 @@
 //! Evenly spaced particles on an implicit surface f(x, y, z) = 0.
 //!
-//! A [`Sampler`](sampler::Sampler) covers the zero set of a [`Field`](field::Field) in a box with particles: a front grows
-//! over the surface in hexagons, generation level by generation level, and a few relaxation steps even the spacing out.
-//! Fields are [formulas](field::formula), entries of the [gallery](field::gallery), or anything that implements the trait.
+//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure ([`FnField`]), a model from points, or anything that implements
+//! one method of the trait. [`sample`] covers its zero set with particles: a front grows over the surface in hexagons, generation level
+//! by generation level, and a few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and their
+//! mesh. A [`Run`] does the same in steps.
 //!
 //! ```
-//! use marching_particles::field::gallery;
-//! use marching_particles::quality::{self, Options};
-//! use marching_particles::sampler::{Sampler, Settings};
+//! use marching_particles::{Formula, Format, MeshFormat, Settings, gallery, sample};
 //!
-//! let torus = gallery::find("torus").expect("a surface of the gallery");
-//! let mut field = torus.field();
-//! let settings = Settings { radius_share: 0.01, ..Settings::default() };
+//! let surface = Formula::parse("x^4 + y^4 + z^4 = a")?.with("a", 0.5)?;
+//! let cushion = sample(surface, &Settings::with_count(2_000))?;
+//! cushion.write(Format::Ply, &mut Vec::new())?;
 //!
-//! let mut sampler = Sampler::new();
-//! sampler.start(&mut field, &torus.bounds, &settings)?;
-//! // A budget is a count of work, never a time: cut as you like, the particles are the same to the last bit.
-//! while sampler.step(&mut field, 1_000).stop_reason.is_none() {}
-//!
-//! let particles = sampler.particles();
-//! let report = quality::measure(
-//!     &particles.position, &particles.normal, &mut field, Some(&torus.bounds), &Options::default(),
-//! );
-//! // The triangles between the particles close up to a torus, and most particles have six neighbours.
-//! assert_eq!(report.figures.euler, 0);
-//! assert!(report.figures.six > 0.8);
-//! # Ok::<(), marching_particles::sampler::SettingsError>(())
+//! // In a box of one's own, by the radius; the triangles between the particles close up to a torus.
+//! let torus = gallery::find("torus").ok_or("no such surface")?;
+//! let settings = Settings::with_radius(0.01).in_box(torus.bounds);
+//! let sample = sample(torus.field(), &settings)?;
+//! assert_eq!(sample.mesh().topology.components[0].euler(), 0);
+//! sample.write_mesh(MeshFormat::Glb, &mut Vec::new())?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Conventions
@@ -37,8 +30,8 @@
 //! * Single precision and SIMD lanes in the sampler, double precision in the oracles and the set-up.
 //! * The same field, settings and seed give the same particles to the last bit, natively and in WebAssembly: the order
 //!   of every sum is fixed, no clock or platform function is asked, transcendentals are [our own](math::functions).
-//! * A `Result` is for the user's data, a [`StopReason`](sampler::StopReason) for what a run met, a panic for a mistake
-//!   in the calling code; routines that can panic say when.
+//! * A `Result` is for the user's data, a [`StopReason`] for what a run met, a [`Warning`] for what its user should know, a panic for
+//!   a mistake in the calling code; routines that can panic say when.
 //!
 //! # Glossary
 //!
@@ -97,56 +90,77 @@
 //!
 //! # Modules
 //!
-//! ```text
-//! math ← field ← differential ← sampler ← session ← web
-//!           ↑      ↑       ↖ quality ← export ↙
-//!       pointcloud  ↑   ↖ extent ← session
-//!                  paper ← lesson ← web
-//! ```
-//!
-//! An arrow points at what is used; `tests/architecture.rs` names every use that is allowed and fails on any other.
-//!
-//! * [`math`]: lanes, elementary functions, symmetric matrices, boxes.
-//! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
-//! * [`extent`]: how far a surface reaches, and the box that fits it.
-//! * [`differential`]: principal curvatures and directions of the surface.
-//! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
-//! * `slices`: long work that can be left and gone on with, as measuring is.
-//! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
-//! * [`paper`]: the paper's algorithms, to be read beside it, and the oracle of the fast fronts.
-//! * [`lesson`]: runs of them with a log of every event, and the methods that the paper compares them with.
-//! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
-//! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
-//! * [`mesh`]: triangles over particles, whatever made them.
-//! * [`export`]: particles as PLY, CSV, XYZ and NPY; meshes as GLB, OBJ, STL and PLY.
-//! * [`answer`]: what a command of the page is answered.
-//! * [`session`]: a field, a sampler and a run together; what the page talks to.
-//! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).
-//! * `web`: what JavaScript sees, on `wasm32` only.
+//! What a program needs stands at the root. The modules behind it are public for the project's own tests, benchmarks and page, without
+//! a promise to stay; ARCHITECTURE.md says what each is for and who may use whom.
 
+#[doc(hidden)]
 pub mod answer;
+#[doc(hidden)]
 pub mod differential;
+#[doc(hidden)]
 pub mod export;
+#[doc(hidden)]
 pub mod extent;
+#[doc(hidden)]
 pub mod field;
+#[doc(hidden)]
 pub mod lesson;
+#[doc(hidden)]
 pub mod math;
+#[doc(hidden)]
 pub mod mesh;
 #[cfg(all(test, feature = "points"))]
 mod page_types;
+#[doc(hidden)]
 pub mod paper;
+#[doc(hidden)]
 pub mod particles;
 #[cfg(feature = "points")]
+#[doc(hidden)]
 pub mod pointcloud;
+#[doc(hidden)]
 pub mod quality;
+#[doc(hidden)]
 pub mod render;
+#[doc(hidden)]
+pub mod run;
+#[doc(hidden)]
 pub mod sampler;
+#[doc(hidden)]
 pub mod session;
 mod slices;
+#[doc(hidden)]
 pub mod spatial;
+#[doc(hidden)]
 pub mod topology;
 #[cfg(target_arch = "wasm32")]
+#[doc(hidden)]
 pub mod web;
+
+pub use export::{Format, MeshFormat};
+pub use extent::Reach;
+pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Parameter};
+pub use field::{Bounded, Enclosure, Field, FnField, Jet, gallery};
+pub use glam;
+pub use math::{Bounds, Sym3};
+pub use mesh::build::Triangulation;
+pub use particles::{Particles, SlotFate, Slots};
+#[cfg(feature = "points")]
+pub use pointcloud::fit::Fit;
+#[cfg(feature = "points")]
+pub use pointcloud::fit_points;
+#[cfg(feature = "points")]
+pub use pointcloud::job::JobError;
+pub use quality::{Figures, Histogram, Hole, Pair, Places};
+pub use run::{
+    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Report, Run, Sample, Sizes, Start,
+    Warning, sample,
+};
+pub use sampler::{
+    Doubt, FateCounts, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling, Search,
+    Settings, SettingsError, SizeMode, StopReason, Unsampled,
+};
+pub use topology::{Component, Topology};
 
 /// The examples of the README, so that they are compiled and run.
 #[cfg(doctest)]

@@ -33,8 +33,9 @@ const ROOMS: [Room; 4] = [
             // Figures about a set of particles must not depend on what made them.
             ("quality", &["math", "slices", "field", "differential", "spatial", "particles", "topology"]),
             ("export", &["math", "spatial", "particles", "mesh", "quality"]),
+            // The door: a field, sampled and measured.
             (
-                "session",
+                "run",
                 &[
                     "math",
                     "slices",
@@ -50,17 +51,18 @@ const ROOMS: [Room; 4] = [
                     "export",
                 ],
             ),
+            ("session", &["math", "field", "extent", "sampler", "run", "export"]),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of them.
             ("paper", &["math", "field", "differential", "particles"]),
             // The lesson shares some words with the sampler, no algorithm.
             ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
             // Compiled for tests alone: the types of the page.
-            ("page_types", &["field", "pointcloud", "paper", "lesson", "sampler", "session"]),
+            ("page_types", &["field", "pointcloud", "paper", "lesson", "run", "sampler", "session"]),
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
             ("web/values", &["answer"]),
-            ("web/core", &["field", "export", "session"]),
+            ("web/core", &["field", "export", "sampler", "session"]),
             ("web/points", &["field", "pointcloud"]),
             ("web/lesson", &["math", "field", "paper", "lesson", "session"]),
             ("web/render", &["render"]),
@@ -69,8 +71,7 @@ const ROOMS: [Room; 4] = [
     (
         "sampler",
         &[
-            ("setting", &[]),
-            ("settings", &["setting"]),
+            ("settings", &[]),
             ("fates", &[]),
             ("phase", &["refine"]),
             ("probe", &[]),
@@ -133,7 +134,17 @@ const ROOMS: [Room; 4] = [
             ("holes", &["nearby", "border", "places", "projection", "probe", "triangles", "sizes"]),
         ],
     ),
-    ("field", &[("formula", &[]), ("gallery", &["formula"]), ("model", &[]), ("rbf", &[]), ("scaled", &[])]),
+    (
+        "field",
+        &[
+            ("formula", &[]),
+            ("function", &[]),
+            ("gallery", &["formula"]),
+            ("model", &[]),
+            ("rbf", &[]),
+            ("scaled", &[]),
+        ],
+    ),
 ];
 
 /// The longest file that is still read in one go.

@@ -1,6 +1,10 @@
 //! Test of the memory that a run takes beyond its particles.
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
+#[path = "it/settings.rs"]
+#[macro_use]
+mod settings;
+
 use marching_particles::field::gallery;
 use marching_particles::sampler::{Method, Sampler, Sampling, Settings, SettingsError, SizeMode};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -63,7 +67,7 @@ const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
 fn peak_of(settings: Settings) -> (usize, usize) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
     let mut field = surface.field();
-    let settings = Settings { max_particles: 4_000_000, ..settings };
+    let settings = settings!(max_particles: 4_000_000; ..settings);
     let before = USED.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
     let mut sampler = Sampler::new();
@@ -76,7 +80,7 @@ fn peak_of(settings: Settings) -> (usize, usize) {
 fn assert_expected(settings: Settings, bytes: f64) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
     let mut field = surface.field();
-    let settings = Settings { size_mode: SizeMode::Count, count: 40_000, ..settings };
+    let settings = settings!(size_mode: SizeMode::Count, count: 40_000; ..settings);
     for (limit, is_refused) in [(1.0 - ESTIMATE, true), (1.0 + ESTIMATE, false)] {
         let mut sampler = Sampler::new();
         sampler.limit_memory((f64::from(settings.count) * bytes * limit) as usize);
@@ -111,12 +115,11 @@ fn run_takes_few_bytes_per_particle_beyond_its_output_and_as_many_as_expected() 
     for (method, most, most_adaptive) in
         [(Method::Front, MOST, MOST_ADAPTIVE), (Method::Refined, MOST_REFINED, MOST_REFINED)]
     {
-        let uniform = |radius_share| Settings { method, radius_share, ..Settings::default() };
-        let adaptive = |chord_error| Settings {
-            method,
+        let uniform = |radius_share| settings!(method, radius_share; ..Settings::default());
+        let adaptive = |chord_error| {
+            settings!(method,
             sampling: Sampling::Adaptive,
-            chord_error,
-            ..Settings::default()
+            chord_error; ..Settings::default())
         };
         let worst = beyond(uniform(0.02), &RADII.map(uniform));
         assert!(worst <= most, "{worst:.1} bytes per particle, {method:?}");

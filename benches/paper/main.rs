@@ -4,6 +4,9 @@
 //! figures go, `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the particles, to try it out.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
+#[path = "../../tests/it/settings.rs"]
+#[macro_use]
+mod settings;
 mod draw;
 mod printed;
 mod runs;

@@ -136,22 +136,19 @@ impl Job {
     /// The job of sampling this surface with about so many particles: the sizes with which the fast sampler places them.
     pub(crate) fn new(id: &str, sampling: Sampling, count: u32) -> Self {
         let surface = Surface::of(id);
-        let wanted = Settings { size_mode: SizeMode::Count, count, ..Settings::default() };
+        let wanted = settings!(size_mode: SizeMode::Count, count; ..Settings::default());
         let diagonal = surface.bounds.diagonal();
         let radius = sampled(&surface, &wanted, |_| {}).radius();
-        let mut sizes = Settings { radius_share: radius / diagonal, ..Settings::default() };
+        let mut sizes = settings!(radius_share: radius / diagonal; ..Settings::default());
         if sampling == Sampling::Adaptive {
             let share = radius / diagonal;
-            sizes = Settings {
-                sampling,
+            sizes = settings!(sampling,
                 radius_law: LawKind::SumOfCurvatures,
                 curvature_scale: 0.05,
                 radius_min_share: RADII[0] * share,
-                radius_max_share: RADII[1] * share,
-                ..sizes
-            };
+                radius_max_share: RADII[1] * share; ..sizes);
             // The count falls with the square of the scale where no limit acts.
-            let (least, most) = Settings::setting("curvature_scale").accepted().into_inner();
+            let (least, most) = Settings::range("curvature_scale").expect("it is a number").into_inner();
             for _ in 0..8 {
                 let found = sampled(&surface, &sizes, |_| {}).particles().len() as f64;
                 let factor = (found / f64::from(count)).sqrt();

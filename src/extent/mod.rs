@@ -85,25 +85,22 @@ impl Extent {
     }
 }
 
-/// A search for the box of a surface.
+/// Finds the box of the surface of a field, whose [origin](Field::origin) is zero.
+#[must_use]
+pub fn find(field: &mut dyn Field) -> Extent {
+    slices::complete(fit(field))
+}
+
+/// A search for the box of a surface, in slices.
 pub struct BoxFit {
     work: Work<Extent>,
 }
 
 impl BoxFit {
-    /// Begins the search for the box of a field that evaluates about so many operations.
+    /// Begins the search for the box of the surface of a field, whose origin is zero.
     #[must_use]
-    pub fn new<F: Field + 'static>(mut field: F, operations: usize) -> Self {
-        let cells = (MOST_CELLS * SHORT / operations.max(SHORT)).max(LEAST_CELLS);
-        Self {
-            work: Box::pin(async move {
-                let found = find(&mut field, cells).await;
-                match (found.reach, of_periods(field.periods())) {
-                    (Reach::Endless | Reach::Unknown, Some(bounds)) => Extent { bounds, reach: found.reach },
-                    _ => found,
-                }
-            }),
-        }
+    pub fn new<F: Field + 'static>(mut field: F) -> Self {
+        Self { work: Box::pin(async move { fit(&mut field).await }) }
     }
 
     /// Does up to `budget` slices of the work, of some 32 cells each: the box, once it is found. It must not be called after that.
@@ -112,8 +109,18 @@ impl BoxFit {
     }
 }
 
+async fn fit(field: &mut dyn Field) -> Extent {
+    let operations = field.bounded().map_or(SHORT, |bounded| bounded.operations());
+    let cells = (MOST_CELLS * SHORT / operations.max(SHORT)).max(LEAST_CELLS);
+    let found = scanned(field, cells).await;
+    match (found.reach, of_periods(field.periods())) {
+        (Reach::Endless | Reach::Unknown, Some(bounds)) => Extent { bounds, reach: found.reach },
+        _ => found,
+    }
+}
+
 /// Finds the box of a surface in at most so many cells.
-async fn find(field: &mut dyn Field, cells: usize) -> Extent {
+async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
     let Some(bounded) = field.bounded() else { return sampled::find(field).await };
     let mut left = cells;
     let mut bends: Option<Bounds> = None;

@@ -1,11 +1,11 @@
 //! Tests of the box around a surface.
 
 use super::*;
-use crate::field::formula::FormulaField;
+use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
-    let field = FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    let mut fit = BoxFit::new(field.without_powers(), 1);
+    let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    let mut fit = BoxFit::new(field.without_powers());
     loop {
         if let Some(extent) = fit.step(u32::MAX) {
             return extent;
@@ -145,7 +145,7 @@ fn a_scan_finds_what_is_within_but_a_fiftieth_of_its_half_width() {
             let [x, y, z] = centre;
             let text =
                 format!("(x-({x}))^2 + (y-({y}))^2 + (z-({z}))^2 = {}", (0.005 * half) * (0.005 * half));
-            let mut field = FormulaField::parse(&text, &[]).expect("a formula");
+            let mut field = Formula::as_written(&text, &[]).expect("a formula");
             let found = crate::slices::complete(scan::scan(&mut field, half, &mut 10_000));
             assert_eq!(found.outcome, Outcome::Inside, "{text} within {half}");
             let hull = found.hull.expect("a hull");
@@ -182,7 +182,7 @@ fn the_room_is_a_twentieth_and_three_radii() {
 #[test]
 fn budgets_do_not_change_the_box() {
     let text = "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8";
-    let mut fit = BoxFit::new(FormulaField::parse(text, &[]).expect("a formula"), 1);
+    let mut fit = BoxFit::new(Formula::as_written(text, &[]).expect("a formula"));
     let mut steps = 0;
     let slowly = loop {
         steps += 1;
@@ -198,25 +198,11 @@ fn budgets_do_not_change_the_box() {
 fn a_field_without_bounds_is_looked_at_on_a_grid() {
     struct Blob;
     impl Field for Blob {
-        fn values(&mut self, points: &[glam::Vec3], value: &mut [f32]) {
-            for (p, value) in points.iter().zip(value) {
-                *value = p.length() - 2.5;
-            }
-        }
-        fn gradients(&mut self, _: &[glam::Vec3], _: &mut [f32], _: &mut [glam::Vec3]) {}
-        fn hessians(
-            &mut self,
-            _: &[glam::Vec3],
-            _: &mut [f32],
-            _: &mut [glam::Vec3],
-            _: &mut [crate::math::Sym3<f32>],
-        ) {
-        }
-        fn jet(&mut self, _: DVec3) -> crate::field::Jet {
-            crate::field::Jet::default()
+        fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+            (p.length() - 2.5, p.normalize())
         }
     }
-    let mut fit = BoxFit::new(Blob, 1);
+    let mut fit = BoxFit::new(Blob);
     let extent = fit.step(u32::MAX).expect("no slice is left");
     assert_eq!(extent.reach, Reach::Bounded);
     assert!(extent.bounds.max.iter().all(|end| (2.5..3.0).contains(end)), "{extent:?}");

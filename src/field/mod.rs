@@ -4,10 +4,13 @@
 //! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
 
 pub mod formula;
+mod function;
 pub mod gallery;
 pub mod model;
 pub mod rbf;
 pub(crate) mod scaled;
+
+pub use function::FnField;
 
 use crate::math::{Bounds, Interval, Sym3};
 use glam::{DVec3, Vec3};
@@ -63,6 +66,9 @@ impl Enclosure {
 
 /// A scalar field f with its derivatives; f < 0 inside the surface.
 ///
+/// One method is required, [`Field::value_and_gradient`]. The others have defaults on top of it, which a field overrides where it can
+/// do better: in single precision, many points at a time, with exact second derivatives, with [bounds](Field::bounded).
+///
 /// A batched method reads `points` and writes the first `points.len()` entries of each output. It takes `&mut self`
 /// because an implementation keeps scratch memory, so that evaluation does not allocate once it is warm. The result at
 /// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. It
@@ -71,12 +77,48 @@ impl Enclosure {
 /// # Panics
 ///
 /// If an output is shorter than `points`.
+///
+/// # Example
+///
+/// ```
+/// use marching_particles::glam::DVec3;
+/// use marching_particles::{Field, Settings, sample};
+///
+/// struct Sphere;
+///
+/// impl Field for Sphere {
+///     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+///         (p.length_squared() - 1.0, 2.0 * p)
+///     }
+/// }
+///
+/// let sample = sample(Sphere, &Settings::with_count(500))?;
+/// assert_eq!(sample.report().proof.components, 1);
+/// # Ok::<(), marching_particles::Error>(())
+/// ```
 pub trait Field: Send {
+    /// f and ∇f at `p` in double precision.
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3);
+
+    /// f, ∇f and ∇∇f at `p` in double precision, which set-up, proofs and measurements use. By default the second derivatives are central differences of the gradient.
+    fn jet(&mut self, p: DVec3) -> Jet {
+        jet_by_differences(self, p)
+    }
+
     /// f at each point.
-    fn values(&mut self, points: &[Vec3], value: &mut [f32]);
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        for (k, p) in points.iter().enumerate() {
+            value[k] = self.value_and_gradient(p.as_dvec3()).0 as f32;
+        }
+    }
 
     /// f and ∇f at each point.
-    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]);
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        for (k, p) in points.iter().enumerate() {
+            let (exact, slope) = self.value_and_gradient(p.as_dvec3());
+            (value[k], gradient[k]) = (exact as f32, slope.as_vec3());
+        }
+    }
 
     /// f, ∇f and ∇∇f at each point.
     fn hessians(
@@ -85,16 +127,18 @@ pub trait Field: Send {
         value: &mut [f32],
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
-    );
-
-    /// f, ∇f and ∇∇f at `p` in double precision: the reference for the batched methods, and what set-up, proofs and measurements use.
-    fn jet(&mut self, p: DVec3) -> Jet;
-
-    /// f and ∇f at each point in double precision, equal to those of [`Field::jet`] up to rounding.
-    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+    ) {
         for (k, p) in points.iter().enumerate() {
             let jet = self.jet(p.as_dvec3());
-            (value[k], gradient[k]) = (jet.value, jet.gradient);
+            (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
+            hessian[k] = jet.hessian.map(|entry| entry as f32);
+        }
+    }
+
+    /// f and ∇f at each point in double precision.
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        for (k, p) in points.iter().enumerate() {
+            (value[k], gradient[k]) = self.value_and_gradient(p.as_dvec3());
         }
     }
 
@@ -111,9 +155,21 @@ pub trait Field: Send {
         None
     }
 
-    /// The point from which the points and boxes that the other methods take are counted, in the coordinates of the formula.
+    /// The point from which the points and boxes that the other methods take are counted, in the coordinates of the field as it was
+    /// given.
     fn origin(&self) -> DVec3 {
         DVec3::ZERO
+    }
+
+    /// Counts points and boxes from `origin` from now on: single precision holds the places of particles that are far from zero only
+    /// so. The default implementation keeps zero.
+    fn set_origin(&mut self, origin: DVec3) {
+        let _ = origin;
+    }
+
+    /// The equation of the same surface that is evaluated in the place of the one that was given, if there is one.
+    fn sampled_as(&self) -> Option<String> {
+        None
     }
 
     /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come
@@ -123,10 +179,118 @@ pub trait Field: Send {
     }
 }
 
+/// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that is smaller. It is the best
+/// compromise between the error of the formula, of order h², and that of rounding, of order ε/h (Press et al., "Numerical Recipes",
+/// §5.7).
+pub(crate) fn difference_step(p: DVec3) -> f64 {
+    /// ∛ε of double precision, rounded to a power of two so that p ± h loses no digit of h.
+    const STEP: f64 = 1.0 / 131_072.0;
+    STEP * p.abs().max_element().max(1.0)
+}
+
+/// [`Field::jet`], with second derivatives that are central differences of the gradient.
+pub(crate) fn jet_by_differences<F: Field + ?Sized>(field: &mut F, p: DVec3) -> Jet {
+    let (value, gradient) = field.value_and_gradient(p);
+    let h = difference_step(field.origin() + p);
+    let [x, y, z] = DVec3::AXES.map(|axis| {
+        let [ahead, behind] = [p + h * axis, p - h * axis].map(|q| field.value_and_gradient(q).1);
+        (ahead - behind) / (2.0 * h)
+    });
+    let (xy, xz, yz) = (0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y));
+    Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
+}
+
+/// Implements [`Field`] for a type `this` that holds or borrows one, as two expressions give it: to be read, and to be used.
+macro_rules! forward_field {
+    ([$($generics:tt)*] $type:ty, |$this:ident| $field:expr, $field_mut:expr) => {
+        impl $($generics)* $crate::field::Field for $type {
+            fn value_and_gradient(&mut self, p: ::glam::DVec3) -> (f64, ::glam::DVec3) {
+                let $this = self;
+                $field_mut.value_and_gradient(p)
+            }
+
+            fn jet(&mut self, p: ::glam::DVec3) -> $crate::field::Jet {
+                let $this = self;
+                $field_mut.jet(p)
+            }
+
+            fn values(&mut self, points: &[::glam::Vec3], value: &mut [f32]) {
+                let $this = self;
+                $field_mut.values(points, value);
+            }
+
+            fn gradients(&mut self, points: &[::glam::Vec3], value: &mut [f32], gradient: &mut [::glam::Vec3]) {
+                let $this = self;
+                $field_mut.gradients(points, value, gradient);
+            }
+
+            fn hessians(
+                &mut self,
+                points: &[::glam::Vec3],
+                value: &mut [f32],
+                gradient: &mut [::glam::Vec3],
+                hessian: &mut [$crate::math::Sym3<f32>],
+            ) {
+                let $this = self;
+                $field_mut.hessians(points, value, gradient, hessian);
+            }
+
+            fn exact_gradients(
+                &mut self,
+                points: &[::glam::Vec3],
+                value: &mut [f64],
+                gradient: &mut [::glam::DVec3],
+            ) {
+                let $this = self;
+                $field_mut.exact_gradients(points, value, gradient);
+            }
+
+            fn use_double(&mut self, scale: Option<f64>) {
+                let $this = self;
+                $field_mut.use_double(scale);
+            }
+
+            fn bounded(&mut self) -> Option<&mut dyn $crate::field::Bounded> {
+                let $this = self;
+                $field_mut.bounded()
+            }
+
+            fn origin(&self) -> ::glam::DVec3 {
+                let $this = self;
+                $field.origin()
+            }
+
+            fn set_origin(&mut self, origin: ::glam::DVec3) {
+                let $this = self;
+                $field_mut.set_origin(origin);
+            }
+
+            fn sampled_as(&self) -> Option<String> {
+                let $this = self;
+                $field.sampled_as()
+            }
+
+            fn periods(&self) -> [Option<f64>; 3] {
+                let $this = self;
+                $field.periods()
+            }
+        }
+    };
+}
+pub(crate) use forward_field;
+
+forward_field!([<F: Field + ?Sized>] &mut F, |this| (**this), (**this));
+forward_field!([<F: Field + ?Sized>] Box<F>, |this| (**this), (**this));
+
 /// A field that bounds its values and derivatives over boxes, rounded outward: what the proofs about its surface rest on.
 ///
 /// Box `boxes[i]` belongs to `out[i]`.
 pub trait Bounded: Field {
+    /// Number of operations that an evaluation takes, by which work is shared out; 0 if it is not known.
+    fn operations(&mut self) -> usize {
+        0
+    }
+
     /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
     fn factors(&mut self) -> usize {
         1

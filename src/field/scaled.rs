@@ -94,6 +94,12 @@ impl Field for Scaled<'_> {
         }
     }
 
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let scale = f64::from(self.scale);
+        let (value, gradient) = self.field.value_and_gradient(p);
+        (value * scale, gradient * scale)
+    }
+
     fn jet(&mut self, p: DVec3) -> Jet {
         let scale = f64::from(self.scale);
         let jet = self.field.jet(p);
@@ -125,12 +131,24 @@ impl Field for Scaled<'_> {
         self.field.origin()
     }
 
+    fn set_origin(&mut self, origin: DVec3) {
+        self.field.set_origin(origin);
+    }
+
+    fn sampled_as(&self) -> Option<String> {
+        self.field.sampled_as()
+    }
+
     fn periods(&self) -> [Option<f64>; 3] {
         self.field.periods()
     }
 }
 
 impl Bounded for Scaled<'_> {
+    fn operations(&mut self) -> usize {
+        self.bounds().operations()
+    }
+
     fn factors(&mut self) -> usize {
         self.bounds().factors()
     }
@@ -160,11 +178,11 @@ impl Bounded for Scaled<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
 
     #[test]
     fn a_scaled_field_is_the_other_field_in_every_way_but_its_size() {
-        let formula = || FormulaField::parse("exp(100 cos(x)) (cos(2y) + z)", &[]).expect("a formula");
+        let formula = || Formula::as_written("exp(100 cos(x)) (cos(2y) + z)", &[]).expect("a formula");
         let (mut own, mut other) = (formula(), formula());
         own.set_origin(DVec3::new(0.5, 0.25, 0.125));
         other.set_origin(own.origin());
@@ -200,11 +218,8 @@ mod tests {
         }
         struct Unbounded;
         impl Field for Unbounded {
-            fn values(&mut self, _: &[Vec3], _: &mut [f32]) {}
-            fn gradients(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3]) {}
-            fn hessians(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3], _: &mut [Sym3<f32>]) {}
-            fn jet(&mut self, _: DVec3) -> Jet {
-                Jet::default()
+            fn value_and_gradient(&mut self, _: DVec3) -> (f64, DVec3) {
+                (1.0, DVec3::X)
             }
         }
         assert!(Scaled::new(&mut Unbounded, 4.0).bounded().is_none());

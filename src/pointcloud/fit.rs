@@ -45,6 +45,18 @@ pub struct Fit {
     pub info: ModelInfo,
 }
 
+impl Fit {
+    /// The field of the surface.
+    ///
+    /// # Panics
+    ///
+    /// Never: what was solved is finite.
+    #[must_use]
+    pub fn field(&self) -> RbfField {
+        RbfField::new(self.data.clone()).unwrap_or_else(|error| panic!("a solved system is a field: {error}"))
+    }
+}
+
 /// Why points cannot be interpolated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {

@@ -16,7 +16,25 @@ pub mod thin;
 
 pub use crate::field::model::{ModelInfo, NormalSource};
 
+use fit::Fit;
 use glam::DVec3;
+use job::{Job, JobError};
+
+/// Fits a surface to the points of a file: PLY, OBJ, STL or XYZ, as the `name` or the content says. It goes through `centres` of them,
+/// as far from each other as can be. Normals come from the file, else from its faces, else they are estimated.
+///
+/// # Errors
+///
+/// If the file cannot be read or its points lead to no surface: what is wrong, where, and what to do.
+pub fn fit_points(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Fit, JobError> {
+    let mut job = Job::file(name, bytes, centres)?;
+    loop {
+        job.step(u32::MAX)?;
+        if let Some(fit) = job.fit() {
+            return Ok(fit.clone());
+        }
+    }
+}
 
 /// Points, with unit normals that point outward.
 #[derive(Clone, Debug, Default, PartialEq)]

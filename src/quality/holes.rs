@@ -303,12 +303,12 @@ pub(super) async fn uncovered(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
     use crate::slices::complete;
 
     #[test]
     fn corners_that_do_not_come_to_the_surface_are_no_holes() {
-        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
         // These are almost on a great circle: their circumcentre is near that of the sphere, far from the surface.
         let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];

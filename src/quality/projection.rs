@@ -69,11 +69,11 @@ pub(super) fn is_reached(field: &mut dyn Field, sample: Vec3, leash: f32) -> boo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
 
     #[test]
     fn a_sample_is_led_onto_a_surface_that_bends_by_more_than_one_step() {
-        let mut field = FormulaField::parse("x^2 + y^2 + z^2 - 1", &[]).expect("a formula");
+        let mut field = Formula::as_written("x^2 + y^2 + z^2 - 1", &[]).expect("a formula");
         let mut sample = [Vec3::new(0.0, 0.48, 0.64), Vec3::new(-1.3, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0)];
         project(&mut field, &mut sample, &[0.5; 3], LAST_STEP);
         // One step ends at 1.025 and at 1.035.

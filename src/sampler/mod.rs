@@ -18,7 +18,6 @@ mod projection;
 mod refine;
 mod relaxation;
 mod run;
-mod setting;
 mod settings;
 pub(crate) mod sheet;
 mod sizing;
@@ -28,10 +27,7 @@ pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
 pub use refine::{Refusal, Spot};
-pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
-pub use settings::{
-    BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode,
-};
+pub use settings::{COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode};
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
@@ -286,7 +282,6 @@ impl Sampler {
         }
         let predicted = self.attempt.predicted_count(settings);
         self.components.expect(predicted.min(f64::from(settings.max_particles)));
-        let warnings = self.warnings(predicted);
         if settings.size_mode == SizeMode::Count && settings.count <= settings.max_particles {
             let room = (f64::from(settings.count) * COUNT_ROOM) as u32;
             self.settings.max_particles = settings.max_particles.max(room);
@@ -297,7 +292,7 @@ impl Sampler {
         }
         self.next(Input::Start);
         let (radius, area) = (self.attempt.radius, self.survey.area);
-        Ok(Start { radius, predicted_count: predicted as u64, area, warnings })
+        Ok(Start { radius, predicted_count: predicted as u64, area })
     }
 
     /// Surveys the field, unless it `is_known`. Where the survey finds no point, the search is carried to its end at once: the
@@ -330,24 +325,9 @@ impl Sampler {
         }
     }
 
-    /// What the user should know before a run of so many particles.
-    fn warnings(&self, predicted: f64) -> Vec<String> {
-        let mut warnings = Vec::new();
-        let limit = self.settings.max_particles;
-        if predicted > f64::from(limit) {
-            warnings.push(format!(
-                "about {} particles would fit, more than the limit of {limit}; the run will stop there.",
-                predicted as u64
-            ));
-        }
-        if self.survey.touches {
-            warnings.push(
-                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
-                 If f is a square, enter what is squared instead."
-                    .into(),
-            );
-        }
-        warnings
+    /// Whether f touches zero without changing its sign, so that both sides of the surface are sampled.
+    pub(crate) fn touches(&self) -> bool {
+        self.survey.touches
     }
 
     /// Whether the search for components was left open in a box where f is beyond double precision in places.

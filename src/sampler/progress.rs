@@ -11,8 +11,7 @@ use serde::Serialize;
 const RELAXATION_STEP_COST: f64 = 0.25;
 
 /// What [`Sampler::start`] found out.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
+#[derive(Clone, Copy, Debug)]
 pub struct Start {
     /// Repulsion radius of the run.
     pub radius: f64,
@@ -20,8 +19,6 @@ pub struct Start {
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,
-    /// Things the user should know, in words.
-    pub warnings: Vec<String>,
 }
 
 /// State after a step.

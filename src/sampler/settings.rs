@@ -1,275 +1,113 @@
 //! What a caller may choose, with the paper's values as defaults.
-//!
-//! A setting is one entry of the table below. From it follow its field in [`Settings`], the default, the check, the reader of
-//! requests and links, the control of the page, the option of the command line and the row in the README.
 
-use super::setting::{Choice, Condition, Group, Scale, Setting, Value, choices};
 use crate::math::{Bounds, shortest_text};
 use core::fmt;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
-choices! {
-    /// Whether all particles have one size.
-    Sampling {
-        /// One radius everywhere (paper §4).
-        Uniform "uniform" "Uniform",
-        /// The radius follows the curvature (paper §5).
-        Adaptive "adaptive" "Adaptive",
-    }
+/// Whether all particles have one size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sampling {
+    /// One radius everywhere (paper §4).
+    Uniform,
+    /// The radius follows the curvature (paper §5).
+    Adaptive,
 }
 
-choices! {
-    /// How the particles' size is given.
-    SizeMode {
-        /// By [`Settings::radius_share`].
-        Radius "radius" "Radius",
-        /// By [`Settings::count`].
-        Count "count" "Count",
-    }
+/// How the particles' size is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SizeMode {
+    /// By [`Settings::radius_share`], or by the radius law of adaptive sampling.
+    Radius,
+    /// By [`Settings::count`].
+    Count,
 }
 
-choices! {
-    /// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
-    LawKind {
-        /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
-        ChordError "chord_error" "Chord error",
-        /// [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
-        MaxCurvature "max_curvature" "Largest curvature",
-        /// [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
-        SumOfCurvatures "sum_of_curvatures" "Sum of curvatures",
-    }
+/// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawKind {
+    /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
+    ChordError,
+    /// [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
+    MaxCurvature,
+    /// [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
+    SumOfCurvatures,
 }
 
-choices! {
+/// How the particles are brought onto the surface and into order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// A front of the wanted radius, and relaxation (paper §4 and §5).
+    Front,
+    /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
+    Refined,
+}
+
+/// What becomes of gaps between fronts that are wide enough for a particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapPolicy {
+    /// A particle is placed in the middle.
+    Fill,
+    /// They stay, as in the paper.
+    Leave,
+}
+
+/// Settings of a run. `Default` gives the paper's values where it names them.
+///
+/// ```
+/// use marching_particles::{Bounds, Settings};
+///
+/// let mut settings = Settings::with_count(5_000).in_box(Bounds::cube(1.2));
+/// settings.seed = 7;
+/// assert!(settings.validate().is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Box that is sampled, in the coordinates of the field; without one it is fitted to the surface. It is no part of the settings as
+    /// text: there a box is given with the field.
+    #[serde(skip)]
+    pub bounds: Option<Bounds>,
+    /// One size everywhere, or sizes that follow the curvature.
+    pub sampling: Sampling,
+    /// How the size is given.
+    pub size_mode: SizeMode,
+    /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 % (§6).
+    pub radius_share: f64,
+    /// Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.
+    pub count: u32,
+    /// How the radius follows from the principal curvatures.
+    pub radius_law: LawKind,
+    /// Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal. With the default the ellipsoid of
+    /// the gallery takes about 16,000 particles, the sphere 13,000.
+    pub chord_error: f64,
+    /// Radius of a particle over the radius of curvature under it.
+    pub curvature_scale: f64,
+    /// Radius of the smallest particle as a share of the box diagonal.
+    pub radius_min_share: f64,
+    /// Radius of the largest particle as a share of the box diagonal.
+    pub radius_max_share: f64,
+    /// Lipschitz constant L of the radius along the surface: |r(x) − r(y)| ≤ L |x − y|.
+    pub grading: f64,
+    /// Relaxation steps after the generation. The paper takes ten.
+    pub relax_steps: u32,
     /// How the particles are brought onto the surface and into order.
-    Method {
-        /// A front of the wanted radius, and relaxation (paper §4 and §5).
-        Front "front" "Front",
-        /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
-        Refined "refined" "Refined",
-    }
-}
-
-choices! {
-    /// Which box the surface of a formula is sampled in.
-    BoxMode {
-        /// One that fits it, where none is given. A surface of the gallery keeps its own.
-        Fit "fit" "Fit",
-        /// The one that is given, or that of the surface with which the formula began.
-        Fixed "fixed" "Fixed",
-    }
-}
-
-choices! {
-    /// What becomes of gaps between fronts that are wide enough for a particle.
-    GapPolicy {
-        /// A particle is placed in the middle.
-        Fill "fill" "Fill",
-        /// They stay, as in the paper.
-        Leave "leave" "Leave",
-    }
-}
-
-/// Makes [`Settings`], its defaults and its table from the entries.
-macro_rules! settings {
-    ($($name:ident: $type:ty = $default:expr => {
-        label: $label:literal, help: $help:literal, $($field:ident: $value:expr,)*
-    })*) => {
-        /// Settings of a run. `Default` gives the paper's values where it names them.
-        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-        #[serde(default)]
-        pub struct Settings {
-            $(#[doc = $help] pub $name: $type,)*
-        }
-
-        impl Settings {
-            /// The values that `Default` gives.
-            pub const DEFAULT: Self = Self { $($name: $default,)* };
-
-            /// Every setting, in the order in which they are shown.
-            #[must_use]
-            pub fn table() -> Vec<Setting> {
-                const ENTRIES: &[Setting] = &[$(Setting {
-                    name: stringify!($name),
-                    label: $label,
-                    help: $help,
-                    $($field: $value,)*
-                    ..Setting::COMMON
-                }),*];
-                let with_default = |(entry, default): (&Setting, Value)| Setting { default, kind: default.kind(), ..*entry };
-                ENTRIES.iter().zip(Self::DEFAULT.values()).map(with_default).collect()
-            }
-
-            /// The values, in the order of [`Settings::table`].
-            #[must_use]
-            pub fn values(&self) -> Vec<Value> {
-                vec![$(self.$name.into()),*]
-            }
-        }
-    };
-}
-
-const fn when(name: &'static str, value: &'static str) -> Condition {
-    Condition { name, value, equal: true }
-}
-
-const UNIFORM: Condition = when("sampling", "uniform");
-const ADAPTIVE: Condition = when("sampling", "adaptive");
-
-settings! {
-    // It acts before a run, in `session`: a sampler has the box that it is given.
-    box_mode: BoxMode = BoxMode::Fit => {
-        label: "Box",
-        help: "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
-        choices: BoxMode::CHOICES,
-        option: Some("box"),
-    }
-    sampling: Sampling = Sampling::Uniform => {
-        label: "Sampling",
-        help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
-        choices: Sampling::CHOICES,
-        option: Some("adaptive"),
-    }
-    size_mode: SizeMode = SizeMode::Radius => {
-        label: "Size by",
-        help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
-        choices: SizeMode::CHOICES,
-        option: Some("count"),
-    }
-    radius_share: f64 = 0.006 => {
-        label: "Radius",
-        help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
-        min: 1e-4,
-        max: 0.2,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "%",
-        when: &[UNIFORM, when("size_mode", "radius")],
-        option: Some("radius"),
-    }
-    count: u32 = 20_000 => {
-        label: "Count",
-        help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
-        min: 1.0,
-        max: MOST_PARTICLES,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "particles",
-        when: &[when("size_mode", "count")],
-    }
-    radius_law: LawKind = LawKind::ChordError => {
-        label: "Radius law",
-        help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
-        choices: LawKind::CHOICES,
-        when: &[ADAPTIVE],
-        option: Some("law"),
-    }
-    // With this the ellipsoid of the gallery takes about 16,000 particles, the sphere 13,000.
-    chord_error: f64 = 4.5e-5 => {
-        label: "Chord error",
-        help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
-        min: 1e-7,
-        max: 0.01,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "%",
-        when: &[ADAPTIVE, when("radius_law", "chord_error")],
-    }
-    curvature_scale: f64 = 0.015 => {
-        label: "Curvature scale",
-        help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
-        min: 1e-3,
-        max: 0.5,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "× 1/κ",
-        when: &[ADAPTIVE, Condition { equal: false, ..when("radius_law", "chord_error") }],
-    }
-    radius_min_share: f64 = 0.001 => {
-        label: "Smallest radius",
-        help: "No particle is smaller than this share of the box diagonal.",
-        group: Group::Advanced,
-        min: 1e-4,
-        max: 0.2,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "%",
-        when: &[ADAPTIVE],
-        option: Some("radius-min"),
-    }
-    radius_max_share: f64 = 0.03 => {
-        label: "Largest radius",
-        help: "No particle is larger than this share of the box diagonal.",
-        group: Group::Advanced,
-        min: 1e-4,
-        max: 0.2,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "%",
-        when: &[ADAPTIVE],
-        option: Some("radius-max"),
-    }
-    // The Lipschitz constant of the radius: |r(x) − r(y)| ≤ L |x − y|.
-    grading: f64 = 0.2 => {
-        label: "Grading",
-        help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
-        group: Group::Advanced,
-        min: 0.01,
-        max: 0.5,
-        step: 0.01,
-        when: &[ADAPTIVE],
-    }
-    relax_steps: u32 = 10 => {
-        label: "Relaxation",
-        help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
-        max: 100.0,
-        accepted_max: Some(1000.0),
-        step: 1.0,
-        unit: "steps",
-        option: Some("relax"),
-    }
-    method: Method = Method::Front => {
-        label: "Method",
-        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on smooth surfaces.",
-        group: Group::Advanced,
-        choices: Method::CHOICES,
-    }
-    // The paper names no tolerance; 0.7 gives the most particles with six neighbours on smooth surfaces.
-    match_tolerance: f64 = 0.7 => {
-        label: "Match tolerance",
-        help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
-        group: Group::Advanced,
-        min: 0.5,
-        max: 0.9,
-        step: 0.01,
-        unit: "× 2r",
-    }
-    gaps: GapPolicy = GapPolicy::Fill => {
-        label: "Gaps",
-        help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
-        group: Group::Advanced,
-        choices: GapPolicy::CHOICES,
-    }
-    seed: u64 = 0 => {
-        label: "Seed",
-        help: "Chooses the point on the surface where the front begins.",
-        group: Group::Advanced,
-        max: 999_999.0,
-        accepted_max: Some(u64::MAX as f64),
-        step: 1.0,
-    }
-    // A wanted count up to it may be missed upwards like any other.
-    max_particles: u32 = 200_000 => {
-        label: "Limit",
-        help: "The run stops when it has placed this many.",
-        group: Group::Advanced,
-        min: 1.0,
-        max: MOST_PARTICLES,
-        step: 0.01,
-        scale: Scale::Log,
-        unit: "particles",
-    }
+    pub method: Method,
+    /// A child joins an existing particle within this distance, in units of 2r. The paper names no tolerance; 0.7 gives the most
+    /// particles with six neighbours on smooth surfaces.
+    pub match_tolerance: f64,
+    /// What becomes of gaps where fronts meet.
+    pub gaps: GapPolicy,
+    /// Chooses the point on the surface where the front begins.
+    pub seed: u64,
+    /// The run stops when it has placed this many. A wanted count up to it may be missed upwards like any other.
+    pub max_particles: u32,
 }
 
 /// More particles than this are not placed.
@@ -279,6 +117,27 @@ const MOST_PARTICLES: f64 = 4e6;
 /// overshoot.
 pub const COUNT_ROOM: f64 = 1.1;
 
+/// The smallest and the largest radius that are accepted, as shares of the diagonal.
+const LEAST_SHARE: f64 = 1e-4;
+const MOST_SHARE: f64 = 0.2;
+
+/// A setting that is a number: its name, its smallest and largest value, and how it is read.
+type Number = (&'static str, f64, f64, fn(&Settings) -> f64);
+
+const NUMBERS: [Number; 11] = [
+    ("radius_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_share),
+    ("count", 1.0, MOST_PARTICLES, |s| s.count.into()),
+    ("chord_error", 1e-7, 0.01, |s| s.chord_error),
+    ("curvature_scale", 1e-3, 0.5, |s| s.curvature_scale),
+    ("radius_min_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_min_share),
+    ("radius_max_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_max_share),
+    ("grading", 0.01, 0.5, |s| s.grading),
+    ("relax_steps", 0.0, 1000.0, |s| s.relax_steps.into()),
+    ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
+    ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
+    ("max_particles", 1.0, MOST_PARTICLES, |s| s.max_particles.into()),
+];
+
 impl Default for Settings {
     fn default() -> Self {
         Self::DEFAULT
@@ -287,6 +146,7 @@ impl Default for Settings {
 
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SettingsError {
     /// The value is not a number within the range.
     #[error(fmt = out_of_range)]
@@ -317,15 +177,76 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
-    /// The entry of the table with this name.
-    ///
-    /// # Panics
-    ///
-    /// If there is none.
+    /// The values that `Default` gives.
+    pub const DEFAULT: Self = Self {
+        bounds: None,
+        sampling: Sampling::Uniform,
+        size_mode: SizeMode::Radius,
+        radius_share: 0.006,
+        count: 20_000,
+        radius_law: LawKind::ChordError,
+        chord_error: 4.5e-5,
+        curvature_scale: 0.015,
+        radius_min_share: 0.001,
+        radius_max_share: 0.03,
+        grading: 0.2,
+        relax_steps: 10,
+        method: Method::Front,
+        match_tolerance: 0.7,
+        gaps: GapPolicy::Fill,
+        seed: 0,
+        max_particles: 200_000,
+    };
+
+    /// Default settings for about `count` particles, met within 3 %; there is room for them.
     #[must_use]
-    pub fn setting(name: &str) -> Setting {
-        let found = Self::table().into_iter().find(|setting| setting.name == name);
-        found.unwrap_or_else(|| panic!("there is no setting `{name}`"))
+    pub fn with_count(count: u32) -> Self {
+        let room = (f64::from(count) * COUNT_ROOM).ceil() as u32;
+        let max_particles = Self::DEFAULT.max_particles.max(room);
+        Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
+    }
+
+    /// Default settings for particles whose repulsion radius is this share of the box diagonal.
+    #[must_use]
+    pub fn with_radius(share: f64) -> Self {
+        Self { radius_share: share, ..Self::DEFAULT }
+    }
+
+    /// The same settings in a given box.
+    #[must_use]
+    pub fn in_box(self, bounds: Bounds) -> Self {
+        Self { bounds: Some(bounds), ..self }
+    }
+
+    /// The same settings with sizes that follow the curvature (paper §5).
+    #[must_use]
+    pub fn adaptive(self) -> Self {
+        Self { sampling: Sampling::Adaptive, ..self }
+    }
+
+    /// The same settings by the refined method: a coarse front, brought into order and refined.
+    #[must_use]
+    pub fn refined(self) -> Self {
+        Self { method: Method::Refined, ..self }
+    }
+
+    /// Smallest and largest value of a setting that is a number; none for another one.
+    #[must_use]
+    pub fn range(name: &str) -> Option<RangeInclusive<f64>> {
+        NUMBERS.iter().find(|number| number.0 == name).map(|&(_, min, max, _)| min..=max)
+    }
+
+    /// The radius of the largest particle as a share of the diagonal, estimated where a number of particles is wanted; at most the
+    /// largest that is accepted.
+    #[must_use]
+    pub fn largest_share(&self) -> f64 {
+        let share = match (self.size_mode, self.sampling) {
+            // On an area of one squared diagonal, about that of a sphere; each particle takes 2√3 r².
+            (SizeMode::Count, _) => (1.0 / (12_f64.sqrt() * f64::from(self.count))).sqrt(),
+            (SizeMode::Radius, Sampling::Uniform) => self.radius_share,
+            (SizeMode::Radius, Sampling::Adaptive) => self.radius_max_share,
+        };
+        share.min(MOST_SHARE)
     }
 
     /// Checks every value against its range, and that the smallest radius is not above the largest.
@@ -334,20 +255,16 @@ impl Settings {
     ///
     /// The first setting found out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        let refused = |name, value, range: RangeInclusive<f64>| {
-            let (min, max) = range.into_inner();
-            Err(SettingsError::OutOfRange { name, value, min, max })
-        };
-        for (setting, value) in Self::table().into_iter().zip(self.values()) {
-            if let Some(value) = value.as_number()
-                && !setting.accepted().contains(&value)
-            {
-                return refused(setting.name, value, setting.accepted());
+        let numbers = NUMBERS.iter().map(|&(name, min, max, read)| (name, min, max, read(self)));
+        // The smallest radius is not above the largest.
+        let least = ("radius_min_share", LEAST_SHARE, self.radius_max_share, self.radius_min_share);
+        for (name, min, max, value) in numbers.chain([least]) {
+            if !(min..=max).contains(&value) {
+                return Err(SettingsError::OutOfRange { name, value, min, max });
             }
         }
-        if self.radius_min_share > self.radius_max_share {
-            let least = *Self::setting("radius_min_share").accepted().start();
-            return refused("radius_min_share", self.radius_min_share, least..=self.radius_max_share);
+        if self.bounds.is_some_and(|bounds| !bounds.is_valid()) {
+            return Err(SettingsError::Box);
         }
         Ok(())
     }

@@ -1,12 +1,13 @@
 //! What there is to choose and to read, described so that an interface can be generated from it: a new surface, setting
 //! or figure needs no new code anywhere else.
 
+use super::setting::{self, Setting};
 use crate::export::{COLUMNS, Column};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
 use crate::field::gallery::{self, Group, Surface};
 use crate::field::model::{self, MODELS, Model};
 use crate::math::Bounds;
-use crate::sampler::{COUNT_ROOM, Setting, Settings};
+use crate::sampler::COUNT_ROOM;
 use serde::Serialize;
 
 /// The whole description.
@@ -181,7 +182,7 @@ pub fn describe() -> Description {
         default_surface: gallery::SURFACES[0].id,
         surfaces: surfaces(),
         models: MODELS,
-        settings: Settings::table(),
+        settings: setting::settings(),
         report: REPORT,
         fates: FATES,
         functions: FUNCTIONS,

@@ -4,8 +4,10 @@ use super::values::{answer, to_js};
 use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
-use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
+use crate::sampler::Settings;
+use crate::session::{BoxMode, Fault, FaultKind, FieldRequest, Session, describe};
 use glam::{DVec3, Vec3};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -65,7 +67,7 @@ impl Core {
 
     /// Refuses runs that need more than about `megabytes` with their report.
     pub fn limit_memory(&mut self, megabytes: usize) {
-        self.session.limit_memory(megabytes << 20);
+        self.session.run.limit_memory(megabytes << 20);
     }
 
     /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
@@ -91,7 +93,7 @@ impl Core {
         only_grows: bool,
         budget: u32,
     ) -> Option<JsValue> {
-        let field = match read(settings, FaultKind::Settings) {
+        let field = match self.read_settings(settings) {
             Ok(settings) => Ok(self.session.fit(&settings, only_grows, budget)?),
             Err(fault) => Err(fault),
         };
@@ -104,7 +106,7 @@ impl Core {
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
     ) -> JsValue {
-        answer(read(settings, FaultKind::Settings).and_then(|settings| {
+        answer(self.read_settings(settings).and_then(|settings| {
             self.session.start(&settings).map_err(|error| Fault::new(FaultKind::Settings, &error))
         }))
     }
@@ -112,28 +114,28 @@ impl Core {
     /// Does up to `budget` units of work: `Progress`.
     #[wasm_bindgen(unchecked_return_type = "Progress")]
     pub fn step(&mut self, budget: u32) -> JsValue {
-        to_js(&self.session.step(budget))
+        to_js(&self.session.run.step(budget))
     }
 
     /// Queues relaxation steps on the present particles.
     pub fn relax(&mut self, steps: u32) {
-        self.session.relax(steps);
+        self.session.run.relax(steps);
     }
 
     /// Ends the run and keeps the particles: `Progress`.
     #[wasm_bindgen(unchecked_return_type = "Progress")]
     pub fn cancel(&mut self) -> JsValue {
-        to_js(&self.session.cancel())
+        to_js(&self.session.run.cancel())
     }
 
     /// Number of particles.
     pub fn count(&self) -> usize {
-        self.session.count()
+        self.session.run.count()
     }
 
     /// Positions from particle `from` on, rounded to single precision.
     pub fn positions(&self, from: usize) -> Vec<f32> {
-        let particles = self.session.particles();
+        let particles = self.session.run.particles();
         if particles.origin == DVec3::ZERO {
             return self.vectors(&particles.position, from);
         }
@@ -143,37 +145,37 @@ impl Core {
     /// Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere
     /// nothing.
     pub fn exact_positions(&self, from: usize) -> Vec<f64> {
-        let particles = self.session.particles();
+        let particles = self.session.run.particles();
         if particles.origin == DVec3::ZERO {
             return Vec::new();
         }
-        (from..self.session.count()).flat_map(|i| particles.place(i).to_array()).collect()
+        (from..self.session.run.count()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
     /// Unit normals from particle `from` on.
     pub fn normals(&self, from: usize) -> Vec<f32> {
-        self.vectors(&self.session.particles().normal, from)
+        self.vectors(&self.session.run.particles().normal, from)
     }
 
     /// Repulsion radii from particle `from` on.
     pub fn radii(&self, from: usize) -> Vec<f32> {
-        self.column(&self.session.particles().radius, from)
+        self.column(&self.session.run.particles().radius, from)
     }
 
     /// Generation levels from particle `from` on.
     pub fn levels(&self, from: usize) -> Vec<u32> {
-        self.column(&self.session.particles().level, from)
+        self.column(&self.session.run.particles().level, from)
     }
 
     /// Parents from particle `from` on; 0xffffffff for a seed.
     pub fn parents(&self, from: usize) -> Vec<u32> {
-        self.column(&self.session.particles().parent, from)
+        self.column(&self.session.run.particles().parent, from)
     }
 
     /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
     /// singular point nearby.
     pub fn slots(&self, from: usize) -> Vec<u32> {
-        self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
+        self.column(&self.session.run.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
     /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
@@ -184,43 +186,43 @@ impl Core {
 
     /// Natural neighbours per particle, as of the last report.
     pub fn valence(&self) -> Vec<u8> {
-        self.session.measured().valence.clone()
+        self.session.run.measured().valence.clone()
     }
 
     /// Distance to the nearest particle, as of the last report.
     pub fn nearest(&self) -> Vec<f32> {
-        self.session.measured().nearest.clone()
+        self.session.run.measured().nearest.clone()
     }
 
     /// |f|/|∇f| per particle, as of the last report.
     pub fn residual(&self) -> Vec<f32> {
-        self.session.measured().residual.clone()
+        self.session.run.measured().residual.clone()
     }
 
     /// Energy of each particle among its natural neighbours, over that of six at the ideal distance, as of the last report.
     pub fn energy(&self) -> Vec<f32> {
-        self.session.measured().energy.clone()
+        self.session.run.measured().energy.clone()
     }
 
     /// Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
     pub fn component(&self) -> Vec<u32> {
-        self.session.measured().component.clone()
+        self.session.run.measured().component.clone()
     }
 
     /// Principal curvatures of particles from `from` on, two each, worked out now.
     pub fn curvature(&mut self, from: usize) -> Vec<f32> {
-        self.session.curvatures(from).into_flattened()
+        self.session.run.curvatures(from).into_flattened()
     }
 
     /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
     #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
     pub fn join(&mut self, budget: u32) -> Option<JsValue> {
-        self.session.join(budget).map(|answer| to_js(&answer))
+        self.session.run.join(budget).map(|answer| to_js(&answer))
     }
 
     /// The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
     pub fn triangles(&self) -> Vec<u32> {
-        self.session.triangles().as_flattened().to_vec()
+        self.session.run.triangles().as_flattened().to_vec()
     }
 
     /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
@@ -228,7 +230,7 @@ impl Core {
     #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
     pub fn mesh_file(&mut self, extension: &str, budget: u32) -> JsValue {
         let Some(format) = MeshFormat::of_extension(extension) else { return JsValue::NULL };
-        match self.session.mesh_file(format, budget) {
+        match self.session.run.mesh_file(format, budget) {
             Ok(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
             Ok(None) => JsValue::UNDEFINED,
             Err(_) => JsValue::NULL,
@@ -237,16 +239,28 @@ impl Core {
 
     /// Digest of the particle columns, 16 hexadecimal digits.
     pub fn digest(&self) -> String {
-        format!("{:016x}", self.session.particles().digest())
+        format!("{:016x}", self.session.run.particles().digest())
+    }
+
+    /// The settings of a run, and with them the choice of the box, which the session takes.
+    fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
+        #[derive(Default, Deserialize)]
+        #[serde(default)]
+        struct Wanted {
+            box_mode: BoxMode,
+        }
+        let wanted: Wanted = read(settings.clone(), FaultKind::Settings)?;
+        self.session.choose_box(wanted.box_mode);
+        read(settings, FaultKind::Settings)
     }
 
     fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {
-        let count = self.session.count().min(column.len());
+        let count = self.session.run.count().min(column.len());
         column[from.min(count)..count].to_vec()
     }
 
     fn vectors(&self, column: &[Vec3], from: usize) -> Vec<f32> {
-        let count = self.session.count().min(column.len());
+        let count = self.session.run.count().min(column.len());
         bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
     }
 }

@@ -1,7 +1,7 @@
 //! The lesson's bundle: a [`lesson::Lesson`] behind plain objects and copies of its particles.
 
 use super::values::{answer, to_js};
-use crate::field::formula::FormulaField;
+use crate::field::formula::Formula;
 use crate::field::rbf::{RbfData, RbfField};
 use crate::field::{Field, Jet};
 use crate::lesson::{self, LessonField, Settings};
@@ -43,34 +43,9 @@ fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault
 /// A field that is only asked for jets. Evaluation in lanes and bounds over boxes stay out of the bundle.
 struct Pointwise<F>(F);
 
-impl<F: Field> Pointwise<F> {
-    fn jets(&mut self, points: &[Vec3]) -> impl Iterator<Item = (usize, Jet)> {
-        points.iter().map(|p| self.0.jet(p.as_dvec3())).enumerate()
-    }
-}
-
 impl<F: Field> Field for Pointwise<F> {
-    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        self.jets(points).for_each(|(k, jet)| value[k] = jet.value as f32);
-    }
-
-    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        self.jets(points).for_each(|(k, jet)| {
-            (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
-        });
-    }
-
-    fn hessians(
-        &mut self,
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-        hessian: &mut [Sym3<f32>],
-    ) {
-        self.jets(points).for_each(|(k, jet)| {
-            (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
-            hessian[k] = jet.hessian.map(|entry| entry as f32);
-        });
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        self.0.value_and_gradient(p)
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
@@ -79,7 +54,7 @@ impl<F: Field> Field for Pointwise<F> {
 }
 
 fn formula(field: &LessonField) -> Result<Box<dyn Field>, Fault> {
-    let parsed = FormulaField::parse(&field.formula, &field.parameters)
+    let parsed = Formula::as_written(&field.formula, &field.parameters)
         .map_err(|error| Fault::in_formula(error, &field.formula))?;
     Ok(Box::new(Pointwise(parsed.without_powers())))
 }

@@ -3,7 +3,7 @@
 
 use crate::smooth::smooth;
 use marching_particles::field::Field;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::{Particles, SlotFate};
@@ -15,13 +15,10 @@ use marching_particles::spatial::CellGrid;
 
 /// Settings for about 4,000 particles without relaxation.
 fn settings() -> Settings {
-    Settings {
-        sampling: Sampling::Adaptive,
+    settings!(sampling: Sampling::Adaptive,
         size_mode: SizeMode::Count,
         count: 4_000,
-        relax_steps: 0,
-        ..Settings::default()
-    }
+        relax_steps: 0; ..Settings::default())
 }
 
 fn run(field: &mut dyn Field, surface: &gallery::Surface, settings: &Settings, budget: u32) -> Sampler {
@@ -47,9 +44,9 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
 #[test]
 fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
     let bounds = Bounds::cube(1.5);
-    let settings = Settings { sampling: Sampling::Adaptive, chord_error: 5e-4, ..Settings::default() };
+    let settings = settings!(sampling: Sampling::Adaptive, chord_error: 5e-4; ..Settings::default());
     for (ripple, most) in [("0.004*sin(50x)", 10), ("0.003*sin(80x)", 20)] {
-        let mut field = FormulaField::parse(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
+        let mut field = Formula::as_written(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
         let mut sampler = Sampler::new();
         sampler.start(&mut field, &bounds, &settings).expect("valid settings");
         while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
@@ -113,7 +110,7 @@ fn untouched(particles: &Particles) -> f32 {
 fn children_touch_their_parents() {
     for (surface, _) in smooth() {
         // The particles are so small that grading lowers no radius behind the front.
-        let fine = Settings { size_mode: SizeMode::Radius, chord_error: 1e-4, ..settings() };
+        let fine = settings!(size_mode: SizeMode::Radius, chord_error: 1e-4; ..settings());
         let sampler = sampled(surface, &fine);
         assert!(untouched(sampler.particles()) <= 2e-3, "{surface}: {}", untouched(sampler.particles()));
     }
@@ -139,7 +136,7 @@ fn particles_cover_and_crowd_nothing() {
 #[test]
 fn ten_steps_even_the_sizes_out() {
     for (surface, _) in smooth() {
-        let sampler = sampled(surface, &Settings { relax_steps: 10, ..settings() });
+        let sampler = sampled(surface, &settings!(relax_steps: 10; ..settings()));
         let particles = sampler.particles();
         let figures = figures(surface, particles);
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
@@ -157,7 +154,7 @@ fn the_bunny_is_even_after_ten_steps() {
     let bunny = model::find("bunny").expect("a built-in model");
     let fit = models::begin(bunny).finish().expect("the bunny is solved for");
     let mut field = RbfField::new(fit.data).expect("the data is whole");
-    let settings = Settings { sampling: Sampling::Adaptive, chord_error: 1e-4, ..Settings::default() };
+    let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
     let mut sampler = Sampler::new();
     sampler.start(&mut field, &fit.bounds, &settings).expect("valid settings");
     while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
@@ -176,7 +173,7 @@ fn the_bunny_is_even_after_ten_steps() {
 fn a_particle_takes_no_more_than_two_evaluations() {
     for (surface, _) in smooth() {
         // A given radius takes one front; a given count would take the search for the radius too.
-        let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings() };
+        let settings = settings!(chord_error: 1e-4, size_mode: SizeMode::Radius; ..settings());
         let sampler = sampled(surface, &settings);
         let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
         assert!(each <= 2.0, "{surface}: {each}");
@@ -187,7 +184,7 @@ fn a_particle_takes_no_more_than_two_evaluations() {
 fn how_a_run_is_cut_into_steps_does_not_change_it() {
     for surface in ["ellipsoid", "gyroid", "torus"] {
         let surface = gallery::find(surface).expect("a gallery surface");
-        let settings = Settings { count: 2_000, relax_steps: 3, ..settings() };
+        let settings = settings!(count: 2_000, relax_steps: 3; ..settings());
         let mut field = surface.field();
         let whole = run(&mut field, surface, &settings, u32::MAX);
         for budget in [1, 7, 1_000] {
@@ -200,16 +197,13 @@ fn how_a_run_is_cut_into_steps_does_not_change_it() {
 #[test]
 fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
     for (surface, _) in smooth() {
-        let equal = Settings {
-            size_mode: SizeMode::Radius,
+        let equal = settings!(size_mode: SizeMode::Radius,
             radius_min_share: 0.006,
-            radius_max_share: 0.006,
-            ..settings()
-        };
+            radius_max_share: 0.006; ..settings());
         let sampler = sampled(surface, &equal);
         let radii = &sampler.particles().radius;
         assert!(radii.iter().all(|r| (r / radii[0] - 1.0).abs() < 1e-5), "{surface}");
-        let uniform = sampled(surface, &Settings { sampling: Sampling::Uniform, ..equal });
+        let uniform = sampled(surface, &settings!(sampling: Sampling::Uniform; ..equal));
         let [adaptive, uniform] = [&sampler, &uniform].map(|s| figures(surface, s.particles()));
         let context = format!("{surface}: {adaptive:?} {uniform:?}");
         assert!(adaptive.six >= 0.85 && adaptive.size_cv <= 0.11, "{context}");
@@ -224,7 +218,7 @@ fn a_wanted_count_is_met() {
         ("torus", LawKind::MaxCurvature, 12_000),
         ("tanglecube", LawKind::SumOfCurvatures, 9_000),
     ] {
-        let sampler = sampled(surface, &Settings { count, radius_law, ..settings() });
+        let sampler = sampled(surface, &settings!(count, radius_law; ..settings()));
         let miss = sampler.particles().len() as f64 / f64::from(count) - 1.0;
         assert!(miss.abs() <= 0.03, "{surface}, {radius_law:?}: {} of {count}", sampler.particles().len());
     }
@@ -248,8 +242,7 @@ fn radii_follow_the_curvature_and_neighbours_differ_little() {
 
 #[test]
 fn the_limit_and_the_stop_button_leave_whole_particles() {
-    let capped =
-        sampled("torus", &Settings { size_mode: SizeMode::Radius, max_particles: 700, ..settings() });
+    let capped = sampled("torus", &settings!(size_mode: SizeMode::Radius, max_particles: 700; ..settings()));
     assert_eq!(capped.particles().len(), 700);
     assert!(capped.counts().fates.capped > 0);
 
@@ -274,7 +267,7 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
 fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
     for surface in gallery::SURFACES {
         let mut field = surface.field();
-        let settings = Settings { count: 1_500, relax_steps: 2, ..settings() };
+        let settings = settings!(count: 1_500, relax_steps: 2; ..settings());
         let sampler = run(&mut field, surface, &settings, 10_000);
         let particles = sampler.particles();
         let context = format!("{}, {} particles", surface.id, particles.len());
@@ -297,7 +290,7 @@ fn a_surface_cut_by_its_box_ends_there() {
 fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
         let sampler =
-            sampled(surface, &Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings() });
+            sampled(surface, &settings!(size_mode: SizeMode::Radius, chord_error: 3e-4; ..settings()));
         let (particles, fates) = (sampler.particles(), sampler.counts().fates);
         let count = |fate| {
             let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
@@ -316,8 +309,8 @@ fn fates_of_slots_agree_with_the_counts() {
 
 #[test]
 fn particles_that_fill_gaps_are_counted() {
-    let settings = Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings() };
-    let left = sampled("kummer", &Settings { gaps: GapPolicy::Leave, ..settings });
+    let settings = settings!(size_mode: SizeMode::Radius, chord_error: 3e-4; ..settings());
+    let left = sampled("kummer", &settings!(gaps: GapPolicy::Leave; ..settings));
     let filled = sampled("kummer", &settings);
     let count = filled.counts().gaps_filled as usize;
     assert!(count > 0 && left.counts().gaps_filled == 0, "{count}");
@@ -326,7 +319,7 @@ fn particles_that_fill_gaps_are_counted() {
 
 #[test]
 fn levels_increase_along_the_columns() {
-    let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings() });
+    let sampler = sampled("ellipsoid", &settings!(gaps: GapPolicy::Leave; ..settings()));
     let particles = sampler.particles();
     assert!(particles.level.is_sorted());
     assert!(particles.parent[1..].is_sorted());
@@ -342,16 +335,13 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
         let surface = gallery::find(id).expect("a gallery surface");
         let diagonal = surface.bounds.diagonal();
         let (least, largest, scale) = (0.008, 0.04, 0.12);
-        let settings = Settings {
-            size_mode: SizeMode::Radius,
+        let settings = settings!(size_mode: SizeMode::Radius,
             radius_law: LawKind::MaxCurvature,
             curvature_scale: scale,
             radius_min_share: least,
             radius_max_share: largest,
             grading: 0.5,
-            gaps: GapPolicy::Leave,
-            ..settings()
-        };
+            gaps: GapPolicy::Leave; ..settings());
         let sampler = sampled(id, &settings);
         let fast = sampler.particles();
         let same = lesson::Settings {

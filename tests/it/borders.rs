@@ -1,7 +1,7 @@
 //! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is lost without a word.
 
 use glam::Vec3;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Options, Triangulation, triangulate};
@@ -12,10 +12,10 @@ use marching_particles::topology::Topology;
 use proptest::prelude::*;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {
-    Settings { method, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
+    settings!(method, size_mode: SizeMode::Count, count, seed; ..Settings::default())
 }
 
-fn sampled(field: &mut FormulaField, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+fn sampled(field: &mut Formula, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
     let mut sampler = Sampler::new();
     sampler.start(field, bounds, settings).expect("valid settings");
     // A run that hangs would never end.
@@ -25,7 +25,7 @@ fn sampled(field: &mut FormulaField, bounds: &Bounds, settings: &Settings, budge
 }
 
 fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
-    let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+    let mut field = Formula::as_written(formula, &[]).expect("a formula");
     sampled(&mut field, bounds, &settings(Method::Refined, count, 0), 10_000)
 }
 
@@ -209,7 +209,7 @@ fn a_field_that_ends_at_the_box_is_refined_to_its_end() {
 
 #[test]
 fn any_cut_into_steps_gives_the_same_particles_at_a_border() {
-    let mut field = FormulaField::parse("z = 0.1 sin(3 x)", &[]).expect("a formula");
+    let mut field = Formula::as_written("z = 0.1 sin(3 x)", &[]).expect("a formula");
     let bounds = Bounds::cube(1.0);
     let mut digest = |budget: u32| {
         let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 2_000, 1), budget);
@@ -260,7 +260,7 @@ proptest! {
         size in prop::array::uniform3(0.4_f64..1.8),
     ) {
         let bounds = Bounds { min: lo, max: core::array::from_fn(|k| lo[k] + size[k]) };
-        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 900, 0), 10_000);
         assert_inside(sampler.particles(), &bounds);
         if sampler.counts().refined_levels.is_some() {

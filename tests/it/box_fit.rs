@@ -4,8 +4,10 @@ use marching_particles::extent::Reach;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::quality::Figures;
-use marching_particles::sampler::{BoxMode, Settings};
-use marching_particles::session::{Cut, FieldAnswer, FieldRequest, Report, Session};
+use marching_particles::sampler::Settings;
+use marching_particles::session::BoxMode;
+use marching_particles::session::{FieldAnswer, FieldRequest, Session};
+use marching_particles::{Cut, Report};
 
 fn set(session: &mut Session, formula: &str) -> FieldAnswer {
     // As the page does: a formula is typed over that of a gallery surface.
@@ -27,16 +29,16 @@ fn fit(session: &mut Session, settings: &Settings, only_grows: bool) -> FieldAns
 
 fn run(session: &mut Session, settings: &Settings) -> Report {
     session.start(settings).expect("the settings are in their ranges");
-    while session.step(100_000).stop_reason.is_none() {}
+    while session.run.step(100_000).stop_reason.is_none() {}
     session.report()
 }
 
 fn coarse() -> Settings {
-    Settings { radius_share: 0.012, relax_steps: 3, ..Settings::default() }
+    settings!(radius_share: 0.012, relax_steps: 3; ..Settings::default())
 }
 
 fn euler(report: &Report) -> i64 {
-    report.quality.as_ref().map_or(i64::MIN, |figures: &Figures| figures.euler)
+    report.measures.quality.as_ref().map_or(i64::MIN, |figures: &Figures| figures.euler)
 }
 
 #[test]
@@ -64,7 +66,7 @@ fn surfaces_of_every_size_and_place_are_whole() {
         set(&mut session, formula);
         let report = run(&mut session, &coarse());
         assert_eq!(report.cut, None, "{formula}");
-        assert_eq!(report.components, components, "{formula}");
+        assert_eq!(report.proof.components, components, "{formula}");
         assert!(euler_number.is_none_or(|number| euler(&report) == number), "{formula}: {}", euler(&report));
     }
 }
@@ -74,11 +76,11 @@ fn the_box_has_room_for_large_particles() {
     let mut session = Session::new();
     set(&mut session, "x^2+y^2+z^2=1");
     for radius_share in [0.006, 0.02, 0.04] {
-        let settings = Settings { radius_share, ..coarse() };
+        let settings = settings!(radius_share; ..coarse());
         let bounds = fit(&mut session, &settings, false).bounds;
         let room = bounds.max[0] - 1.0;
         assert!(room >= 0.1 && room >= 3.0 * radius_share * bounds.diagonal() * 0.99, "{bounds:?}");
-        assert_eq!(run(&mut session, &settings).fates.outside, 0, "{radius_share}");
+        assert_eq!(run(&mut session, &settings).growth.fates.outside, 0, "{radius_share}");
     }
 }
 
@@ -106,7 +108,7 @@ fn a_box_that_is_given_stays_and_a_surface_that_it_cuts_is_told() {
     };
     session.set_field(&request).expect("a good field");
     let report = run(&mut session, &coarse());
-    assert_eq!((session.bounds(), report.cut), (given, Some(Cut::Fixed)));
+    assert_eq!((session.run.bounds(), report.cut), (given, Some(Cut::Fixed)));
     assert!(report.border > 20);
     let larger = FieldRequest { bounds: Some(Bounds::cube(1.5)), ..request };
     session.set_field(&larger).expect("a good field");
@@ -118,10 +120,11 @@ fn a_box_that_is_given_stays_and_a_surface_that_it_cuts_is_told() {
 fn a_fixed_box_is_that_of_the_surface_with_which_the_formula_began() {
     let mut session = Session::new();
     set(&mut session, "x^2+y^2+z^2=1");
-    let fixed = Settings { box_mode: BoxMode::Fixed, ..coarse() };
-    let report = run(&mut session, &fixed);
-    assert_eq!(session.bounds(), gallery::find("ellipsoid").expect("it is the first").bounds);
+    session.choose_box(BoxMode::Fixed);
+    let report = run(&mut session, &coarse());
+    assert_eq!(session.run.bounds(), gallery::find("ellipsoid").expect("it is the first").bounds);
     assert_eq!(report.cut, Some(Cut::Fixed));
+    session.choose_box(BoxMode::Fit);
     let report = run(&mut session, &coarse());
     assert_eq!(report.cut, None);
 }

@@ -2,13 +2,14 @@
 //! says whether this is proven.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::formula::FormulaField;
+use marching_particles::Report;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::field::{Bounded, Enclosure};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Search, Settings, StopReason};
-use marching_particles::session::{FieldRequest, Report, Session};
+use marching_particles::session::{FieldRequest, Session};
 
 fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Report) {
     let mut session = Session::new();
@@ -16,19 +17,24 @@ fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Repo
         FieldRequest { formula: Some(formula.into()), bounds: Some(bounds), ..FieldRequest::default() };
     session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.step(5_000).stop_reason.is_none() {}
+    while session.run.step(5_000).stop_reason.is_none() {}
     let report = session.report();
     (session, report)
 }
 
 /// Samples in the cube of half-width `half`, with `share` of its diagonal as radius.
 fn sampled(formula: &str, half: f64, share: f64) -> (Session, Report) {
-    session(formula, Bounds::cube(half), &Settings { radius_share: share, ..Settings::default() })
+    session(formula, Bounds::cube(half), &settings!(radius_share: share; ..Settings::default()))
 }
 
 fn is_proven(report: &Report, context: &str) {
-    assert_eq!(report.search, Search::Proven, "{context}: {:?} undecided", report.undecided_cells);
-    assert_eq!(report.undecided_cells, Some(0), "{context}");
+    assert_eq!(
+        report.proof.search,
+        Search::Proven,
+        "{context}: {:?} undecided",
+        report.proof.undecided_cells
+    );
+    assert_eq!(report.proof.undecided_cells, Some(0), "{context}");
 }
 
 /// Product of the functions of balls, each given by its centre and radius.
@@ -42,7 +48,7 @@ fn balls(balls: &[([f64; 3], f64)]) -> String {
 
 /// Number of particles relative to that of a hexagonal lattice on the area.
 fn cover(report: &Report, area: f64) -> f64 {
-    report.count as f64 * 2.0 * 3.0_f64.sqrt() * report.radius * report.radius / area
+    report.count as f64 * 2.0 * 3.0_f64.sqrt() * report.sizes.radius * report.sizes.radius / area
 }
 
 /// Function of the union of solids given by their functions.
@@ -56,12 +62,12 @@ fn two_spheres_a_thousandth_apart_are_two_components() {
     for formula in [balls(&pair), least(&pair.map(|ball| balls(&[ball])))] {
         let (session, report) = sampled(&formula, 1.0, 0.01);
         is_proven(&report, &formula);
-        assert_eq!(report.components, 2, "{formula}");
-        assert_eq!(report.quality.map(|q| q.euler), Some(4), "{formula}");
+        assert_eq!(report.proof.components, 2, "{formula}");
+        assert_eq!(report.measures.quality.map(|q| q.euler), Some(4), "{formula}");
         // The component labels distinguish the two.
-        let component = &session.measured().component;
-        for (p, &label) in session.particles().position.iter().zip(component) {
-            let left = session.particles().position.iter().zip(component).find(|(q, _)| q.x < 0.0);
+        let component = &session.run.measured().component;
+        for (p, &label) in session.run.particles().position.iter().zip(component) {
+            let left = session.run.particles().position.iter().zip(component).find(|(q, _)| q.x < 0.0);
             let same = left.is_some_and(|(_, &other)| other == label);
             assert_eq!(p.x < 0.0, same, "{formula}: {p} has the label {label}");
         }
@@ -73,7 +79,7 @@ fn two_spheres_ten_diameters_apart_are_two_components() {
     let formula = balls(&[([-0.9, 0.1, 0.0], 0.09), ([0.9, -0.1, 0.05], 0.09)]);
     let (_, report) = sampled(&formula, 1.0, 0.004);
     is_proven(&report, &formula);
-    assert_eq!((report.components, report.components_seeded), (2, 2));
+    assert_eq!((report.proof.components, report.growth.components_seeded), (2, 2));
 }
 
 #[test]
@@ -81,10 +87,10 @@ fn each_of_nested_spheres_is_a_component() {
     let formula = balls(&[([0.0; 3], 0.9), ([0.0; 3], 0.88), ([0.0; 3], 0.5), ([0.02, 0.0, 0.0], 0.3)]);
     let (session, report) = sampled(&formula, 1.0, 0.01);
     is_proven(&report, &formula);
-    assert_eq!(report.components, 4);
+    assert_eq!(report.proof.components, 4);
     // Labels are in order of size.
     let mut counts = [0_usize; 4];
-    session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
+    session.run.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
     assert!(counts.is_sorted_by(|a, b| a >= b) && counts[3] > 0, "{counts:?}");
 }
 
@@ -104,10 +110,10 @@ fn metaballs(level: f64) -> String {
 fn ten_metaballs_are_ten_components_or_two() {
     let (_, apart) = sampled(&metaballs(0.7), 1.5, 0.006);
     is_proven(&apart, "apart");
-    assert_eq!((apart.components, apart.quality.map(|q| q.euler)), (10, Some(20)));
+    assert_eq!((apart.proof.components, apart.measures.quality.map(|q| q.euler)), (10, Some(20)));
     let (_, merged) = sampled(&metaballs(0.3), 1.5, 0.002);
     is_proven(&merged, "merged");
-    assert_eq!((merged.components, merged.quality.map(|q| q.euler)), (1, Some(0)));
+    assert_eq!((merged.proof.components, merged.measures.quality.map(|q| q.euler)), (1, Some(0)));
 }
 
 #[test]
@@ -118,7 +124,7 @@ fn each_link_of_a_chain_of_tori_is_a_component() {
     };
     let chain: Vec<String> = (0..4).map(|k| torus(-0.9 + 0.6 * f64::from(k), k % 2 == 0)).collect();
     let (_, report) = sampled(&least(&chain), 1.5, 0.0013);
-    assert_eq!((report.components, report.quality.map(|q| q.euler)), (4, Some(0)));
+    assert_eq!((report.proof.components, report.measures.quality.map(|q| q.euler)), (4, Some(0)));
     is_proven(&report, "chain");
 }
 
@@ -127,13 +133,17 @@ fn a_sphere_of_two_radii_in_a_large_box_is_found() {
     // The sphere is between the nodes of any grid of 32 cells a side, which are 0.0625 apart.
     let radius = 0.004;
     for centre in [[0.03, 0.03, 0.03], [-0.41, 0.72, 0.345], [0.97, -0.97, 0.03]] {
-        let settings = Settings { radius_share: 0.5 * radius / 12.0_f64.sqrt(), ..Settings::default() };
+        let settings = settings!(radius_share: 0.5 * radius / 12.0_f64.sqrt(); ..Settings::default());
         let (session, report) = session(&balls(&[(centre, radius)]), Bounds::cube(1.0), &settings);
         is_proven(&report, "tiny");
-        assert_eq!((report.stop_reason, report.components), (Some(StopReason::Complete), 1), "{centre:?}");
+        assert_eq!(
+            (report.stop_reason, report.proof.components),
+            (Some(StopReason::Complete), 1),
+            "{centre:?}"
+        );
         let cover = cover(&report, 4.0 * core::f64::consts::PI * radius * radius);
         assert!((0.7..1.5).contains(&cover), "{centre:?}: {} particles are {cover} of a cover", report.count);
-        for p in &session.particles().position {
+        for p in &session.run.particles().position {
             let d = p.as_dvec3() - glam::DVec3::from_array(centre);
             assert!((d.length() - radius).abs() < 1e-3 * radius, "{centre:?}: {p}");
         }
@@ -148,8 +158,8 @@ fn a_component_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
     ]);
     let (session, report) = sampled(&formula, 1.0, 0.002);
     is_proven(&report, &formula);
-    assert_eq!(report.components, 2);
-    let small = session.measured().component.iter().filter(|&&label| label == 1).count();
+    assert_eq!(report.proof.components, 2);
+    let small = session.run.measured().component.iter().filter(|&&label| label == 1).count();
     assert!(small > 20, "{small} particles on the small sphere");
 }
 
@@ -164,20 +174,22 @@ fn each_of_many_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() 
     let formula = format!("0.5{}", centres.iter().map(bump).collect::<String>());
     let (session, report) = sampled(&formula, 1.0, 0.0005);
     is_proven(&report, &formula);
-    assert_eq!((report.components, report.sampled.missing), (24, Some(0)), "{:?}", report.warnings);
+    assert_eq!(
+        (report.proof.components, report.proof.sampled.missing),
+        (24, Some(0)),
+        "{:?}",
+        report.warnings
+    );
     for centre in centres {
         let is_near = |p: &Vec3| (p.as_dvec3() - centre).length() < 0.01;
-        assert!(session.particles().position.iter().any(is_near), "{centre}");
+        assert!(session.run.particles().position.iter().any(is_near), "{centre}");
     }
 }
 
 #[test]
 fn a_count_is_met_on_a_component_that_the_survey_misses() {
-    let settings = Settings {
-        size_mode: marching_particles::sampler::SizeMode::Count,
-        count: 1_000,
-        ..Settings::default()
-    };
+    let settings = settings!(size_mode: marching_particles::sampler::SizeMode::Count,
+        count: 1_000; ..Settings::default());
     let (_, report) = session(&balls(&[([0.03; 3], 0.01)]), Bounds::cube(1.0), &settings);
     assert!((970..=1_030).contains(&report.count), "{}", report.count);
 }
@@ -187,7 +199,7 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
     let formula = "sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x)";
     let (_, report) = sampled(formula, 6.3, 0.006);
     is_proven(&report, formula);
-    assert!((1..=report.components_seeded as usize).contains(&report.components), "{report:?}");
+    assert!((1..=report.growth.components_seeded as usize).contains(&report.proof.components), "{report:?}");
 }
 
 #[test]
@@ -197,15 +209,15 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             let mut session = Session::new();
             let request = FieldRequest { surface: Some(surface.id.into()), ..FieldRequest::default() };
             session.set_field(&request).unwrap();
-            session.start(&Settings { radius_share: share, ..Settings::default() }).unwrap();
-            while session.step(50_000).stop_reason.is_none() {}
+            session.start(&settings!(radius_share: share; ..Settings::default())).unwrap();
+            while session.run.step(50_000).stop_reason.is_none() {}
             let report = session.report();
             let context = format!("{} at {share}", surface.id);
             if surface.id == "cayley" || surface.smooth && !surface.intricate {
                 is_proven(&report, &context);
             }
-            let mut counts = vec![0; report.components];
-            session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
+            let mut counts = vec![0; report.proof.components];
+            session.run.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
             // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which particles the triangles
             // connect. Of ten seeds, three to five leave one or two particles unconnected, with or without relaxation.
             let is_resolved = surface.smooth && (surface.id != "decocube" || share < 0.01);
@@ -221,13 +233,13 @@ fn a_surface_that_touches_its_box_is_proven_to_be_found() {
         let formula = balls(&[(centre, 1.0)]);
         let (_, report) = sampled(&formula, 1.0, 0.01);
         is_proven(&report, &formula);
-        assert_eq!(report.components, components, "{formula}");
+        assert_eq!(report.proof.components, components, "{formula}");
     }
     // The plane coincides with a face of the box.
     let bounds = Bounds { min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 1.0] };
-    let (_, report) = session("z", bounds, &Settings { radius_share: 0.01, ..Settings::default() });
+    let (_, report) = session("z", bounds, &settings!(radius_share: 0.01; ..Settings::default()));
     is_proven(&report, "z");
-    assert_eq!(report.components, 1);
+    assert_eq!(report.proof.components, 1);
 }
 
 #[test]
@@ -235,14 +247,14 @@ fn caps_that_the_box_cuts_off_are_components() {
     // Of a sphere larger than the box eight corners are left. Another one reaches through a face by a hundredth.
     let (_, report) = sampled("x^2 + y^2 + z^2 - 2.5", 1.0, 0.008);
     is_proven(&report, "corners");
-    assert_eq!(report.components, 8);
+    assert_eq!(report.proof.components, 8);
     for axis in 0..3 {
         let mut centre = [0.013, -0.021, 0.017];
         centre[axis] = 1.09;
         let formula = balls(&[(centre, 0.1)]);
         let (_, report) = sampled(&formula, 1.0, 0.002);
         is_proven(&report, &formula);
-        assert_eq!(report.components, 1, "{formula}");
+        assert_eq!(report.proof.components, 1, "{formula}");
     }
 }
 
@@ -263,7 +275,7 @@ fn an_empty_surface_is_proven_empty() {
         };
         session.set_field(&request).unwrap();
         session.start(&Settings::default()).unwrap();
-        let progress = session.step(1_000);
+        let progress = session.run.step(1_000);
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
         assert!(progress.message.is_some_and(|m| m.contains("proven")), "{formula}");
         is_proven(&session.report(), formula);
@@ -297,7 +309,7 @@ fn a_small_component_beside_a_cone_point_is_found() {
         let (session, report) = sampled(&formula, 0.25, 0.002);
         is_proven(&report, &formula);
         let is_near = |p: &Vec3| (p.as_dvec3() - DVec3::new(x, y, z)).length() < 0.02;
-        assert!(session.particles().position.iter().any(is_near), "{formula}");
+        assert!(session.run.particles().position.iter().any(is_near), "{formula}");
     }
 }
 
@@ -309,10 +321,10 @@ fn discontinuous_gradients_hide_no_component() {
         "min(max(abs(x - 0.31), abs(y - 0.17), abs(z + 0.23)) - 0.4, max(abs(x + 0.6), abs(y + 0.6), abs(z - 0.6)) - 0.02)",
     ] {
         let (_, report) = sampled(formula, 1.0, 0.002);
-        assert_eq!(report.components_seeded.min(2), 2, "{formula}: {report:?}");
+        assert_eq!(report.growth.components_seeded.min(2), 2, "{formula}: {report:?}");
     }
     // The bounds of the second derivatives would exclude the component if they were used where they do not hold.
-    let mut field = FormulaField::parse("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
+    let mut field = Formula::as_written("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
     let across = [-0.1, 0.1].map(|from| Bounds::new(DVec3::splat(from), DVec3::splat(0.2)));
     let mut known = [Enclosure::UNKNOWN; 2];
     field.enclose(0, &across, &mut known);
@@ -328,8 +340,8 @@ fn search_ends_on_singular_surfaces_and_reports_undecided_cells() {
         ("floor(5x)/5 - y", 1.0),
     ] {
         let (_, report) = sampled(formula, half, 0.02);
-        let open = report.undecided_cells.expect("a formula is searched by proof");
-        assert_eq!(report.search, Search::Searched, "{formula}");
+        let open = report.proof.undecided_cells.expect("a formula is searched by proof");
+        assert_eq!(report.proof.search, Search::Searched, "{formula}");
         assert!(open > 0 && open < 200_000, "{formula}: {open}");
         assert!(report.stop_reason.is_some(), "{formula}");
     }
@@ -345,27 +357,27 @@ fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
     };
     let share = 0.05 / 12.0_f64.sqrt();
     let (nested, report) = sampled(&shells, 1.0, share);
-    assert_eq!(report.components, 4, "{report:?}");
-    check(nested.particles(), &sheet, "shells");
-    let labels = &nested.measured().component;
-    for (p, &label) in nested.particles().position.iter().zip(labels) {
-        let other = nested.particles().position.iter().zip(labels).find(|(q, _)| sheet(**q) == sheet(*p));
+    assert_eq!(report.proof.components, 4, "{report:?}");
+    check(nested.run.particles(), &sheet, "shells");
+    let labels = &nested.run.measured().component;
+    for (p, &label) in nested.run.particles().position.iter().zip(labels) {
+        let other = nested.run.particles().position.iter().zip(labels).find(|(q, _)| sheet(**q) == sheet(*p));
         assert_eq!(other.map(|(_, &label)| label), Some(label));
     }
     let cover = cover(&report, 4.0 * core::f64::consts::PI * (0.49 + 0.4761 + 0.4356 + 0.4225));
     assert!((0.9..1.2).contains(&cover), "{cover}");
 
-    let as_placed = Settings { radius_share: share, relax_steps: 0, ..Settings::default() };
+    let as_placed = settings!(radius_share: share, relax_steps: 0; ..Settings::default());
     let (session, _) = session("(x^2 + y^2)/0.81 + z^2/0.0001 - 1", Bounds::cube(1.0), &as_placed);
     // The two sheets meet at the rim.
     check(
-        session.particles(),
+        session.run.particles(),
         &|p| if p.truncate().length() > 0.85 { 2 } else { u32::from(p.z > 0.0) },
         "ellipsoid",
     );
     let (planes, report) = sampled("z^2 - 0.000025", 1.0, share);
-    check(planes.particles(), &|p| u32::from(p.z > 0.0), "planes");
-    assert_eq!(report.components, 2);
+    check(planes.run.particles(), &|p| u32::from(p.z > 0.0), "planes");
+    assert_eq!(report.proof.components, 2);
 }
 
 #[test]
@@ -374,7 +386,7 @@ fn factors_are_searched_one_by_one() {
     for (formula, components) in [("(x - 0.1)(x + 0.1)(x^2 + y^2 + z^2 - 4)", 2), ("-3 x / (y - 2)", 1)] {
         let (_, report) = sampled(formula, 1.0, 0.02);
         is_proven(&report, formula);
-        assert_eq!(report.components, components, "{formula}");
+        assert_eq!(report.proof.components, components, "{formula}");
     }
 }
 
@@ -410,9 +422,9 @@ fn cutting_a_run_into_steps_changes_nothing() {
             ..FieldRequest::default()
         };
         session.set_field(&request).unwrap();
-        session.start(&Settings { radius_share: 0.005, ..Settings::default() }).unwrap();
-        while session.step(budget).stop_reason.is_none() {}
-        (session.particles().digest(), session.report().undecided_cells)
+        session.start(&settings!(radius_share: 0.005; ..Settings::default())).unwrap();
+        while session.run.step(budget).stop_reason.is_none() {}
+        (session.run.particles().digest(), session.report().proof.undecided_cells)
     };
     let whole = run(u32::MAX);
     assert_eq!(run(1), whole);
@@ -426,22 +438,24 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
     for share in [0.006, 0.0019] {
         let (session, report) = sampled(formula, 1.5, share);
         let mut counts = [0_usize; 3];
-        for p in &session.particles().position {
+        for p in &session.run.particles().position {
             let sheet = (p.as_dvec3().length() - 1.0) * 1e4;
             counts[(sheet + 0.5).clamp(0.0, 2.0) as usize] += 1;
         }
-        let expected = 4.0 * core::f64::consts::PI / (2.0 * 3.0_f64.sqrt() * report.radius * report.radius);
+        let expected =
+            4.0 * core::f64::consts::PI / (2.0 * 3.0_f64.sqrt() * report.sizes.radius * report.sizes.radius);
         for count in counts {
             let cover = count as f64 / expected;
             assert!((0.9..1.2).contains(&cover), "{formula} at {share}: {counts:?} for {expected}");
         }
-        assert_ne!(report.sampled.missing, None);
+        assert_ne!(report.proof.sampled.missing, None);
     }
     for sampling in [Sampling::Adaptive, Sampling::Uniform] {
-        let settings = Settings { sampling, radius_share: 0.02, ..Settings::default() };
+        let settings = settings!(sampling, radius_share: 0.02; ..Settings::default());
         let (session, report) = session("z*(z-0.001)*(z-0.002)", Bounds::cube(1.0), &settings);
-        let on =
-            |height: f32| session.particles().position.iter().filter(|p| (p.z - height).abs() < 2e-4).count();
+        let on = |height: f32| {
+            session.run.particles().position.iter().filter(|p| (p.z - height).abs() < 2e-4).count()
+        };
         let counts = [0.0, 0.001, 0.002].map(on);
         let alike =
             counts.iter().all(|&count| (0.9..1.1).contains(&(3.0 * count as f64 / report.count as f64)));
@@ -457,12 +471,16 @@ fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
         let (session, report) = sampled(&spheres(gap), 1.5, 0.01);
         let context = format!("gap {gap}: {:?}", report.warnings);
         is_proven(&report, &context);
-        assert_eq!((report.components, report.quality.map(|q| q.euler)), (3, Some(6)), "{context}");
-        let area = report.quality.map_or(0.0, |q| q.area) / (12.0 * core::f64::consts::PI);
+        assert_eq!(
+            (report.proof.components, report.measures.quality.map(|q| q.euler)),
+            (3, Some(6)),
+            "{context}"
+        );
+        let area = report.measures.quality.map_or(0.0, |q| q.area) / (12.0 * core::f64::consts::PI);
         assert!((0.99..1.06).contains(&area), "{context}: {area}");
         // Every component is a sphere.
         for label in 0..3 {
-            let of_it = session.particles().position.iter().zip(&session.measured().component);
+            let of_it = session.run.particles().position.iter().zip(&session.run.measured().component);
             let distances = of_it.filter(|(_, l)| **l == label).map(|(p, _)| f64::from(p.length()));
             let [least, most] = distances.fold([2.0, 0.0_f64], |[lo, hi], d| [d.min(lo), d.max(hi)]);
             assert!(most - least < 0.5 * gap, "{context}: from {least} to {most}");
@@ -471,10 +489,13 @@ fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {
         for (planes, gap) in [(3, 1e-3), (3, 1e-4), (5, 1e-3), (7, 1e-3)] {
             let factors: Vec<String> = (0..planes).map(|k| format!("(z-{})", f64::from(k) * gap)).collect();
-            let settings = Settings { sampling, radius_share: 0.02, ..Settings::default() };
+            let settings = settings!(sampling, radius_share: 0.02; ..Settings::default());
             let (_, report) = session(&factors.join("*"), Bounds::cube(1.0), &settings);
-            is_proven(&report, &report.warnings.join(" "));
-            assert_eq!(report.components, planes as usize, "{sampling:?}, {planes} planes {gap} apart");
+            is_proven(
+                &report,
+                &report.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
+            );
+            assert_eq!(report.proof.components, planes as usize, "{sampling:?}, {planes} planes {gap} apart");
         }
     }
 }
@@ -489,16 +510,26 @@ fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
         let (session, report) = sampled(&formula, 1.0, share);
         is_proven(&report, &formula);
         let on_it = |p: &Vec3| ((p.as_dvec3() - DVec3::from_array(tiny.0)).length() - size).abs() < 0.01 * r;
-        if session.particles().position.iter().any(on_it) {
-            assert_eq!((report.sampled.missing, report.sampled.above), (Some(0), Some(0.0)), "{formula}");
+        if session.run.particles().position.iter().any(on_it) {
+            assert_eq!(
+                (report.proof.sampled.missing, report.proof.sampled.above),
+                (Some(0), Some(0.0)),
+                "{formula}"
+            );
         } else {
             assert!(size < r, "{formula}: a piece as large as a particle holds one");
-            let [named] = report.sampled.without[..] else { panic!("{formula}: {:?}", report.sampled) };
+            let [named] = report.proof.sampled.without[..] else {
+                panic!("{formula}: {:?}", report.proof.sampled)
+            };
             assert!((named.reach / (2.0 * size) - 1.0).abs() < 0.1 && !named.goes_on, "{formula}: {named:?}");
             let place = DVec3::from_array(named.position) - DVec3::from_array(tiny.0);
             assert!((place.length() / size - 1.0).abs() < 0.01, "{formula}: {named:?}");
-            assert_eq!(report.sampled.above, Some(named.reach), "{formula}");
-            assert!(report.warnings.iter().any(|w| w.contains("No particle lies")), "{:?}", report.warnings);
+            assert_eq!(report.proof.sampled.above, Some(named.reach), "{formula}");
+            assert!(
+                report.warnings.iter().any(|w| w.to_string().contains("No particle lies")),
+                "{:?}",
+                report.warnings
+            );
         }
     }
 }
@@ -510,9 +541,14 @@ fn told_of_a_small_ellipsoid(size: f64, height: f64, r: f64) -> (usize, usize, R
     let (session, report) = sampled(&formula, 1.5, r / 27.0_f64.sqrt());
     let half_axes = DVec3::new(size, size, 3.0 * size);
     let is_on_it = |p: DVec3| (((p - height * DVec3::Z) / half_axes).length() - 1.0).abs() < 0.1;
-    let particles = session.particles().position.iter().filter(|p| is_on_it(p.as_dvec3())).count();
-    let names =
-        report.sampled.without.iter().filter(|named| is_on_it(DVec3::from_array(named.position))).count();
+    let particles = session.run.particles().position.iter().filter(|p| is_on_it(p.as_dvec3())).count();
+    let names = report
+        .proof
+        .sampled
+        .without
+        .iter()
+        .filter(|named| is_on_it(DVec3::from_array(named.position)))
+        .count();
     (particles, names, report)
 }
 
@@ -525,7 +561,7 @@ fn a_small_ellipsoid_beside_a_large_sphere_holds_a_particle() {
         let height = 1.0 + 3.0 * size + r * (0.1 + 0.2 * f64::from(k % 5));
         let (particles, names, report) = told_of_a_small_ellipsoid(size, height, r);
         is_proven(&report, &format!("{size}"));
-        assert!(particles > 0 && names == 0, "{size}: {particles} particles, {:?}", report.sampled);
+        assert!(particles > 0 && names == 0, "{size}: {particles} particles, {:?}", report.proof.sampled);
     }
 }
 
@@ -539,7 +575,7 @@ fn a_small_ellipsoid_across_a_large_sphere_is_named_once_at_most() {
         assert!(
             names < 2 && (particles > 0 || names == 1),
             "{size}: {particles} particles, {:?}",
-            report.sampled
+            report.proof.sampled
         );
         named += names;
     }
@@ -549,9 +585,9 @@ fn a_small_ellipsoid_across_a_large_sphere_is_named_once_at_most() {
 #[test]
 fn sheets_within_the_probe_of_a_survey_are_not_taken_for_one_that_f_touches() {
     let says_so = |formula: &str, sampling: Sampling| {
-        let settings = Settings { sampling, radius_share: 0.02, relax_steps: 0, ..Settings::default() };
+        let settings = settings!(sampling, radius_share: 0.02, relax_steps: 0; ..Settings::default());
         let (_, report) = session(formula, Bounds::cube(1.0), &settings);
-        report.warnings.iter().any(|warning| warning.contains("without changing its sign"))
+        report.warnings.iter().any(|warning| warning.to_string().contains("without changing its sign"))
     };
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {
         assert!(!says_so("z*(z-0.001)*(z-0.002)", sampling), "{sampling:?}");
@@ -566,12 +602,18 @@ fn where_the_search_is_open_because_f_is_beyond_double_precision_the_report_says
         let ball = |centre: f64| format!("(exp({k}*((x-({centre}))^2+y^2+z^2))-exp({k}))");
         format!("{}*{}", ball(0.0), ball(2.5))
     };
-    let says_so =
-        |report: &Report| report.warnings.iter().any(|warning| warning.contains("double precision"));
+    let says_so = |report: &Report| {
+        report.warnings.iter().any(|warning| warning.to_string().contains("double precision"))
+    };
     // Beyond single precision alone.
     let (_, report) = sampled(&product(5.0), 3.6, 0.02);
-    assert!(!says_so(&report) && report.components == 2, "{} {:?}", report.components, report.warnings);
+    assert!(
+        !says_so(&report) && report.proof.components == 2,
+        "{} {:?}",
+        report.proof.components,
+        report.warnings
+    );
     let (_, report) = sampled(&product(100.0), 3.6, 0.02);
-    let is_whole = report.search == Search::Proven && report.components == 2;
-    assert!(is_whole || says_so(&report), "{} {:?}", report.components, report.warnings);
+    let is_whole = report.proof.search == Search::Proven && report.proof.components == 2;
+    assert!(is_whole || says_so(&report), "{} {:?}", report.proof.components, report.warnings);
 }

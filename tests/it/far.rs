@@ -1,13 +1,14 @@
 //! Tests of boxes far from the origin, where single precision would round the places of particles.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Report;
 use marching_particles::export::{self, Format, MeshFormat};
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::{Bounded, Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
-use marching_particles::session::{FieldRequest, Report, Session};
+use marching_particles::session::{FieldRequest, Session};
 
 const FAR: DVec3 = DVec3::new(100.0, -200.0, 300.0);
 
@@ -30,16 +31,16 @@ fn run(centre: DVec3, formula: &str, half: f64, settings: &Settings) -> (Session
     };
     session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.step(100_000).stop_reason.is_none() {}
+    while session.run.step(100_000).stop_reason.is_none() {}
     let report = session.report();
     (session, report)
 }
 
 #[test]
 fn far_from_the_origin_the_figures_are_those_at_the_origin() {
-    let uniform = Settings { radius_share: 0.008, ..Settings::default() };
-    let adaptive = Settings { sampling: Sampling::Adaptive, ..uniform };
-    let refined = Settings { method: Method::Refined, ..uniform };
+    let uniform = settings!(radius_share: 0.008; ..Settings::default());
+    let adaptive = settings!(sampling: Sampling::Adaptive; ..uniform);
+    let refined = settings!(method: Method::Refined; ..uniform);
     for (formula, half) in [
         ("X^2 + 2Y^2 + 4Z^2 = 1", 1.25),
         ("(sqrt(X^2 + Y^2) - 0.7)^2 + Z^2 = 0.09", 1.2),
@@ -50,7 +51,8 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
             let (_, near) = run(DVec3::ZERO, formula, half, &settings);
             let (session, far) = run(FAR, formula, half, &settings);
             let name = format!("{formula}, {:?}, {:?}", settings.sampling, settings.method);
-            let figures = |report: &Report| report.quality.unwrap_or_else(|| panic!("{name}: no particles"));
+            let figures =
+                |report: &Report| report.measures.quality.unwrap_or_else(|| panic!("{name}: no particles"));
             let (here, there) = (figures(&near), figures(&far));
             assert!(
                 there.err_max < 1.2 * here.err_max,
@@ -65,11 +67,11 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 far.count
             );
             assert_eq!((here.components, here.euler), (there.components, there.euler), "{name}");
-            assert_eq!((near.search, far.search), (Search::Proven, Search::Proven), "{name}");
+            assert_eq!((near.proof.search, far.proof.search), (Search::Proven, Search::Proven), "{name}");
             assert!((here.six - there.six).abs() < 0.01, "{name}: six {} {}", here.six, there.six);
-            let bounds = session.bounds();
+            let bounds = session.run.bounds();
             let is_inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
-            let particles = session.particles();
+            let particles = session.run.particles();
             assert!((0..particles.len()).all(|i| is_inside(particles.place(i))), "{name}");
         }
     }
@@ -78,7 +80,7 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
 #[test]
 fn a_field_with_an_origin_is_the_same_field_there() {
     let text = "sin(x) y^2 + exp(z/300) sqrt(x) - x y z";
-    let mut field = FormulaField::parse(text, &[]).expect("a formula");
+    let mut field = Formula::as_written(text, &[]).expect("a formula");
     let mut moved = field.clone();
     moved.set_origin(FAR);
     assert_eq!((field.origin(), moved.origin()), (DVec3::ZERO, FAR));
@@ -115,32 +117,32 @@ fn a_field_with_an_origin_is_the_same_field_there() {
 
 #[test]
 fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
-    let settings = Settings { radius_share: 0.01, method: Method::Refined, ..Settings::default() };
+    let settings = settings!(radius_share: 0.01, method: Method::Refined; ..Settings::default());
     let (_, cone) = run(FAR, "X^2 + Y^2 - Z^2", 1.0, &settings);
     let named = "near (100.000, -200.000, 300.000) the gradient vanishes";
-    assert!(cone.warnings.iter().any(|warning| warning.contains(named)), "{:?}", cone.warnings);
-    assert!(!cone.places.holes.is_empty(), "the largest hole is told");
-    for hole in &cone.places.holes {
+    assert!(cone.warnings.iter().any(|warning| warning.to_string().contains(named)), "{:?}", cone.warnings);
+    assert!(!cone.measures.places.holes.is_empty(), "the largest hole is told");
+    for hole in &cone.measures.places.holes {
         let away = Vec3::from_array(hole.position).as_dvec3() - FAR;
         assert!(away.abs().max_element() <= 1.001, "{hole:?}");
     }
     // A ball smaller than a particle, beside a large one.
     let two = "(X^2 + Y^2 + Z^2 - 0.25) ((X - 0.51)^2 + Y^2 + Z^2 - 0.000001)";
-    let (_, report) = run(FAR, two, 1.0, &Settings { radius_share: 0.02, ..Settings::default() });
-    assert!(!report.sampled.without.is_empty(), "{:?}", report.sampled);
-    for witness in &report.sampled.without {
+    let (_, report) = run(FAR, two, 1.0, &settings!(radius_share: 0.02; ..Settings::default()));
+    assert!(!report.proof.sampled.without.is_empty(), "{:?}", report.proof.sampled);
+    for witness in &report.proof.sampled.without {
         let away = DVec3::from_array(witness.position) - FAR - DVec3::new(0.51, 0.0, 0.0);
         assert!(away.length() < 0.0011, "{witness:?}");
     }
-    assert!(report.warnings.iter().any(|w| w.contains("near (100.51")), "{:?}", report.warnings);
+    assert!(report.warnings.iter().any(|w| w.to_string().contains("near (100.51")), "{:?}", report.warnings);
 }
 
 #[test]
 fn files_hold_far_places_in_double_precision() {
-    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let settings = settings!(radius_share: 0.02; ..Settings::default());
     let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
-    while session.join(u32::MAX).is_none() {}
-    let (particles, measured) = (session.particles(), session.measured());
+    while session.run.join(u32::MAX).is_none() {}
+    let (particles, measured) = (session.run.particles(), session.run.measured());
     let file = |format: Format| {
         let mut bytes = Vec::new();
         export::write(format, particles, measured, &mut bytes).expect("memory does not run out");
@@ -173,8 +175,14 @@ fn files_hold_far_places_in_double_precision() {
 
     let mesh = |format: MeshFormat| {
         let mut bytes = Vec::new();
-        export::write_mesh(format, particles, &quality::Report::default(), session.triangles(), &mut bytes)
-            .expect("memory does not run out");
+        export::write_mesh(
+            format,
+            particles,
+            &quality::Report::default(),
+            session.run.triangles(),
+            &mut bytes,
+        )
+        .expect("memory does not run out");
         bytes
     };
     let obj = String::from_utf8(mesh(MeshFormat::Obj)).expect("text");
@@ -212,15 +220,15 @@ fn only_a_box_far_for_its_size_has_an_origin_of_its_own() {
 
 #[test]
 fn a_session_leaves_a_far_box_as_it_came() {
-    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let settings = settings!(radius_share: 0.02; ..Settings::default());
     let finish = |session: &mut Session| {
         session.start(&settings).expect("settings in range");
-        while session.step(u32::MAX).stop_reason.is_none() {}
+        while session.run.step(u32::MAX).stop_reason.is_none() {}
     };
     let mut fresh = Session::new();
     finish(&mut fresh);
     let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
-    let far = session.particles().digest();
+    let far = session.run.particles().digest();
     // A fitted box is far, too.
     let request =
         FieldRequest { formula: Some(about(FAR, "X^2 + Y^2 + Z^2 = 2")), ..FieldRequest::default() };
@@ -228,13 +236,14 @@ fn a_session_leaves_a_far_box_as_it_came() {
     fitted.set_field(&request).expect("a formula");
     finish(&mut fitted);
     assert!(
-        fitted.particles().origin != DVec3::ZERO && fitted.report().quality.expect("figures").err_max < 1e-4
+        fitted.run.particles().origin != DVec3::ZERO
+            && fitted.report().measures.quality.expect("figures").err_max < 1e-4
     );
     // Back at the origin, and far away again.
     let surface = FieldRequest { surface: Some("ellipsoid".into()), ..FieldRequest::default() };
     session.set_field(&surface).expect("a surface of the gallery");
     finish(&mut session);
-    assert_eq!(session.particles().digest(), fresh.particles().digest());
+    assert_eq!(session.run.particles().digest(), fresh.run.particles().digest());
     let (again, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
-    assert_eq!(again.particles().digest(), far);
+    assert_eq!(again.run.particles().digest(), far);
 }

@@ -2,11 +2,13 @@
 //! sampler ends on all of them, places particles only on zeros, and reports what it met.
 
 use glam::Vec3;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::Field;
+use marching_particles::Report;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Phase, Progress, Sampling, Settings, SizeMode, StopReason};
-use marching_particles::session::{FieldRequest, Report, Session};
+use marching_particles::session::{FieldRequest, Session};
 
 /// Samples `formula` in the cube of half-width `half`.
 fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress, Report) {
@@ -19,16 +21,16 @@ fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress,
     session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
     // The limit is far more work than any of these surfaces takes, so a run that does not end fails.
-    let mut progress = session.step(0);
+    let mut progress = session.run.step(0);
     for _ in 0..2_000 {
         if progress.stop_reason.is_some() {
             break;
         }
-        progress = session.step(5_000);
+        progress = session.run.step(5_000);
     }
     assert!(progress.stop_reason.is_some(), "{formula}: not done after 10 million units of work");
     let report = session.report();
-    let columns = session.particles();
+    let columns = session.run.particles();
     for (p, n) in columns.position.iter().zip(&columns.normal) {
         assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-5, "{formula}: {p} with the normal {n}");
     }
@@ -36,12 +38,12 @@ fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress,
 }
 
 fn coarse() -> Settings {
-    Settings { radius_share: 0.01, ..Settings::default() }
+    settings!(radius_share: 0.01; ..Settings::default())
 }
 
 /// Number of particles of a hexagonal lattice of the report's radius on an area.
 fn expected(area: f64, report: &Report) -> f64 {
-    area / (2.0 * 3.0_f64.sqrt() * report.radius * report.radius)
+    area / (2.0 * 3.0_f64.sqrt() * report.sizes.radius * report.sizes.radius)
 }
 
 #[test]
@@ -50,19 +52,19 @@ fn poles_are_not_taken_for_zeros() {
     for formula in ["1/x", "1/(x - 0.03125)", "1/(x - 0.0312501)", "1/(x^2 + y^2 + z^2 - 0.5)"] {
         let (session, progress, _) = sampled(formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
-        assert_eq!(session.count(), 0, "{formula}");
+        assert_eq!(session.run.count(), 0, "{formula}");
         assert!(progress.message.is_some_and(|m| !m.contains("keeps one sign")), "{formula}");
     }
     // There are three planes of zeros, at 0 and ±π/4, and two of poles between them, at ±π/8.
     let (session, _, report) = sampled("tan(4x)", 1.0, &coarse());
-    for p in &session.particles().position {
+    for p in &session.run.particles().position {
         let from_zero = (p.x / core::f32::consts::FRAC_PI_4).round() * core::f32::consts::FRAC_PI_4 - p.x;
         assert!(from_zero.abs() < 1e-4, "{p}");
     }
     let share = report.count as f64 / expected(12.0, &report);
     assert!((0.9..1.2).contains(&share), "{} particles are {share} of a cover", report.count);
     // Holes are measured on the zeros; the poles are no uncovered surface.
-    assert!(report.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.quality);
+    assert!(report.measures.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.measures.quality);
 }
 
 #[test]
@@ -70,9 +72,9 @@ fn no_particle_sits_where_the_gradient_overflows() {
     // Near such a pole f is small relative to its gradient. `sampled` checks every normal.
     for (formula, half) in [("exp(x) = x y", 1e4), ("cosh(z x/y)^12 = 1.6 + z", 100.0)] {
         for sampling in [Sampling::Uniform, Sampling::Adaptive] {
-            let settings = Settings { sampling, radius_share: 0.03, radius_min_share: 0.01, ..coarse() };
+            let settings = settings!(sampling, radius_share: 0.03, radius_min_share: 0.01; ..coarse());
             let (session, _, _) = sampled(formula, half, &settings);
-            assert!(session.count() > 20, "{formula}: {} particles", session.count());
+            assert!(session.run.count() > 20, "{formula}: {} particles", session.run.count());
         }
     }
 }
@@ -81,9 +83,9 @@ fn no_particle_sits_where_the_gradient_overflows() {
 fn adaptive_runs_say_that_there_is_no_surface_as_uniform_ones_do() {
     for formula in ["x^2 + y^2 + z^2 + 1", "x = 5", "1/x", "sign(x)", "1", "ln(-1 - x^2)", "x^2 + y^2", "a"] {
         let (_, uniform, _) = sampled(formula, 1.0, &coarse());
-        let settings = Settings { sampling: Sampling::Adaptive, ..coarse() };
+        let settings = settings!(sampling: Sampling::Adaptive; ..coarse());
         let (session, progress, report) = sampled(formula, 1.0, &settings);
-        assert_eq!((session.count(), report.count), (0, 0), "{formula}");
+        assert_eq!((session.run.count(), report.count), (0, 0), "{formula}");
         assert_eq!(progress.stop_reason, uniform.stop_reason, "{formula}");
         assert_eq!(progress.message, uniform.message, "{formula}");
     }
@@ -94,11 +96,14 @@ fn no_particle_is_smaller_than_the_smallest_radius() {
     // Sheets cross at poles and steps, where the radii of neighbours are unrelated.
     for formula in ["x*(floor(y) + z^-1) = cbrt(x)", "x y z", "tan(3x) + y"] {
         for seed in [0, 4, 1_327_422_460_186_159_666] {
-            let settings =
-                Settings { sampling: Sampling::Adaptive, seed, radius_min_share: 0.005, ..coarse() };
+            let settings = settings!(sampling: Sampling::Adaptive, seed, radius_min_share: 0.005; ..coarse());
             let (session, _, report) = sampled(formula, 2.0, &settings);
-            let least = 0.005 * session.bounds().diagonal();
-            assert!(report.radius_min > 0.999 * least, "{formula}: {} < {least}", report.radius_min);
+            let least = 0.005 * session.run.bounds().diagonal();
+            assert!(
+                report.sizes.radius_min > 0.999 * least,
+                "{formula}: {} < {least}",
+                report.sizes.radius_min
+            );
         }
     }
 }
@@ -108,9 +113,13 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
     // The formula is defined on half of a sphere.
     let (session, progress, report) = sampled("x^2 + y^2 + z^2 - 0.6 + 0*ln(x)", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert!(report.fates.undefined > 20, "{:?}", report.fates);
-    assert!(report.warnings.iter().any(|w| w.contains("without a value")), "{:?}", report.warnings);
-    assert!(session.particles().position.iter().all(|p| p.x > 0.0));
+    assert!(report.growth.fates.undefined > 20, "{:?}", report.growth.fates);
+    assert!(
+        report.warnings.iter().any(|w| w.to_string().contains("without a value")),
+        "{:?}",
+        report.warnings
+    );
+    assert!(session.run.particles().position.iter().all(|p| p.x > 0.0));
     let share = report.count as f64 / expected(core::f64::consts::TAU * 0.6, &report);
     assert!((0.9..1.2).contains(&share), "{share}");
 }
@@ -120,7 +129,7 @@ fn a_surface_at_which_f_ends_is_found_whichever_sign_f_has_there() {
     // Outside the sphere f is not defined, and one of the two normals points there.
     for sign in ["1", "-1"] {
         let formula = format!("{sign}*(1 - x^2 - y^2 - z^2)(1 + sqrt(1 - x^2 - y^2 - z^2))");
-        let (_, _, report) = sampled(&formula, 1.5, &Settings { radius_share: 0.015, ..Settings::default() });
+        let (_, _, report) = sampled(&formula, 1.5, &settings!(radius_share: 0.015; ..Settings::default()));
         let share = report.count as f64 / expected(4.0 * core::f64::consts::PI, &report);
         assert!(
             (0.85..1.15).contains(&share),
@@ -170,8 +179,8 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
     ] {
         let formula = formula.replace("mu", "(1.3)").replace("+ t", "");
         let (session, _, report) = sampled(&formula, half, &coarse());
-        assert_eq!(report.singular_points, Some(points), "{formula}");
-        let columns = session.particles();
+        assert_eq!(report.proof.singular_points, Some(points), "{formula}");
+        let columns = session.run.particles();
         let marked = |i: usize| columns.slots[i].is_singular();
         let count = (0..columns.len()).filter(|&i| marked(i)).count();
         assert!(count < columns.len() / 2 && (count > 0) == (points > 0), "{formula}: {count} marked");
@@ -196,15 +205,15 @@ fn a_run_that_another_field_ends_marks_the_particles_next_to_its_own_singular_po
         ..FieldRequest::default()
     };
     session.set_field(&cone).unwrap();
-    session.start(&Settings { radius_share: 0.01, ..Settings::default() }).unwrap();
-    while session.step(200).phase != Phase::Relaxation {}
+    session.start(&settings!(radius_share: 0.01; ..Settings::default())).unwrap();
+    while session.run.step(200).phase != Phase::Relaxation {}
     let request = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 0.5".into()), ..FieldRequest::default() };
     session.set_field(&request).unwrap();
-    let marks = |session: &Session| session.particles().slots.iter().filter(|s| s.is_singular()).count();
+    let marks = |session: &Session| session.run.particles().slots.iter().filter(|s| s.is_singular()).count();
     let marked = marks(&session);
     assert!(marked > 0, "none is marked");
     assert!(
-        !session.step(0).moved && !session.step(1_000).moved,
+        !session.run.step(0).moved && !session.run.step(1_000).moved,
         "something is done to the particles of another field"
     );
     assert_eq!(marks(&session), marked);
@@ -213,16 +222,16 @@ fn a_run_that_another_field_ends_marks_the_particles_next_to_its_own_singular_po
 #[test]
 fn a_run_that_is_cancelled_marks_the_particles_next_to_singular_points() {
     let (mut session, _, _) = sampled("x^2 + y^2 = z^2", 1.0, &coarse());
-    let whole = session.count();
-    session.start(&Settings { relax_steps: 50, ..coarse() }).expect("valid settings");
-    let mut progress = session.step(0);
+    let whole = session.run.count();
+    session.start(&settings!(relax_steps: 50; ..coarse())).expect("valid settings");
+    let mut progress = session.run.step(0);
     while progress.relax_step < 2 {
-        progress = session.step(500);
+        progress = session.run.step(500);
     }
-    assert_eq!(session.cancel().stop_reason, Some(StopReason::Cancelled));
-    assert_eq!(session.count(), whole);
-    assert_eq!(session.report().singular_points, Some(1));
-    let columns = session.particles();
+    assert_eq!(session.run.cancel().stop_reason, Some(StopReason::Cancelled));
+    assert_eq!(session.run.count(), whole);
+    assert_eq!(session.report().proof.singular_points, Some(1));
+    let columns = session.run.particles();
     for (p, slots) in columns.position.iter().zip(&columns.slots) {
         assert!(p.length() > 1.9 * columns.radius[0] || slots.is_singular(), "{p} is not marked");
     }
@@ -245,10 +254,23 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         let (powers, progress, report) = sampled(formula, 1.0, &coarse());
         let (simple, _, _) = sampled(factor, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
-        let share = powers.count() as f64 / simple.count() as f64;
-        assert!((0.95..1.05).contains(&share), "{formula}: {} and {}", powers.count(), simple.count());
-        assert!(report.warnings.iter().any(|w| w.contains("is sampled")), "{formula}: {:?}", report.warnings);
-        assert!(!report.warnings.iter().any(|w| w.contains("twice")), "{formula}: {:?}", report.warnings);
+        let share = powers.run.count() as f64 / simple.run.count() as f64;
+        assert!(
+            (0.95..1.05).contains(&share),
+            "{formula}: {} and {}",
+            powers.run.count(),
+            simple.run.count()
+        );
+        assert!(
+            report.warnings.iter().any(|w| w.to_string().contains("is sampled")),
+            "{formula}: {:?}",
+            report.warnings
+        );
+        assert!(
+            !report.warnings.iter().any(|w| w.to_string().contains("twice")),
+            "{formula}: {:?}",
+            report.warnings
+        );
     }
     // In a product, the domain of a root restricts the zeros of the other factors, and a pole lowers the order of a
     // zero.
@@ -261,13 +283,13 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         "sin(x)^2/x",
         "(x - 1)^2/(y - 2)",
     ] {
-        let field = FormulaField::parse(formula, &[]).expect(formula).without_powers();
-        assert_eq!(field.evaluated_as(), None, "{formula}");
+        let field = Formula::as_written(formula, &[]).expect(formula).without_powers();
+        assert_eq!(field.sampled_as(), None, "{formula}");
     }
     // A constant factor, an equation with two sides, and a pole are left alone without a warning.
     for formula in ["x^2 = 0.3", "a^2 x", "x^3 + y", "x/(y + 3)^2"] {
         let (_, _, report) = sampled(formula, 1.0, &coarse());
-        assert_eq!(report.warnings, Vec::<String>::new(), "{formula}");
+        assert_eq!(report.warnings, [], "{formula}");
     }
 }
 
@@ -276,12 +298,16 @@ fn a_square_that_is_not_written_as_one_is_sampled_with_a_warning() {
     let (session, progress, report) =
         sampled("(x^2 + y^2 + z^2)^2 - (x^2 + y^2 + z^2) + 0.25", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert!(report.warnings.iter().any(|w| w.contains("without changing its sign")), "{:?}", report.warnings);
-    for p in &session.particles().position {
+    assert!(
+        report.warnings.iter().any(|w| w.to_string().contains("without changing its sign")),
+        "{:?}",
+        report.warnings
+    );
+    for p in &session.run.particles().position {
         assert!((p.length() - 0.5_f32.sqrt()).abs() < 1e-3, "{p}");
     }
     let (_, _, report) = sampled("x^2 + y^2 + z^2 - 0.5", 1.0, &coarse());
-    assert_eq!(report.warnings, Vec::<String>::new());
+    assert_eq!(report.warnings, []);
 }
 
 #[test]
@@ -292,7 +318,7 @@ fn zeros_without_a_gradient_are_never_called_absent() {
         assert_ne!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
         let message = progress.message.unwrap_or_default();
         assert!(message.contains("f comes to zero") && message.contains("enter"), "{formula}: {message}");
-        assert_ne!(report.undecided_cells, Some(0), "{formula}");
+        assert_ne!(report.proof.undecided_cells, Some(0), "{formula}");
     }
 }
 
@@ -301,20 +327,24 @@ fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     for formula in ["floor(3x) + 0.5", "sign(x - 0.1234) + y/100", "sign(x)"] {
         let (session, progress, _) = sampled(formula, 0.9, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
-        assert_eq!(session.count(), 0, "{formula}");
+        assert_eq!(session.run.count(), 0, "{formula}");
         assert!(progress.message.is_some_and(|m| m.contains("jumps")), "{formula}");
     }
     // The treads of the steps are surface; the risers are not.
     let (session, progress, report) = sampled("floor(5x)/5 - y", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert!(report.fates.not_converged > 100, "{:?}", report.fates);
-    assert!(report.warnings.iter().any(|w| w.contains("found no surface")), "{:?}", report.warnings);
-    for p in &session.particles().position {
+    assert!(report.growth.fates.not_converged > 100, "{:?}", report.growth.fates);
+    assert!(
+        report.warnings.iter().any(|w| w.to_string().contains("found no surface")),
+        "{:?}",
+        report.warnings
+    );
+    for p in &session.run.particles().position {
         assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
     }
     // A projection takes at most 50 evaluations, and each of a particle's six slots is projected once.
     let slots = 6.0 * report.count as f64;
-    assert!(report.evaluations_per_particle * report.count as f64 <= 50.0 * slots, "{report:?}");
+    assert!(report.growth.evaluations_per_particle * report.count as f64 <= 50.0 * slots, "{report:?}");
 }
 
 #[test]
@@ -322,9 +352,9 @@ fn an_open_surface_ends_at_the_box_and_its_border_is_counted() {
     for formula in ["z = x^2 - y^2", "x", "sin(3x) + sin(3y) + sin(3z)"] {
         let (session, progress, report) = sampled(formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
-        assert!(report.fates.outside > 50, "{formula}: {:?}", report.fates);
-        assert!(report.quality.is_some_and(|q| q.boundary_excluded > 50), "{formula}");
-        assert!(session.particles().position.iter().all(|p| p.abs().cmple(Vec3::ONE).all()), "{formula}");
+        assert!(report.growth.fates.outside > 50, "{formula}: {:?}", report.growth.fates);
+        assert!(report.measures.quality.is_some_and(|q| q.boundary_excluded > 50), "{formula}");
+        assert!(session.run.particles().position.iter().all(|p| p.abs().cmple(Vec3::ONE).all()), "{formula}");
     }
 }
 
@@ -334,9 +364,9 @@ fn every_component_has_a_front_and_they_are_counted() {
     let formula = "(abs(x) - 0.5)^2 + (abs(y) - 0.5)^2 + (abs(z) - 0.5)^2 = 0.06";
     let (_, progress, report) = sampled(formula, 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert_eq!((report.components_seeded, report.components), (8, 8));
-    assert_eq!(report.quality.map(|q| q.components), Some(8));
-    assert_eq!(report.quality.map(|q| q.euler), Some(16));
+    assert_eq!((report.growth.components_seeded, report.proof.components), (8, 8));
+    assert_eq!(report.measures.quality.map(|q| q.components), Some(8));
+    assert_eq!(report.measures.quality.map(|q| q.euler), Some(16));
 }
 
 #[test]
@@ -346,7 +376,7 @@ fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
         let (session, progress, report) = sampled(formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
         assert!((report.count as f64 / tame.count as f64 - 1.0).abs() < 0.05, "{formula}: {}", report.count);
-        assert!(session.particles().position.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
+        assert!(session.run.particles().position.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
     }
 }
 
@@ -355,9 +385,13 @@ fn sheets_nearer_than_a_spacing_are_kept_apart() {
     // Two planes are 0.01 apart, and the particles are ten times as large.
     let (session, progress, report) = sampled("z^2 - 0.000025", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert!(report.warnings.iter().any(|w| w.contains("face another sheet")), "{:?}", report.warnings);
-    assert_eq!(report.components, 2);
-    let position = &session.particles().position;
+    assert!(
+        report.warnings.iter().any(|w| w.to_string().contains("face another sheet")),
+        "{:?}",
+        report.warnings
+    );
+    assert_eq!(report.proof.components, 2);
+    let position = &session.run.particles().position;
     let upper = position.iter().filter(|p| p.z > 0.0).count() as f64;
     let lower = position.len() as f64 - upper;
     assert!(upper > 100.0 && (upper / lower - 1.0).abs() < 0.1, "{upper} above, {lower} below");
@@ -366,7 +400,7 @@ fn sheets_nearer_than_a_spacing_are_kept_apart() {
     for formula in ["z^2 - 0.01", "abs(x) + abs(y) + abs(z) - 0.9", "x^2 + y^2 + z^2 - 0.5"] {
         let (_, _, report) = sampled(formula, 1.0, &coarse());
         assert!(
-            !report.warnings.iter().any(|w| w.contains("another sheet")),
+            !report.warnings.iter().any(|w| w.to_string().contains("another sheet")),
             "{formula}: {:?}",
             report.warnings
         );
@@ -386,7 +420,7 @@ fn every_run_ends_whatever_the_field() {
         "x^1000 + y^1000 - z",
     ];
     for formula in formulas {
-        sampled(formula, 1.0, &Settings { max_particles: 20_000, ..coarse() });
+        sampled(formula, 1.0, &settings!(max_particles: 20_000; ..coarse()));
     }
 }
 
@@ -397,14 +431,14 @@ fn a_formula_may_be_in_any_units() {
     for factor in ["2^100", "2^-100"] {
         // A power of two changes no digits.
         let (session, _, report) = sampled(&format!("{factor} * ({ellipsoid})"), 1.0, &coarse());
-        assert_eq!(session.particles().digest(), plain.particles().digest(), "{factor}");
-        assert_eq!(report.quality.expect("there are particles").euler, 2, "{factor}");
+        assert_eq!(session.run.particles().digest(), plain.run.particles().digest(), "{factor}");
+        assert_eq!(report.measures.quality.expect("there are particles").euler, 2, "{factor}");
     }
     for factor in ["1e30", "1e-30"] {
         let formula = format!("{factor} x^2 + 2 * {factor} y^2 + 3 * {factor} z^2 = 0.7 * {factor}");
         let (_, progress, report) = sampled(&formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
-        let figures = report.quality.expect("there are particles");
+        let figures = report.measures.quality.expect("there are particles");
         assert!(figures.cover < 1.4 && figures.euler == 2, "{formula}: {figures:?}");
     }
 }
@@ -412,14 +446,14 @@ fn a_formula_may_be_in_any_units() {
 #[test]
 fn a_few_large_particles_on_many_sheets_take_little_work() {
     // Twenty-six planes, on which two particles are wanted. Every other seed stays alone beside them.
-    let settings = Settings { size_mode: SizeMode::Count, count: 2, ..Settings::default() };
+    let settings = settings!(size_mode: SizeMode::Count, count: 2; ..Settings::default());
     let (session, progress, report) = sampled("cos(z)", 40.0, &settings);
-    assert!(progress.stop_reason.is_some() && session.count() > 0);
+    assert!(progress.stop_reason.is_some() && session.run.count() > 0);
     // Four attempts of some 260 fronts, each of which takes no more than a few hundred evaluations.
-    assert!(report.evaluations < 1_000_000, "{} evaluations", report.evaluations);
-    assert!(report.components_seeded < 1_000, "{} fronts", report.components_seeded);
-    assert!(report.warnings.iter().any(|w| w.contains("ended early")), "{:?}", report.warnings);
-    assert_eq!(report.sampled.above, None, "components are without particles");
+    assert!(report.growth.evaluations < 1_000_000, "{} evaluations", report.growth.evaluations);
+    assert!(report.growth.components_seeded < 1_000, "{} fronts", report.growth.components_seeded);
+    assert!(report.warnings.iter().any(|w| w.to_string().contains("ended early")), "{:?}", report.warnings);
+    assert_eq!(report.proof.sampled.above, None, "components are without particles");
 }
 
 #[test]
@@ -433,7 +467,7 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
         ("(exp(100*(x^2+y^2+z^2-1))-1)*(exp(100*(x^2+y^2+z^2-0.25))-1)", 1.3, 1.25 * sphere),
     ] {
         let share = 0.05 / (2.0 * half * 3.0_f64.sqrt());
-        let (_, progress, report) = sampled(formula, half, &Settings { radius_share: share, ..coarse() });
+        let (_, progress, report) = sampled(formula, half, &settings!(radius_share: share; ..coarse()));
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}: {:?}", progress.message);
         let share = report.count as f64 / expected(area, &report);
         assert!(
@@ -441,7 +475,7 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
             "{formula}: {} particles are {share} of a cover",
             report.count
         );
-        let figures = report.quality.expect("there are particles");
+        let figures = report.measures.quality.expect("there are particles");
         assert!(figures.cover < 1.6 && figures.err_max < 1e-3, "{formula}: {figures:?}");
     }
     // Beyond double precision too.

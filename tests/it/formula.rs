@@ -2,18 +2,18 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{
-    FUNCTIONS, FormulaError, FormulaErrorKind as Kind, FormulaField, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
+    FUNCTIONS, Formula, FormulaError, FormulaErrorKind as Kind, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
     utf16_offset,
 };
 use marching_particles::field::{Bounded, Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 
-fn parse(text: &str) -> FormulaField {
-    FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
+fn parse(text: &str) -> Formula {
+    Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
 }
 
 fn error(text: &str) -> FormulaError {
-    match FormulaField::parse(text, &[]) {
+    match Formula::as_written(text, &[]) {
         Ok(_) => panic!("{text} was accepted"),
         Err(error) => error,
     }
@@ -318,7 +318,7 @@ fn a_suggestion_in_place_of_the_span_corrects_the_formula() {
     ] {
         let mut mended = text.to_owned();
         for _ in 0..3 {
-            let Err(error) = FormulaField::parse(&mended, &[]) else { break };
+            let Err(error) = Formula::as_written(&mended, &[]) else { break };
             mended.replace_range(error.span, &error.suggestion.unwrap());
         }
         parse(&mended);
@@ -347,7 +347,7 @@ fn up_to_four_unknown_names_become_parameters_and_a_fifth_asks_for_a_slider() {
     assert!(fifth.message.contains("add a slider `s`"), "{}", fifth.message);
 
     let declared = [Parameter::automatic("s")];
-    let field = FormulaField::parse(text, &declared).unwrap();
+    let field = Formula::as_written(text, &declared).unwrap();
     assert_eq!(field.auto(), ["a", "b", "k", "r"]);
     assert_eq!(field.parameters()[0].name, "s");
 }
@@ -357,8 +357,8 @@ fn a_likely_misspelling_is_no_parameter_unless_it_is_declared() {
     let slip = error("alpha x + sim y");
     assert_eq!((slip.kind, slip.names.as_slice()), (Kind::UnknownName, ["sim".to_owned()].as_slice()));
     assert!(slip.message.contains("did you mean `sin`") && slip.message.contains("add a slider `sim`"));
-    assert!(FormulaField::parse("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
-    let near = FormulaField::parse("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
+    assert!(Formula::as_written("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
+    let near = Formula::as_written("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
     assert_eq!(near.suggestion.as_deref(), Some("radius"));
     // Indexed names, single letters and Greek letters are not taken for misspellings.
     for text in ["phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
@@ -372,7 +372,7 @@ fn parameters_can_be_declared_and_changed_without_parsing_again() {
         Parameter { name: "a".into(), label: "Length".into(), value: 2.0, min: 0.5, max: 4.0, step: 0.1 },
         Parameter::automatic("unused"),
     ];
-    let mut field = FormulaField::parse("x^2/a^2 - b", &declared).unwrap();
+    let mut field = Formula::as_written("x^2/a^2 - b", &declared).unwrap();
     let names: Vec<&str> = field.parameters().iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["a", "b"]);
     let point = [Vec3::new(3.0, 0.0, 0.0)];
@@ -422,7 +422,7 @@ fn an_exponent_may_be_a_parameter_of_any_value() {
 fn declarations_that_make_no_sense_are_refused() {
     let with = |name: &str, value: f64, min: f64, max: f64| {
         let parameter = Parameter { name: name.into(), label: String::new(), value, min, max, step: 0.1 };
-        FormulaField::parse("x", &[parameter]).map(|_| ()).map_err(|error| error.kind)
+        Formula::as_written("x", &[parameter]).map(|_| ()).map_err(|error| error.kind)
     };
     assert_eq!(with("a", 1.0, 0.0, 2.0), Ok(()));
     for name in ["x", "pi", "sin", "", "2a", "a b", "<b>", "a-b"] {
@@ -432,7 +432,7 @@ fn declarations_that_make_no_sense_are_refused() {
     assert_eq!(with("a", 1.0, 2.0, 0.0), Err(Kind::BadParameter));
     assert_eq!(with("a", 1.0, 0.0, f64::INFINITY), Err(Kind::BadParameter));
     let twice = [Parameter::automatic("a"), Parameter::automatic("a")];
-    assert_eq!(FormulaField::parse("x", &twice).unwrap_err().kind, Kind::BadParameter);
+    assert_eq!(Formula::as_written("x", &twice).unwrap_err().kind, Kind::BadParameter);
 }
 
 #[test]
@@ -456,7 +456,7 @@ fn a_megabyte_is_refused_before_parsing() {
     assert_eq!((error.kind, error.span), (Kind::TooLong, MAX_FORMULA_BYTES..text.len()));
     // The span does not split a character.
     let text = "π".repeat(3000);
-    let error = FormulaField::parse(&text[..], &[]).unwrap_err();
+    let error = Formula::as_written(&text[..], &[]).unwrap_err();
     assert!(text.is_char_boundary(error.span.start), "{:?}", error.span);
 }
 

@@ -4,7 +4,7 @@
 use crate::fuzz::harness;
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{
-    FUNCTIONS, FormulaErrorKind as Kind, FormulaField, MAX_FORMULA_BYTES, MathGroup, MathNode,
+    FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
@@ -133,7 +133,7 @@ proptest! {
 
     #[test]
     fn a_formula_means_the_same_with_other_brackets_and_signs(text in formulas(), at in any::<u64>()) {
-        if let Ok(field) = FormulaField::parse(&text, &[]) {
+        if let Ok(field) = Formula::as_written(&text, &[]) {
             let brackets = [('(', ')'), ('[', ']'), ('{', '}')];
             let mut open = Vec::new();
             let mut choice = at;
@@ -147,7 +147,7 @@ proptest! {
                 ')' => open.pop().unwrap_or(c),
                 _ => c,
             }).collect();
-            let again = FormulaField::parse(&format!("f(x,y,z) == {other}"), &[])
+            let again = Formula::as_written(&format!("f(x,y,z) == {other}"), &[])
                 .unwrap_or_else(|e| panic!("{text} → {other}: {e}"));
             prop_assert!(field.same_tree(&again), "{} → {}", text, other);
         }
@@ -158,7 +158,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(0.1..2.0_f64),
     ) {
-        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let MathNode::Group { children, .. } = field.mathml() else { return Ok(()) };
         // Without the `= 0` at its end.
         let Some(latex) = in_latex(&children[0]) else { return Ok(()) };
@@ -166,7 +166,7 @@ proptest! {
         if latex.len() > MAX_FORMULA_BYTES || text.contains("1e") || text.contains("e-") || text.contains("hypot") {
             return Ok(());
         }
-        let mut again = match FormulaField::parse(&latex, &[]) {
+        let mut again = match Formula::as_written(&latex, &[]) {
             Ok(again) => again,
             // A quotient adds operations, and braces add levels.
             Err(e) if matches!(e.kind, Kind::TooDeep | Kind::TooComplex | Kind::NotFinite) => return Ok(()),
@@ -185,9 +185,9 @@ proptest! {
         terms in prop::collection::vec(prop::sample::select(vec!["x2", "y3", "z2 x", "0,5", "x", "cosx", "sin x y"]), 1..9)
     ) {
         let text = terms.join(" + ");
-        if let Err(error) = FormulaField::parse(&text, &[])
+        if let Err(error) = Formula::as_written(&text, &[])
             && let Some(mended) = error.mended
-            && let Err(next) = FormulaField::parse(&mended.text, &[])
+            && let Err(next) = Formula::as_written(&mended.text, &[])
         {
             let is_same = next.kind == error.kind
                 && next.message.split('`').step_by(2).eq(error.message.split('`').step_by(2));
@@ -207,9 +207,9 @@ proptest! {
 
     #[test]
     fn printing_and_parsing_are_inverse(text in formulas()) {
-        if let Ok(field) = FormulaField::parse(&text, &[]) {
+        if let Ok(field) = Formula::as_written(&text, &[]) {
             let printed = field.normal_form();
-            let again = FormulaField::parse(&printed, &[]).unwrap_or_else(|e| panic!("{text} → {printed}: {e}"));
+            let again = Formula::as_written(&printed, &[]).unwrap_or_else(|e| panic!("{text} → {printed}: {e}"));
             prop_assert_eq!(again.normal_form(), printed);
             prop_assert!(field.same_tree(&again), "{} → {}", text, field.normal_form());
         }
@@ -217,7 +217,7 @@ proptest! {
 
     #[test]
     fn mathml_is_well_formed(text in formulas()) {
-        if let Ok(field) = FormulaField::parse(&text, &[]) {
+        if let Ok(field) = Formula::as_written(&text, &[]) {
             check_mathml(&field.mathml());
         }
     }
@@ -232,7 +232,7 @@ proptest! {
         a in -2.0..2.0_f64,
     ) {
         // A sum has itself as its only factor, provided that the last term cancels nothing.
-        let Ok(mut field) = FormulaField::parse(&format!("({text}) + x^2 + 0.618034"), &[]) else { return Ok(()) };
+        let Ok(mut field) = Formula::as_written(&format!("({text}) + x^2 + 0.618034"), &[]) else { return Ok(()) };
         for name in field.auto().to_vec() {
             field.set_parameter(&name, a).unwrap();
         }
@@ -257,7 +257,7 @@ proptest! {
     ) {
         // A sum has itself as its only factor, provided that the last term cancels nothing.
         let text = format!("({text}) + x^2 + 0.618034");
-        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         for name in field.auto().to_vec() {
             field.set_parameter(&name, a).unwrap();
         }
@@ -272,7 +272,7 @@ proptest! {
         first in prop::array::uniform3(-2.0..2.0_f32),
         length in 1..200_usize,
     ) {
-        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let first = Vec3::from_array(first);
         let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
         let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
@@ -294,7 +294,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(-2.0..2.0_f64),
     ) {
-        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);
@@ -321,7 +321,7 @@ fn numbers(jet: &Jet) -> [f64; 10] {
 
 /// Parses `text`; if that fails, the error must be usable.
 fn check_error(text: &str) {
-    if let Err(error) = FormulaField::parse(text, &[]) {
+    if let Err(error) = Formula::as_written(text, &[]) {
         assert!(error.span.start <= error.span.end && error.span.end <= text.len().max(MAX_FORMULA_BYTES));
         assert!(
             text.is_char_boundary(error.span.start) && text.is_char_boundary(error.span.end),
@@ -389,13 +389,13 @@ fn mathml_is_set_as_one_writes_by_hand() {
         ("abs(x)", "mrow(mrow(| x |) = 0)"),
     ];
     for (text, wanted) in cases {
-        assert_eq!(written(&FormulaField::parse(text, &[]).unwrap().mathml()), wanted, "{text}");
+        assert_eq!(written(&Formula::as_written(text, &[]).unwrap().mathml()), wanted, "{text}");
     }
 }
 
 #[test]
 fn mathml_crosses_to_the_page_as_tags_with_texts_or_children() {
-    let node = FormulaField::parse("x = 1", &[]).unwrap().mathml();
+    let node = Formula::as_written("x = 1", &[]).unwrap().mathml();
     let wanted = serde_json::json!({
         "tag": "mrow",
         "children": [{"tag": "mi", "text": "x"}, {"tag": "mo", "text": "="}, {"tag": "mn", "text": "1"}],
@@ -418,6 +418,6 @@ fn the_normal_form_is_readable() {
         ("x^(y^z)", "x^y^z"),
         ("1e21 x = .5", "1e21*x = 0.5"),
     ] {
-        assert_eq!(FormulaField::parse(text, &[]).unwrap().normal_form(), wanted);
+        assert_eq!(Formula::as_written(text, &[]).unwrap().normal_form(), wanted);
     }
 }

@@ -27,7 +27,7 @@ fn sampled(surface: &str, settings: &Settings) -> Sampler {
 
 /// Samples by the front of the paper alone, without gap filling and relaxation.
 fn front(surface: &str, radius_share: f64) -> Sampler {
-    let settings = Settings { radius_share, relax_steps: 0, gaps: GapPolicy::Leave, ..Settings::default() };
+    let settings = settings!(radius_share, relax_steps: 0, gaps: GapPolicy::Leave; ..Settings::default());
     sampled(surface, &settings)
 }
 
@@ -166,7 +166,7 @@ fn a_front_covers_smooth_surfaces_regularly() {
     for (surface, euler) in smooth() {
         let sampler = sampled(
             surface,
-            &Settings { size_mode: SizeMode::Count, count: 14_000, relax_steps: 0, ..Settings::default() },
+            &settings!(size_mode: SizeMode::Count, count: 14_000, relax_steps: 0; ..Settings::default()),
         );
         assert!(sampler.counts().gaps_filled > 0, "{surface}");
         let figures = figures(surface, sampler.particles());
@@ -187,7 +187,7 @@ fn a_front_covers_smooth_surfaces_regularly() {
 fn most_particles_of_a_front_have_six_neighbours() {
     for (surface, six, angle) in ORDER {
         let settings =
-            Settings { size_mode: SizeMode::Count, count: 55_748, relax_steps: 0, ..Settings::default() };
+            settings!(size_mode: SizeMode::Count, count: 55_748, relax_steps: 0; ..Settings::default());
         let sampler = sampled(surface, &settings);
         let figures = figures(surface, sampler.particles());
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
@@ -199,8 +199,8 @@ fn most_particles_of_a_front_have_six_neighbours() {
 #[test]
 fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
     for (surface, _) in smooth() {
-        let settings = Settings { radius_share: 0.006, relax_steps: 0, ..Settings::default() };
-        let left = sampled(surface, &Settings { gaps: GapPolicy::Leave, ..settings });
+        let settings = settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default());
+        let left = sampled(surface, &settings!(gaps: GapPolicy::Leave; ..settings));
         let filled = sampled(surface, &settings);
         let (left, particles) = (left.particles(), filled.particles());
         let count = filled.counts().gaps_filled as usize;
@@ -228,7 +228,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
 fn a_particle_costs_about_two_evaluations() {
     for (surface, _) in smooth() {
         let sampler =
-            sampled(surface, &Settings { radius_share: 0.006, relax_steps: 0, ..Settings::default() });
+            sampled(surface, &settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default()));
         let per_particle = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
         assert!(per_particle <= 2.2, "{surface}: {per_particle}");
     }
@@ -289,7 +289,7 @@ fn every_gallery_surface_is_sampled_with_finite_normals() {
     for surface in gallery::SURFACES {
         let mut field = surface.field();
         let mut sampler = Sampler::new();
-        let settings = Settings { radius_share: 0.012, ..Settings::default() };
+        let settings = settings!(radius_share: 0.012; ..Settings::default());
         sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
         let progress = loop {
             let progress = sampler.step(&mut field, 5_000);

@@ -111,15 +111,12 @@ fn runs_on_damaged_formulas_end_with_finite_particles() {
         let mut random = Pcg32::seed_from_u64(seed);
         let formula = Some(damaged(&mut random, &tokens));
         let bounds = Some(Bounds::cube([0.01, 1.0, 3.0, 40.0, 1e4][below(&mut random, 5)]));
-        let settings = Settings {
-            radius_share: [0.01, 0.03, 0.2][below(&mut random, 3)],
+        let settings = settings!(radius_share: [0.01, 0.03, 0.2][below(&mut random, 3)],
             sampling: if below(&mut random, 3) == 0 { Sampling::Adaptive } else { Sampling::Uniform },
             method: if below(&mut random, 3) == 0 { Method::Refined } else { Method::Front },
             relax_steps: random.next_u32() % 4,
             max_particles: 3_000,
-            seed,
-            ..Settings::default()
-        };
+            seed; ..Settings::default());
         let request = FieldRequest { formula, bounds, ..FieldRequest::default() };
         let mut session = Session::new();
         if let Some(outcome) = harness::run(&mut session, &request, &settings, 20_000) {

@@ -1,7 +1,7 @@
 //! Tests of every surface of the gallery.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
@@ -109,7 +109,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
             None => format!("{} + x^2 + 0.618034", surface.formula),
         };
-        let mut field = FormulaField::parse(&text, &surface.declared()).expect("a formula");
+        let mut field = Formula::as_written(&text, &surface.declared()).expect("a formula");
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));

@@ -8,17 +8,14 @@ use marching_particles::quality::{self, Figures, Sizes};
 use marching_particles::sampler::{LawKind, Method, Refusal, Sampler, Sampling, Settings, SizeMode};
 
 fn graded(seed: u64) -> Settings {
-    Settings {
-        method: Method::Refined,
+    settings!(method: Method::Refined,
         sampling: Sampling::Adaptive,
         chord_error: 1e-4,
-        seed,
-        ..Settings::default()
-    }
+        seed; ..Settings::default())
 }
 
 fn counted(count: u32, seed: u64) -> Settings {
-    Settings { size_mode: SizeMode::Count, count, ..graded(seed) }
+    settings!(size_mode: SizeMode::Count, count; ..graded(seed))
 }
 
 /// A run, its figures and the surface that it is on.
@@ -66,7 +63,7 @@ fn a_wanted_count_of_graded_particles_is_met() {
 #[test]
 fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let settings = Settings { radius_law: LawKind::MaxCurvature, curvature_scale: 0.03, ..graded(0) };
+    let settings = settings!(radius_law: LawKind::MaxCurvature, curvature_scale: 0.03; ..graded(0));
     let (sampler, f) = run("ellipsoid", &settings);
     assert_eq!(sampler.counts().refusal, None);
     let mut field = surface.field();
@@ -104,7 +101,7 @@ fn where_it_cannot_be_had_the_adaptive_front_stands() {
         let refusal = refused.counts().refusal;
         let is_right = |refusal| matches!(refusal, Refusal::Bent { .. } | Refusal::Singular { .. });
         assert!(refusal.is_some_and(is_right), "{refusal:?}");
-        let (front, _) = run("heart", &Settings { method: Method::Front, ..settings });
+        let (front, _) = run("heart", &settings!(method: Method::Front; ..settings));
         assert_eq!(refused.particles().digest(), front.particles().digest(), "{:?}", settings.size_mode);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use marching_particles::field::Field;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Method, Settings};
 use marching_particles::session::{FieldRequest, Session};
@@ -21,7 +21,7 @@ fn unit(random: &mut Pcg32) -> f64 {
 }
 
 /// The point of the surface that Newton's method finds, if it lies in the box.
-fn landed(field: &mut FormulaField, mut p: DVec3) -> Option<DVec3> {
+fn landed(field: &mut Formula, mut p: DVec3) -> Option<DVec3> {
     for _ in 0..20 {
         let jet = field.jet(p);
         p -= jet.gradient * (jet.value / jet.gradient.length_squared());
@@ -52,15 +52,16 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
     if session.set_field(&request).is_err() {
         return false;
     }
-    let settings = Settings { radius_share: share, relax_steps: 3, ..Settings::default() };
+    let settings = settings!(radius_share: share, relax_steps: 3; ..Settings::default());
     session.start(&settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.step(100_000).stop_reason.is_none() {}
+    while session.run.step(100_000).stop_reason.is_none() {}
     let report = session.report();
-    let Some(figures) = report.quality.filter(|_| report.count > 300 && report.singular_points == Some(0))
+    let Some(figures) =
+        report.measures.quality.filter(|_| report.count > 300 && report.proof.singular_points == Some(0))
     else {
         return false;
     };
-    let mut field = FormulaField::parse(formula, &[]).expect("it was parsed before");
+    let mut field = Formula::as_written(formula, &[]).expect("it was parsed before");
     let mut random = Pcg32::seed_from_u64(seed);
     let ideal = figures.d_hex / 3.0_f64.sqrt();
     let (mut largest, mut inner) = (0.0_f64, 0.0_f64);
@@ -68,7 +69,8 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
         let start = DVec3::from_array([(); 3].map(|()| HALF * (2.0 * unit(&mut random) - 1.0)));
         let Some(p) = landed(&mut field, start) else { continue };
         let near = |q: &glam::Vec3| (q.as_dvec3() - p).length_squared();
-        let hole = session.particles().position.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
+        let hole =
+            session.run.particles().position.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
         largest = largest.max(hole);
         // The figure leaves out what is near the border.
         if p.abs().max_element() < HALF - 4.5 * figures.d_hex {
@@ -110,14 +112,14 @@ fn triangles_across_a_gap_do_not_count() {
     for (method, share) in [(Method::Front, 0.006), (Method::Front, 0.0036), (Method::Refined, 0.0036)] {
         let mut session = Session::new();
         session.set_field(&request).expect("a field");
-        let settings = Settings { method, radius_share: share, ..Settings::default() };
+        let settings = settings!(method, radius_share: share; ..Settings::default());
         session.start(&settings).expect("settings");
-        while session.step(100_000).stop_reason.is_none() {}
+        while session.run.step(100_000).stop_reason.is_none() {}
         let report = session.report();
-        let figures = report.quality.expect("figures");
+        let figures = report.measures.quality.expect("figures");
         let context = format!("{method:?} with {} particles: {figures:?}", report.count);
         // A sphere and two discs.
-        assert_eq!((report.components, figures.euler), (3, 4), "{context}");
+        assert_eq!((report.proof.components, figures.euler), (3, 4), "{context}");
         // With 32,000 particles it is 8.93.
         assert!((8.7..9.0).contains(&figures.area), "{context}");
         assert!((1.0..1.6).contains(&figures.cover), "{context}");

@@ -18,7 +18,7 @@ fn particles(surface: &Surface, settings: &Settings) -> Particles {
 }
 
 fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Settings {
-    Settings { size_mode: SizeMode::Count, count, seed, match_tolerance, relax_steps, ..Settings::default() }
+    settings!(size_mode: SizeMode::Count, count, seed, match_tolerance, relax_steps; ..Settings::default())
 }
 
 /// The triangles of a set of points, held to what is promised of every set.
@@ -74,7 +74,7 @@ fn smooth_closed_surfaces_have_their_euler_number() {
 
 #[test]
 fn sets_of_varying_size_are_closed_too() {
-    let settings = Settings { sampling: Sampling::Adaptive, ..Settings::default() };
+    let settings = settings!(sampling: Sampling::Adaptive; ..Settings::default());
     for surface in closed_surfaces() {
         assert_closed(surface, &settings);
     }

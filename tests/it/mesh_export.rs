@@ -15,7 +15,7 @@ fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
     let surface = gallery::find(id).expect("a surface of the gallery");
     let mut field = surface.field();
     let mut sampler = Sampler::new();
-    let settings = Settings { radius_share, ..Settings::default() };
+    let settings = settings!(radius_share; ..Settings::default());
     sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
     while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
     let particles = sampler.particles().clone();

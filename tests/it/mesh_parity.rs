@@ -5,9 +5,10 @@
 //! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
 
 use crate::golden;
+use marching_particles::MeshAnswer;
 use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::sampler::Settings;
-use marching_particles::session::{FieldRequest, MeshAnswer, Session};
+use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -33,10 +34,10 @@ fn joined(case: &Run, budget: u32) -> (Session, MeshAnswer) {
     session.set_field(&field).expect("a field");
     let settings: Settings = serde_json::from_value(case.settings.clone()).expect("settings");
     session.start(&settings).expect("valid settings");
-    while session.step(100_000).stop_reason.is_none() {}
+    while session.run.step(100_000).stop_reason.is_none() {}
     session.report();
     loop {
-        if let Some(answer) = session.join(budget) {
+        if let Some(answer) = session.run.join(budget) {
             return (session, answer);
         }
     }
@@ -45,7 +46,7 @@ fn joined(case: &Run, budget: u32) -> (Session, MeshAnswer) {
 /// The mesh of a session as a file, written with `budget` slices a call.
 fn written(session: &mut Session, format: MeshFormat, budget: u32) -> Vec<u8> {
     loop {
-        if let Some(bytes) = session.mesh_file(format, budget).expect("a file of less than 4 GiB") {
+        if let Some(bytes) = session.run.mesh_file(format, budget).expect("a file of less than 4 GiB") {
             return bytes;
         }
     }
@@ -88,16 +89,22 @@ fn a_file_written_slice_by_slice_is_the_one_written_at_once() {
     let (mut session, _) = joined(&golden().runs[0], u32::MAX);
     for (extension, format) in MeshFormat::ALL {
         let whole = written(&mut session, format, u32::MAX);
-        let first = session.mesh_file(format, 1).expect("a file of less than 4 GiB");
+        let first = session.run.mesh_file(format, 1).expect("a file of less than 4 GiB");
         assert_eq!(first.is_some(), format == MeshFormat::Glb, "{extension}: one slice is not all of it");
         assert!(written(&mut session, format, 1) == whole, "{extension}");
         let mut direct = Vec::new();
-        write_mesh(format, session.particles(), session.measured(), session.triangles(), &mut direct)
-            .expect("writing to memory does not fail");
+        write_mesh(
+            format,
+            session.run.particles(),
+            session.run.measured(),
+            session.run.triangles(),
+            &mut direct,
+        )
+        .expect("writing to memory does not fail");
         assert!(direct == whole, "{extension}");
     }
     // Another format begins anew.
-    assert!(session.mesh_file(MeshFormat::Obj, 1).expect("a small file").is_none());
+    assert!(session.run.mesh_file(MeshFormat::Obj, 1).expect("a small file").is_none());
     let ply = written(&mut session, MeshFormat::Ply, 1);
     assert!(ply.starts_with(b"ply"));
     assert!(written(&mut session, MeshFormat::Obj, 2).starts_with(b"# Marching Particles"));
@@ -108,8 +115,8 @@ fn a_mesh_joined_slice_by_slice_is_the_one_joined_at_once() {
     for case in golden().runs {
         let ((whole, told), (sliced, same)) = (joined(&case, u32::MAX), joined(&case, 1));
         assert_eq!(told, same, "{}", case.name);
-        assert_eq!(whole.triangles(), sliced.triangles(), "{}", case.name);
-        assert_eq!(told.triangles, whole.triangles().len());
+        assert_eq!(whole.run.triangles(), sliced.run.triangles(), "{}", case.name);
+        assert_eq!(told.triangles, whole.run.triangles().len());
     }
 }
 
@@ -127,17 +134,17 @@ fn a_mesh_tells_its_topology_and_where_it_is_open() {
 fn a_mesh_is_dropped_when_the_particles_change() {
     let case = &golden().runs[0];
     let (mut session, _) = joined(case, u32::MAX);
-    assert!(!session.triangles().is_empty());
-    session.relax(1);
-    assert!(session.triangles().is_empty());
-    while session.step(1_000).stop_reason.is_none() {}
-    assert!(session.join(1).is_none(), "one slice is not all of it");
+    assert!(!session.run.triangles().is_empty());
+    session.run.relax(1);
+    assert!(session.run.triangles().is_empty());
+    while session.run.step(1_000).stop_reason.is_none() {}
+    assert!(session.run.join(1).is_none(), "one slice is not all of it");
     // A step comes between: the work is given up and begun anew.
-    session.step(1);
-    assert!(session.join(u32::MAX).is_some());
+    session.run.step(1);
+    assert!(session.run.join(u32::MAX).is_some());
     let settings: Settings = serde_json::from_value(case.settings.clone()).expect("settings");
     session.start(&settings).expect("valid settings");
-    assert!(session.triangles().is_empty());
-    let nothing = session.join(u32::MAX).expect("of no particles");
+    assert!(session.run.triangles().is_empty());
+    let nothing = session.run.join(u32::MAX).expect("of no particles");
     assert_eq!((nothing.triangles, nothing.components.len()), (0, 0));
 }

@@ -10,7 +10,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::Field;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::model::MODELS;
 use marching_particles::pointcloud::Cloud;
 use marching_particles::pointcloud::models;
@@ -99,7 +99,7 @@ fn points_of(formula: &str) -> Cloud {
     const CELLS: [usize; 3] = [65, 65, 75];
     let corner = DVec3::new(-1.3, -1.3, -0.3);
     let node = |i: usize, j: usize, k: usize| corner + DVec3::new(i as f64, j as f64, k as f64) * STEP;
-    let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+    let mut field = Formula::as_written(formula, &[]).expect("a formula");
     let mut cloud = Cloud::default();
     let mut value = vec![0.0; CELLS[0].max(CELLS[2])];
     for axis in 0..3 {

@@ -1,10 +1,11 @@
 //! Tests that sheets of the surface very near each other are told apart, or that the report says that they are not; and that it
 //! explains figures of the sample that are not those of the surface.
 
-use marching_particles::field::formula::FormulaField;
+use marching_particles::Report;
+use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Doubt, Sampler, Sampling, Search, Settings, SizeMode};
-use marching_particles::session::{FieldRequest, Report, Session};
+use marching_particles::session::{FieldRequest, Session};
 
 fn session(formula: &str, half: f64, settings: &Settings) -> Session {
     let mut session = Session::new();
@@ -19,30 +20,27 @@ fn session(formula: &str, half: f64, settings: &Settings) -> Session {
 }
 
 fn complete(mut session: Session) -> (Session, Report) {
-    while session.step(50_000).stop_reason.is_none() {}
+    while session.run.step(50_000).stop_reason.is_none() {}
     let report = session.report();
     (session, report)
 }
 
 fn says(report: &Report, words: &str) -> bool {
-    report.warnings.iter().any(|warning| warning.contains(words))
+    report.warnings.iter().any(|warning| warning.to_string().contains(words))
 }
 
 /// Particles of this radius in a cube of half-width `half`.
 fn of_radius(radius: f64, half: f64) -> Settings {
-    Settings { radius_share: radius / (2.0 * half * 3.0_f64.sqrt()), ..Settings::default() }
+    settings!(radius_share: radius / (2.0 * half * 3.0_f64.sqrt()); ..Settings::default())
 }
 
 /// The same with sizes that follow the curvature.
 fn adaptive(radius: f64, half: f64) -> Settings {
     let share = of_radius(radius, half).radius_share;
-    Settings {
-        sampling: Sampling::Adaptive,
+    settings!(sampling: Sampling::Adaptive,
         radius_min_share: 0.5 * share,
         radius_max_share: 1.5 * share,
-        chord_error: 6e-4,
-        ..Settings::default()
-    }
+        chord_error: 6e-4; ..Settings::default())
 }
 
 /// Concentric spheres about the unit sphere, and planes, at equal distances; with the number of components and the Euler number.
@@ -66,9 +64,9 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
         for (formula, components, euler) in layers(gap) {
             let (_, report) = complete(session(&formula, 1.5, &settings));
             let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
-            assert_eq!(report.search, Search::Proven, "{context}");
-            assert_eq!(report.components, components, "{context}");
-            assert_eq!(report.quality.map(|q| q.euler), Some(euler), "{context}");
+            assert_eq!(report.proof.search, Search::Proven, "{context}");
+            assert_eq!(report.proof.components, components, "{context}");
+            assert_eq!(report.measures.quality.map(|q| q.euler), Some(euler), "{context}");
             assert!(!says(&report, "without changing its sign"), "{context}");
         }
     }
@@ -84,8 +82,8 @@ fn the_area_of_two_near_sheets_is_that_of_both() {
             [(planes(gap), 18.0 * 1.04_f64.sqrt()), (spheres(gap), 8.0 * core::f64::consts::PI * (1.0 + gap))]
         {
             let mut field =
-                FormulaField::parse(&formula, &[]).unwrap_or_else(|error| panic!("{formula}: {error}"));
-            let settings = Settings { size_mode: SizeMode::Count, count: 2_000, ..Settings::default() };
+                Formula::as_written(&formula, &[]).unwrap_or_else(|error| panic!("{formula}: {error}"));
+            let settings = settings!(size_mode: SizeMode::Count, count: 2_000; ..Settings::default());
             let mut sampler = Sampler::new();
             let start = sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("valid settings");
             assert!((start.area / area - 1.0).abs() < 0.05, "{formula}: {} of {area}", start.area);
@@ -100,8 +98,12 @@ fn of_nearer_sheets_the_report_says_how_near_they_are_and_where() {
             for settings in [of_radius(0.1, 1.5), adaptive(0.1, 1.5)] {
                 let (session, report) = complete(session(&formula, 1.5, &settings));
                 let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
-                assert_eq!((report.search, report.sampled.above), (Search::Searched, None), "{context}");
-                let told = session.sampler().doubts().into_iter().find_map(|doubt| match doubt {
+                assert_eq!(
+                    (report.proof.search, report.proof.sampled.above),
+                    (Search::Searched, None),
+                    "{context}"
+                );
+                let told = session.run.sampler().doubts().into_iter().find_map(|doubt| match doubt {
                     Doubt::Unresolved { position: [x, y, z], gap, least } => Some((x, y, z, gap, least)),
                     _ => None,
                 });
@@ -127,18 +129,26 @@ fn a_search_that_is_not_proven_says_why() {
         ("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.00001)*(x^2+y^2+z^2-1.00002)", "tell sheets apart down to"),
     ] {
         let (_, report) = complete(session(formula, 1.5, &of_radius(0.1, 1.5)));
-        assert_eq!(report.search, Search::Searched, "{formula}");
+        assert_eq!(report.proof.search, Search::Searched, "{formula}");
         assert!(says(&report, words), "{formula}: {:?}", report.warnings);
     }
     // A run that is ended, and one that comes to its limit.
     let mut ended = session("x^2+y^2+z^2-1", 1.5, &of_radius(0.01, 1.5));
-    ended.step(1_000);
-    ended.cancel();
+    ended.run.step(1_000);
+    ended.run.cancel();
     let report = ended.report();
-    assert!(report.search == Search::Searched && says(&report, "ended before"), "{:?}", report.warnings);
-    let capped = Settings { max_particles: 100, ..of_radius(0.01, 1.5) };
+    assert!(
+        report.proof.search == Search::Searched && says(&report, "ended before"),
+        "{:?}",
+        report.warnings
+    );
+    let capped = settings!(max_particles: 100; ..of_radius(0.01, 1.5));
     let (_, report) = complete(session("x^2+y^2+z^2-1", 1.5, &capped));
-    assert!(report.search == Search::Searched && says(&report, "ended before"), "{:?}", report.warnings);
+    assert!(
+        report.proof.search == Search::Searched && says(&report, "ended before"),
+        "{:?}",
+        report.warnings
+    );
 }
 
 #[test]
@@ -164,9 +174,9 @@ fn where_the_triangles_leave_a_surface_open_the_report_says_so() {
         let (_, report) = complete(session(formula, half, &of_radius(radius, half)));
         assert!(!says(&report, "need not be those of the surface"), "{formula}: {:?}", report.warnings);
         assert!(
-            half < 1.2 || report.quality.map(|q| q.euler) == Some(euler),
+            half < 1.2 || report.measures.quality.map(|q| q.euler) == Some(euler),
             "{formula}: {:?}",
-            report.quality
+            report.measures.quality
         );
     }
 }

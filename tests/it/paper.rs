@@ -5,7 +5,7 @@
 
 use crate::golden;
 use glam::DVec3;
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
     ChapterKind, Event, Lesson, LessonError, LessonField, Method, Placing, Seeding, Settings, digest,
@@ -30,32 +30,29 @@ fn run(surface: &str, settings: &Settings) -> Lesson {
 
 /// Some hundred particles.
 fn coarse() -> Settings {
-    Settings { radius: 0.08, relax_steps: 3, ..Settings::default() }
+    settings!(radius: 0.08, relax_steps: 3; ..Settings::default())
 }
 
 /// Adaptive sampling with some hundred particles.
 fn adaptive() -> Settings {
-    Settings {
-        sampling: Sampling::Adaptive,
+    settings!(sampling: Sampling::Adaptive,
         law: LawKind::MaxCurvature,
         law_scale: 0.12,
         radius_min: 0.03,
         radius_max: 0.12,
-        relax_steps: 3,
-        ..Settings::default()
-    }
+        relax_steps: 3; ..Settings::default())
 }
 
 fn all_settings() -> [Settings; 8] {
     [
         coarse(),
         adaptive(),
-        Settings { radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill, ..Settings::of_fast_front() },
-        Settings { order: Order::Stack, matched: Matched::Stay, ..coarse() },
-        Settings { projection: Projection::Newton, ..coarse() },
-        Settings { seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together, ..coarse() },
-        Settings { method: Method::WitkinHeckbert, radius: 0.12, max_iterations: 60, ..Settings::default() },
-        Settings { method: Method::Forces, max_iterations: 60, ..adaptive() },
+        settings!(radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill; ..Settings::of_fast_front()),
+        settings!(order: Order::Stack, matched: Matched::Stay; ..coarse()),
+        settings!(projection: Projection::Newton; ..coarse()),
+        settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together; ..coarse()),
+        settings!(method: Method::WitkinHeckbert, radius: 0.12, max_iterations: 60; ..Settings::default()),
+        settings!(method: Method::Forces, max_iterations: 60; ..adaptive()),
     ]
 }
 
@@ -149,7 +146,7 @@ fn an_unfinished_chapter_can_be_looked_at() {
 
 #[test]
 fn the_seed_has_six_children_and_rings_grow_by_six() {
-    let run = run("sphere", &Settings { radius: 0.03, relax_steps: 0, ..Settings::default() });
+    let run = run("sphere", &settings!(radius: 0.03, relax_steps: 0; ..Settings::default()));
     let added: Vec<u64> = run.chapters().iter().map(|chapter| chapter.fates.added).take(4).collect();
     assert_eq!(added, [6, 12, 18, 24]);
     for (level, chapter) in run.chapters().iter().enumerate() {
@@ -165,9 +162,9 @@ fn the_seed_has_six_children_and_rings_grow_by_six() {
 
 #[test]
 fn a_stack_gives_no_rings() {
-    let settings = Settings { radius: 0.05, relax_steps: 0, ..Settings::default() };
+    let settings = settings!(radius: 0.05, relax_steps: 0; ..Settings::default());
     let levels = |order| {
-        let run = run("sphere", &Settings { order, ..settings.clone() });
+        let run = run("sphere", &settings!(order; ..settings.clone()));
         run.particles().iter().map(|particle| particle.level).max().expect("particles")
     };
     assert!(levels(Order::Stack) > 5 * levels(Order::Queue));
@@ -175,9 +172,9 @@ fn a_stack_gives_no_rings() {
 
 #[test]
 fn the_circle_keeps_the_distance_and_newton_does_not() {
-    let settings = Settings { radius: 0.1, relax_steps: 0, ..Settings::default() };
+    let settings = settings!(radius: 0.1, relax_steps: 0; ..Settings::default());
     let farthest = |projection| {
-        let run = run("ellipsoid", &Settings { projection, ..settings.clone() });
+        let run = run("ellipsoid", &settings!(projection; ..settings.clone()));
         let particles = run.particles();
         let off = particles.iter().filter_map(|particle| {
             let parent = &particles[particle.parent? as usize];
@@ -191,7 +188,7 @@ fn the_circle_keeps_the_distance_and_newton_does_not() {
 
 #[test]
 fn matched_particles_that_stay_bound_all_distances() {
-    let settings = Settings { relax_steps: 0, matched: Matched::Stay, ..coarse() };
+    let settings = settings!(relax_steps: 0, matched: Matched::Stay; ..coarse());
     let run = run("torus", &settings);
     let particles = run.particles();
     let limit = 2.0 * settings.radius * settings.match_tolerance;
@@ -232,7 +229,7 @@ fn every_iterate_of_a_child_leads_to_its_landing() {
 #[test]
 fn energy_falls_in_small_steps_and_not_in_large_ones() {
     let energies = |step_size| {
-        let run = run("sphere", &Settings { step_size: Some(step_size), relax_steps: 10, ..coarse() });
+        let run = run("sphere", &settings!(step_size: Some(step_size), relax_steps: 10; ..coarse()));
         run.chapters().iter().filter_map(|chapter| chapter.energy).collect::<Vec<f64>>()
     };
     let small = energies(0.3);
@@ -273,7 +270,7 @@ fn what_the_neighbours_push_with_adds_up_to_the_force_of_the_event() {
 /// Figures 7 and 8, event by event.
 #[test]
 fn an_adaptive_child_is_pushed_until_it_touches_and_then_compared() {
-    let mut run = run("ellipsoid", &Settings { relax_steps: 0, ..adaptive() });
+    let mut run = run("ellipsoid", &settings!(relax_steps: 0; ..adaptive()));
     let events = run.events(0, u32::MAX);
     let particles = run.particles();
     let (mut at, mut radius, mut overlap_before) = (DVec3::ZERO, 0.0, f64::INFINITY);
@@ -324,7 +321,7 @@ fn an_adaptive_child_is_pushed_until_it_touches_and_then_compared() {
 
 #[test]
 fn adaptive_particles_follow_the_law_and_crowd_nothing() {
-    let settings = Settings { relax_steps: 0, ..adaptive() };
+    let settings = settings!(relax_steps: 0; ..adaptive());
     let run = run("ellipsoid", &settings);
     let particles = run.particles();
     let radii = particles.iter().map(|particle| particle.radius);
@@ -347,7 +344,7 @@ fn adaptive_particles_follow_the_law_and_crowd_nothing() {
 #[test]
 fn two_seeds_together_meet() {
     let settings =
-        Settings { seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together, ..coarse() };
+        settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together; ..coarse());
     let mut run = run("sphere", &settings);
     let events = run.events(0, u32::MAX);
     assert!(events.iter().any(|event| matches!(event, Event::FrontsMeet { is_other: true, .. })));
@@ -375,31 +372,29 @@ fn what_cannot_be_followed_is_refused_in_words() {
         Ok(_) => panic!("{settings:?} was accepted"),
         Err(error) => error.to_string(),
     };
-    let words = refused(Settings { radius: 0.005, ..Settings::default() });
+    let words = refused(settings!(radius: 0.005; ..Settings::default()));
     assert!(words.starts_with("about 14") && words.contains("choose a radius of 1.3"), "{words}");
-    assert!(refused(Settings { radius: f64::NAN, ..Settings::default() }).starts_with("radius is NaN"));
-    assert!(refused(Settings { match_tolerance: 2.0, ..coarse() }).starts_with("match_tolerance is 2"));
-    assert!(refused(Settings { placing: Placing::LevelByLevel, ..coarse() }).contains("needs a queue"));
-    assert!(refused(Settings { seeding: Seeding::Together, ..coarse() }).contains("have to be given"));
-    assert!(
-        refused(Settings { gaps: GapPolicy::Fill, ..adaptive() }).starts_with("adaptive sampling places")
-    );
-    let two_sizes = Settings { method: Method::WitkinHeckbert, ..adaptive() };
+    assert!(refused(settings!(radius: f64::NAN; ..Settings::default())).starts_with("radius is NaN"));
+    assert!(refused(settings!(match_tolerance: 2.0; ..coarse())).starts_with("match_tolerance is 2"));
+    assert!(refused(settings!(placing: Placing::LevelByLevel; ..coarse())).contains("needs a queue"));
+    assert!(refused(settings!(seeding: Seeding::Together; ..coarse())).contains("have to be given"));
+    assert!(refused(settings!(gaps: GapPolicy::Fill; ..adaptive())).starts_with("adaptive sampling places"));
+    let two_sizes = settings!(method: Method::WitkinHeckbert; ..adaptive());
     assert!(refused(two_sizes).contains("one radius everywhere"));
-    let negative = Settings { method: Method::WitkinHeckbert, radius_max: -1.0, ..coarse() };
+    let negative = settings!(method: Method::WitkinHeckbert, radius_max: -1.0; ..coarse());
     assert!(refused(negative).starts_with("radius_max is -1"));
-    assert!(refused(Settings { max_iterations: 0, ..coarse() }).starts_with("max_iterations is 0"));
-    assert!(refused(Settings { radius_min: 0.5, ..adaptive() }).starts_with("radius_min is 0.5"));
-    let tiny = Settings { law_scale: 1e-3, radius_min: 1e-3, ..adaptive() };
+    assert!(refused(settings!(max_iterations: 0; ..coarse())).starts_with("max_iterations is 0"));
+    assert!(refused(settings!(radius_min: 0.5; ..adaptive())).starts_with("radius_min is 0.5"));
+    let tiny = settings!(law_scale: 1e-3, radius_min: 1e-3; ..adaptive());
     assert!(refused(tiny).contains("choose radii"));
     // The radius that the message names is accepted.
     let named: f64 = words.split(' ').rev().nth(2).and_then(|word| word.parse().ok()).expect("a radius");
-    assert!(start("sphere", &Settings { radius: named, ..Settings::default() }).is_ok(), "{words}");
+    assert!(start("sphere", &settings!(radius: named; ..Settings::default())).is_ok(), "{words}");
 }
 
 #[test]
 fn the_limit_on_particles_ends_the_front() {
-    let run = run("sphere", &Settings { max_particles: 100, ..coarse() });
+    let run = run("sphere", &settings!(max_particles: 100; ..coarse()));
     assert_eq!(run.particles().len(), 100);
     assert!(run.progress().is_capped);
 }
@@ -430,7 +425,7 @@ fn lessons_have_the_digests_that_other_platforms_give() {
     let mut faults = Vec::new();
     for lesson in &mut golden.runs {
         let LessonField { formula, parameters, bounds } = &lesson.field;
-        let field = FormulaField::parse(formula, parameters).expect("the formula can be read");
+        let field = Formula::as_written(formula, parameters).expect("the formula can be read");
         let mut run = Lesson::new(Box::new(field.without_powers()), bounds, &lesson.settings)
             .unwrap_or_else(|error| panic!("{}: {error}", lesson.name));
         while !run.step(1_000).is_done {}

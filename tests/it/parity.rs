@@ -52,8 +52,8 @@ fn run(case: &Run) -> (usize, String) {
     let settings: Settings = serde_json::from_value(case.settings.clone())
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-    while session.step(BUDGET).stop_reason.is_none() {}
-    (session.count(), format!("{:016x}", session.particles().digest()))
+    while session.run.step(BUDGET).stop_reason.is_none() {}
+    (session.run.count(), format!("{:016x}", session.run.particles().digest()))
 }
 
 #[test]

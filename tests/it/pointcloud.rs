@@ -120,7 +120,7 @@ fn separate_components_are_each_oriented_outward_with_a_warning() {
     position.extend(ball.iter().map(|p| *p + DVec3::new(5.0, 0.0, 0.0)));
     let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
     let warnings = estimate(&mut cloud);
-    assert!(warnings.iter().any(|w| w.contains("2 components")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.to_string().contains("2 components")), "{warnings:?}");
     assert!(cloud.normal.iter().zip(ball.iter().chain(&ball)).all(|(n, p)| n.dot(*p) > 0.9));
 }
 

@@ -4,6 +4,7 @@
 //! `PROOF_CASES` sets the number of cases of each family, 400 by default, fewer where a case takes long.
 
 use glam::DVec3;
+use marching_particles::Warning;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Doubt, Sampling, Search, Settings, Unsampled};
 use marching_particles::session::{FieldRequest, Session};
@@ -147,8 +148,8 @@ struct Case {
     settings: Settings,
 }
 
-fn says(warnings: &[String], words: &str) -> bool {
-    warnings.iter().any(|warning| warning.contains(words))
+fn says(warnings: &[Warning], words: &str) -> bool {
+    warnings.iter().any(|warning| warning.to_string().contains(words))
 }
 
 /// Says whether the search was proven; panics if it says so and a component is neither sampled nor named.
@@ -162,10 +163,10 @@ fn holds(case: &Case, context: &str) -> bool {
     };
     session.set_field(&request).unwrap_or_else(|e| panic!("{formula}: {e}"));
     session.start(settings).unwrap_or_else(|e| panic!("{formula}: {e}"));
-    while session.step(100_000).stop_reason.is_none() {}
-    let sampled = session.sampler().sampled();
-    let doubts = session.sampler().doubts();
-    if session.sampler().search() != Search::Proven {
+    while session.run.step(100_000).stop_reason.is_none() {}
+    let sampled = session.run.sampler().sampled();
+    let doubts = session.run.sampler().doubts();
+    if session.run.sampler().search() != Search::Proven {
         let warnings = session.report().warnings;
         let is_told = |doubt: &Doubt| match doubt {
             Doubt::Unresolved { .. } => says(&warnings, "tell sheets apart down to"),
@@ -187,7 +188,7 @@ fn holds(case: &Case, context: &str) -> bool {
         distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     };
     let mut is_told = vec![false; pieces.len()];
-    for p in &session.particles().position {
+    for p in &session.run.particles().position {
         nearest(p.as_dvec3()).iter().for_each(|&k| is_told[k] = true);
     }
     let mut names = vec![0; pieces.len()];
@@ -234,15 +235,12 @@ fn family_of(
         let pieces = make(&mut random, r);
         let formula: Vec<String> = pieces.iter().map(Piece::formula).collect();
         let adaptive = random.unit() < 0.2;
-        let settings = Settings {
-            radius_share: r / 12.0_f64.sqrt(),
+        let settings = settings!(radius_share: r / 12.0_f64.sqrt(),
             relax_steps: random.count(0, 3),
             seed,
             sampling: if adaptive { Sampling::Adaptive } else { Sampling::Uniform },
             // Adaptive particles about as large as uniform ones: with the usual error all cases take 2.6 times as long.
-            chord_error: 1e-3,
-            ..Settings::default()
-        };
+            chord_error: 1e-3; ..Settings::default());
         let case = Case { formula: join(&formula), pieces, settings };
         let is_proven = holds(&case, &format!("{name} {seed}"));
         if random.least_gap >= RESOLVED {

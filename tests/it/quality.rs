@@ -12,22 +12,9 @@ use rand_pcg::Pcg32;
 struct Analytic<F: Fn(DVec3) -> Jet>(F);
 
 impl<F: Fn(DVec3) -> Jet + Send> Field for Analytic<F> {
-    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        for (p, value) in points.iter().zip(value) {
-            *value = (self.0)(p.as_dvec3()).value as f32;
-        }
-    }
-
-    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        for (k, p) in points.iter().enumerate() {
-            let jet = (self.0)(p.as_dvec3());
-            value[k] = jet.value as f32;
-            gradient[k] = jet.gradient.as_vec3();
-        }
-    }
-
-    fn hessians(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3], _: &mut [Sym3<f32>]) {
-        panic!("the report takes curvature in double precision")
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let jet = (self.0)(p);
+        (jet.value, jet.gradient)
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {

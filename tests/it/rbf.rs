@@ -1,6 +1,7 @@
 //! Tests of fields from points: the fit, its errors, and the evaluation against the sum in double precision.
 
 use glam::{DVec3, Vec3};
+use marching_particles::Report;
 use marching_particles::field::Field;
 use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, RbfData, RbfField};
@@ -9,7 +10,7 @@ use marching_particles::pointcloud::fit::{Fit, FitError, Fitter};
 use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::sampler::{Settings, StopReason};
-use marching_particles::session::{Report, Session};
+use marching_particles::session::Session;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -41,7 +42,7 @@ fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
     let mut session = Session::new();
     session.set_points(fit.data, fit.info, fit.bounds).expect("a field");
     session.start(settings).expect("valid settings");
-    while session.step(10_000).stop_reason.is_none() {}
+    while session.run.step(10_000).stop_reason.is_none() {}
     let report = session.report();
     (session, report)
 }
@@ -251,7 +252,7 @@ fn a_centre_is_an_ordinary_point() {
 fn the_field_is_invariant_under_scaling_and_translation() {
     let cloud = models::cloud("bunny").expect("points");
     let plain = fitted(&cloud).expect("a field");
-    let (_, expected) = sampled(plain.clone(), &Settings { radius_share: 0.01, ..Settings::default() });
+    let (_, expected) = sampled(plain.clone(), &settings!(radius_share: 0.01; ..Settings::default()));
     // Scaling by a power of two keeps every bit.
     let scale = 2.0_f64.powi(-20);
     let small =
@@ -273,7 +274,7 @@ fn the_field_is_invariant_under_scaling_and_translation() {
     let away = DVec3::new(200.0, -150.0, 90.0);
     let far = Cloud { position: cloud.position.iter().map(|&p| p * 0.3 + away).collect(), ..cloud };
     let (_, report) =
-        sampled(fitted(&far).expect("a field"), &Settings { radius_share: 0.01, ..Settings::default() });
+        sampled(fitted(&far).expect("a field"), &settings!(radius_share: 0.01; ..Settings::default()));
     assert_eq!(report.stop_reason, Some(StopReason::Complete));
     let off = report.count.abs_diff(expected.count) as f64 / expected.count as f64;
     assert!(off < 0.03, "{} particles, not about {}", report.count, expected.count);
@@ -282,8 +283,8 @@ fn the_field_is_invariant_under_scaling_and_translation() {
 #[test]
 fn the_models_have_one_closed_component_and_the_joined_ears_a_handle() {
     for (id, euler) in [("bunny", 2), ("bunny-joined", 0), ("rabbit", 2), ("sack-and-hat", 2)] {
-        let (_, report) = sampled(of_model(id), &Settings { radius_share: 0.003, ..Settings::default() });
-        let quality = report.quality.expect("there are particles");
+        let (_, report) = sampled(of_model(id), &settings!(radius_share: 0.003; ..Settings::default()));
+        let quality = report.measures.quality.expect("there are particles");
         assert_eq!(report.stop_reason, Some(StopReason::Complete), "{id}");
         assert_eq!((quality.euler, quality.components), (euler, 1), "{id}");
         assert_eq!(quality.boundary_excluded, 0, "{id}: the surface leaves its box");

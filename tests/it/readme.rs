@@ -1,7 +1,7 @@
 //! Holds the table of settings in the README to the settings, and the compiler that is promised to the one that is used.
 
 use marching_particles::math::shortest_text;
-use marching_particles::sampler::{Condition, Setting, Settings, Value};
+use marching_particles::session::{Condition, Setting, Value, settings};
 use std::path::Path;
 
 const BEGIN: &str =
@@ -46,7 +46,7 @@ fn table() -> String {
     let mut rows = String::from(
         "| Setting | Option | Values | Default | Used if | Meaning |\n| --- | --- | --- | --- | --- | --- |\n",
     );
-    for setting in &Settings::table() {
+    for setting in &settings() {
         let conditions: Vec<String> = setting.when.iter().map(condition).collect();
         rows += &format!(
             "| `{}` | `--{}` | {} | {} | {} | {} |\n",

@@ -1,6 +1,6 @@
 //! The refinement of a coarse front: its figures, its count, and what happens where it cannot be had.
 
-use marching_particles::field::formula::FormulaField;
+use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
@@ -9,22 +9,17 @@ use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Search, Setti
 use marching_particles::topology::Topology;
 
 fn refined(count: u32, seed: u64) -> Settings {
-    Settings { method: Method::Refined, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
+    settings!(method: Method::Refined, size_mode: SizeMode::Count, count, seed; ..Settings::default())
 }
 
-pub(crate) fn sampled(
-    field: &mut FormulaField,
-    bounds: &Bounds,
-    settings: &Settings,
-    budget: u32,
-) -> Sampler {
+pub(crate) fn sampled(field: &mut Formula, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
     let mut sampler = Sampler::new();
     sampler.start(field, bounds, settings).expect("valid settings");
     while sampler.step(field, budget).stop_reason.is_none() {}
     sampler
 }
 
-fn figures(field: &mut FormulaField, bounds: &Bounds, particles: &Particles) -> Figures {
+fn figures(field: &mut Formula, bounds: &Bounds, particles: &Particles) -> Figures {
     let options = quality::Options::default();
     quality::measure(&particles.position, &particles.normal, field, Some(bounds), &options).figures
 }
@@ -77,9 +72,9 @@ fn closed_surfaces_come_out_in_order() {
 fn a_radius_gives_about_as_many_particles_as_the_front() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
     let mut field = surface.field();
-    let settings = Settings { radius_share: 0.006, relax_steps: 0, ..Settings::default() };
+    let settings = settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default());
     let front = sampled(&mut field, &surface.bounds, &settings, 10_000).particles().len();
-    let settings = Settings { method: Method::Refined, ..settings };
+    let settings = settings!(method: Method::Refined; ..settings);
     let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
     let share = sampler.particles().len() as f64 / front as f64;
     assert!((0.95..=1.05).contains(&share), "{} and {front} particles", sampler.particles().len());
@@ -90,7 +85,7 @@ fn a_radius_gives_about_as_many_particles_as_the_front() {
 fn any_cut_into_steps_gives_the_same_particles() {
     let surface = gallery::find("torus").expect("a surface of the gallery");
     let mut field = surface.field();
-    let digest = |field: &mut FormulaField, budget: u32| {
+    let digest = |field: &mut Formula, budget: u32| {
         sampled(field, &surface.bounds, &refined(4_000, 1), budget).particles().digest()
     };
     let expected = digest(&mut field, u32::MAX);
@@ -137,10 +132,10 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
 fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
     let heart = gallery::find("heart").expect("a surface of the gallery");
     let sphere = gallery::find("sphere").expect("a surface of the gallery");
-    let few = Settings { count: 100, ..refined(100, 0) };
+    let few = settings!(count: 100; ..refined(100, 0));
     let is_singular = |refusal| matches!(refusal, Refusal::Bent { .. } | Refusal::Singular { .. });
     let is_few: fn(Refusal) -> bool = |refusal| refusal == Refusal::Few { expected: 100 };
-    let full = Settings { size_mode: SizeMode::Radius, max_particles: 1_000, ..refined(2_000, 0) };
+    let full = settings!(size_mode: SizeMode::Radius, max_particles: 1_000; ..refined(2_000, 0));
     let is_full: fn(Refusal) -> bool = |refusal| refusal == Refusal::Full;
     let cases = [
         (heart, refined(2_000, 0), is_singular as fn(Refusal) -> bool),
@@ -153,16 +148,16 @@ fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
         let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
         let refusal = sampler.counts().refusal;
         assert!(refusal.is_some_and(is_right), "{id}: {refusal:?}");
-        let front = Settings { method: Method::Front, ..settings };
+        let front = settings!(method: Method::Front; ..settings);
         let expected = sampled(&mut field, &surface.bounds, &front, 10_000);
         assert_eq!(sampler.particles().digest(), expected.particles().digest(), "{id}");
     }
 }
 
 /// Beside a sphere of radius 1 one of radius 0.12, which has 1.4 % of the area.
-fn two_spheres() -> (FormulaField, Bounds) {
+fn two_spheres() -> (Formula, Bounds) {
     let formula = "min(x^2 + y^2 + z^2 - 1, (x - 1.5)^2 + y^2 + z^2 - 0.0144) = 0";
-    (FormulaField::parse(formula, &[]).expect("a formula"), Bounds::cube(1.8))
+    (Formula::as_written(formula, &[]).expect("a formula"), Bounds::cube(1.8))
 }
 
 fn on_small_sphere(particles: &Particles) -> usize {
@@ -309,7 +304,7 @@ fn a_refined_run_has_the_mesh_that_it_led_to() {
 #[test]
 fn a_front_has_no_mesh_before_it_is_joined() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let settings = Settings { method: Method::Front, ..refined(1_000, 0) };
+    let settings = settings!(method: Method::Front; ..refined(1_000, 0));
     let sampler = sampled(&mut surface.field(), &surface.bounds, &settings, 10_000);
     assert!(sampler.triangles().is_empty());
 }
@@ -347,8 +342,8 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
     // The middle of an edge of one sphere is nearer to the other one.
     for outer in [1.02, 1.0002] {
         let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
-        let mut field = FormulaField::parse(&text, &[]).expect("a formula");
-        let settings = Settings { method: Method::Refined, radius_share: 0.0077, ..Settings::default() };
+        let mut field = Formula::as_written(&text, &[]).expect("a formula");
+        let settings = settings!(method: Method::Refined, radius_share: 0.0077; ..Settings::default());
         let mut sampler = Sampler::new();
         sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("settings in range");
         let steps = (0..STEPS).take_while(|_| sampler.step(&mut field, 10_000).stop_reason.is_none()).count();

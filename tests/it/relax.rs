@@ -78,7 +78,7 @@ fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f
 fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
     for surface in gallery::SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_share in [0.006, 0.01, 0.015, 0.02, 0.03, 0.05] {
-            let settings = Settings { radius_share, ..Settings::default() };
+            let settings = settings!(radius_share; ..Settings::default());
             let (defined, reported) = energies(surface, &settings);
             let context = format!("{} at {radius_share}: {defined:?}, reported {reported:?}", surface.id);
             // If nearly every particle has a neighbour across a bend that the radius does not resolve, the forces do not
@@ -98,7 +98,7 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
 #[test]
 fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back() {
     let surface = gallery::find("double-torus").expect("a gallery surface");
-    let settings = Settings { radius_share: 0.03, seed: 1, ..Settings::default() };
+    let settings = settings!(radius_share: 0.03, seed: 1; ..Settings::default());
     let run = |budget: u32| {
         let mut field = surface.field();
         let mut sampler = Sampler::new();
@@ -120,7 +120,7 @@ fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back(
 #[test]
 fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particles_are() {
     let surface = gallery::find("ellipsoid").expect("a gallery surface");
-    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let settings = settings!(radius_share: 0.02; ..Settings::default());
     let mut is_amid = 0;
     for units in (1..4_000).step_by(331) {
         let mut field = surface.field();
@@ -155,7 +155,7 @@ fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particl
 fn holes_and_crowded_pairs_shrink() {
     for (id, euler) in smooth() {
         let surface = gallery::find(id).expect("a gallery surface");
-        let settings = Settings { size_mode: SizeMode::Count, count: 14_000, ..Settings::default() };
+        let settings = settings!(size_mode: SizeMode::Count, count: 14_000; ..Settings::default());
         let (before, sampler) = before_and_after(surface, &settings);
         let (was, is) = (figures(surface, &before), figures(surface, sampler.particles()));
         let context = format!("{id}, seed 0\nbefore {was:?}\nafter  {is:?}");
@@ -172,7 +172,7 @@ fn holes_and_crowded_pairs_shrink() {
 #[test]
 fn relaxed_particles_stay_on_the_surface_and_in_the_box() {
     for surface in gallery::SURFACES {
-        let settings = Settings { radius_share: 0.012, ..Settings::default() };
+        let settings = settings!(radius_share: 0.012; ..Settings::default());
         let (_, sampler) = before_and_after(surface, &settings);
         let mut field = surface.field();
         let mut residual = Vec::new();

@@ -57,7 +57,7 @@ fn glsl(name: &str, module: &Module, info: &ModuleInfo, entry: &naga::EntryPoint
 fn every_particle_that_a_run_may_place_has_room_on_a_device_that_promises_least() {
     /// Bytes of a buffer that every device takes.
     const LEAST_BUFFER: usize = 256 << 20;
-    let most = COUNT_ROOM * Settings::setting("max_particles").accepted().end();
+    let most = COUNT_ROOM * Settings::range("max_particles").expect("it is a number").end();
     assert!(most < f64::from(MOST_RECORDS), "{most} particles, room for {MOST_RECORDS}");
     let largest = size_of::<FaceRecord>().max(size_of::<FaceTint>()).max(size_of::<Record>());
     assert!(CHUNK as usize * largest <= LEAST_BUFFER / 8, "a chunk takes {} bytes", CHUNK as usize * largest);

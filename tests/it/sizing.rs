@@ -11,13 +11,10 @@ use marching_particles::spatial::CellGrid;
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
 
 fn adaptive(count: u32, relax_steps: u32) -> Settings {
-    Settings {
-        sampling: Sampling::Adaptive,
+    settings!(sampling: Sampling::Adaptive,
         size_mode: SizeMode::Count,
         count,
-        relax_steps,
-        ..Settings::default()
-    }
+        relax_steps; ..Settings::default())
 }
 
 fn sampled(surface: &Surface, settings: &Settings) -> Sampler {
@@ -64,7 +61,7 @@ fn neighbours_never_differ_by_more_than_the_grading_allows() {
         for (radius_law, grading, relax_steps) in
             [(LAWS[0], 0.2, 10), (LAWS[1], 0.1, 3), (LAWS[2], 0.2, 3), (LAWS[0], 0.1, 0)]
         {
-            let settings = Settings { radius_law, grading, ..adaptive(4_000, relax_steps) };
+            let settings = settings!(radius_law, grading; ..adaptive(4_000, relax_steps));
             let sampler = sampled(surface, &settings);
             let particles = sampler.particles();
             let neighbours = pairs(particles, 1.15);
@@ -92,12 +89,9 @@ fn neighbours_never_differ_by_more_than_the_grading_allows() {
 fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
     for id in ["ellipsoid", "torus", "tanglecube", "gyroid"] {
         let surface = gallery::find(id).expect("in the gallery");
-        let settings = Settings {
-            sampling: Sampling::Adaptive,
+        let settings = settings!(sampling: Sampling::Adaptive,
             chord_error: 4e-4,
-            radius_min_share: 0.002,
-            ..Settings::default()
-        };
+            radius_min_share: 0.002; ..Settings::default());
         let sampler = sampled(surface, &settings);
         let particles = sampler.particles();
         let mut curvature = vec![Curvature::default(); particles.len()];
@@ -122,7 +116,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
 fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface() {
     for surface in SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_law in LAWS {
-            let settings = Settings { radius_law, ..adaptive(4_000, 10) };
+            let settings = settings!(radius_law; ..adaptive(4_000, 10));
             let sampler = sampled(surface, &settings);
             let energy = sampler.energy();
             assert_eq!(energy.len(), 11, "{} {radius_law:?}", surface.id);
@@ -191,12 +185,9 @@ fn settings_out_of_range_are_refused_by_name() {
         other => panic!("{other:?}"),
     };
     let default = Settings::default();
-    assert_eq!(bad(Settings { chord_error: 0.0, ..default }), "chord_error");
-    assert_eq!(bad(Settings { curvature_scale: f64::NAN, ..default }), "curvature_scale");
-    assert_eq!(bad(Settings { grading: 1.0, ..default }), "grading");
-    assert_eq!(bad(Settings { radius_max_share: 1.0, ..default }), "radius_max_share");
-    assert_eq!(
-        bad(Settings { radius_min_share: 0.1, radius_max_share: 0.05, ..default }),
-        "radius_min_share"
-    );
+    assert_eq!(bad(settings!(chord_error: 0.0; ..default)), "chord_error");
+    assert_eq!(bad(settings!(curvature_scale: f64::NAN; ..default)), "curvature_scale");
+    assert_eq!(bad(settings!(grading: 1.0; ..default)), "grading");
+    assert_eq!(bad(settings!(radius_max_share: 1.0; ..default)), "radius_max_share");
+    assert_eq!(bad(settings!(radius_min_share: 0.1, radius_max_share: 0.05; ..default)), "radius_min_share");
 }

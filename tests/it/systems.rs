@@ -18,19 +18,16 @@ fn run(surface: &str, settings: &Settings) -> Lesson {
 }
 
 fn witkin_heckbert(radius: f64) -> Settings {
-    Settings { method: Method::WitkinHeckbert, radius, ..Settings::default() }
+    settings!(method: Method::WitkinHeckbert, radius; ..Settings::default())
 }
 
 fn forces() -> Settings {
-    Settings {
-        method: Method::Forces,
+    settings!(method: Method::Forces,
         sampling: Sampling::Adaptive,
         law: LawKind::MaxCurvature,
         law_scale: 0.12,
         radius_min: 0.03,
-        radius_max: 0.12,
-        ..Settings::default()
-    }
+        radius_max: 0.12; ..Settings::default())
 }
 
 /// Distance from each particle to the nearest of its side, in r_i + r_j.
@@ -74,7 +71,7 @@ fn one_particle_divides_until_the_surface_is_covered_and_all_is_at_rest() {
 
 #[test]
 fn lone_particle_of_witkin_and_heckbert_grows_to_half_the_diameter_and_divides() {
-    let mut run = run("sphere", &Settings { max_iterations: 30, ..witkin_heckbert(0.05) });
+    let mut run = run("sphere", &settings!(max_iterations: 30; ..witkin_heckbert(0.05)));
     let events = run.events(0, u32::MAX);
     let divided = events.iter().position(|event| matches!(event, Event::Divided { .. })).expect("a fission");
     let radii: Vec<f64> = events[..divided]

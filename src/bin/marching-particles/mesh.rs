@@ -1,6 +1,6 @@
 //! What is told of the triangles of `--mesh`.
 
-use marching_particles::session::MeshAnswer;
+use marching_particles::MeshAnswer;
 use serde::Serialize;
 
 /// What the output tells of a mesh.

@@ -6,7 +6,9 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use marching_particles::math::{Bounds, grouped, shortest_text};
-use marching_particles::sampler::{COUNT_ROOM, Kind, Setting, Settings, SettingsError, Value};
+use marching_particles::sampler::COUNT_ROOM;
+use marching_particles::session::{Kind, Setting, Value, settings};
+use marching_particles::{Settings, SettingsError};
 use serde_json::{Map, Value as Json};
 
 /// The option that asks for sizes that follow the curvature, and the setting that it chooses a value of.
@@ -51,7 +53,7 @@ impl Sampling {
 
 impl Args for Sampling {
     fn augment_args(command: Command) -> Command {
-        let settings = Settings::table();
+        let settings = settings();
         command.args(
             settings.iter().filter(|setting| ![SIZE_MODE, BOX_MODE].contains(&setting.name)).map(option),
         )
@@ -71,7 +73,7 @@ impl FromArgMatches for Sampling {
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
         let missing = |name: &str| Error::raw(ErrorKind::InvalidValue, format!("--{name} has no value"));
-        for setting in Settings::table() {
+        for setting in settings() {
             let name = setting.name;
             if [SIZE_MODE, BOX_MODE].contains(&name)
                 || matches.value_source(name) != Some(ValueSource::CommandLine)
@@ -159,7 +161,7 @@ fn percent(share: f64) -> String {
 /// Why settings are refused, by the name of the option and with shares as they are typed.
 pub(crate) fn refusal(error: &SettingsError) -> String {
     let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
-    let setting = Settings::table().into_iter().find(|setting| setting.name == *name);
+    let setting = settings().into_iter().find(|setting| setting.name == *name);
     let option = match setting {
         Some(setting) => setting.option(),
         // Of the other method's settings only two have an option.

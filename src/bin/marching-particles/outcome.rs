@@ -1,10 +1,10 @@
 //! Result of a run.
 
 use crate::mesh::Mesh;
+use marching_particles::Report;
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
-use marching_particles::session::Report;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

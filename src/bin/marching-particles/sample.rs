@@ -3,20 +3,19 @@
 use crate::arguments::{BoxChoice, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
 use crate::mesh::Mesh;
-use crate::options::{Sampling, refusal};
+use crate::options::refusal;
 use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
-use marching_particles::export::{self, Format, MeshFormat};
-use marching_particles::extent::Reach;
-use marching_particles::field::formula::Parameter;
-use marching_particles::field::gallery;
-use marching_particles::field::model;
-use marching_particles::math::Bounds;
+use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
-use marching_particles::sampler::{BoxMode, COUNT_ROOM, Phase, Progress, Settings, StopReason};
-use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
+use marching_particles::sampler::COUNT_ROOM;
+use marching_particles::{
+    Bounds, Error, Field, Format, Formula, FormulaError, MeshFormat, Parameter, Phase, Reach, Run, Settings,
+    StopReason, gallery,
+};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -28,118 +27,78 @@ const BUDGET: u32 = 256;
 /// Fixed box of a formula.
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 
-/// A session with the requested surface, whose run has begun.
-struct Begun {
-    session: Session,
-    answer: FieldAnswer,
-    settings: Settings,
-    predicted_count: u64,
-    seconds: Seconds,
-}
-
-/// Sets the field and begins the run.
-fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Result<Begun, Failure> {
-    let mut session = Session::new();
-    let mut seconds = Seconds::default();
-    let clock = Clock::start();
-    let answer = match fit(surface, quiet)? {
-        Some(fit) => {
-            seconds.points = clock.seconds();
-            let bounds = surface.bounds.and_then(BoxChoice::given).unwrap_or(fit.bounds);
-            session
-                .set_points(fit.data, fit.info, bounds)
-                .map_err(|error| Failure::Usage(error.to_string()))?
-        }
-        None => set_field(&mut session, surface)?,
-    };
-    let clock = Clock::start();
-    let (answer, settings) = fit_box(&mut session, surface, sampling, answer);
-    let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
-    seconds.seeding += clock.seconds();
-    Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
-}
-
-/// Finds the box, and the settings in it: lengths are shares of its diagonal, and it has room for the largest particles.
-fn fit_box(
-    session: &mut Session,
-    surface: &Surface,
-    sampling: &Sampling,
-    mut answer: FieldAnswer,
-) -> (FieldAnswer, Settings) {
-    /// Rounds in which both follow each other.
-    const ROUNDS: u32 = 4;
-    let box_mode = match surface.bounds {
-        None | Some(BoxChoice::Fit) => BoxMode::Fit,
-        Some(BoxChoice::Fixed | BoxChoice::Given(_)) => BoxMode::Fixed,
-    };
-    let settings_in = |answer: &FieldAnswer| Settings { box_mode, ..sampling.settings(&answer.bounds) };
-    for _ in 0..ROUNDS {
-        let settings = settings_in(&answer);
-        while session.fit(&settings, false, u32::MAX).is_none() {}
-        answer = session.answer();
-    }
-    let settings = settings_in(&answer);
-    (answer, settings)
-}
-
-/// Name of the surface, if it has one.
-fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
-    surface.surface.clone().filter(|_| answer.model.is_some()).or(answer.surface.map(str::to_owned))
-}
-
-/// Joins the particles to a mesh.
-fn joined(session: &mut Session) -> Mesh {
-    loop {
-        if let Some(mesh) = session.join(u32::MAX) {
-            return Mesh::new(&mesh);
-        }
-    }
+/// The surface that was asked for.
+struct Chosen {
+    field: Box<dyn Field>,
+    /// Its name, if it has one.
+    name: Option<String>,
+    formula: String,
+    parameters: BTreeMap<String, f64>,
+    /// Report of the fit, for a surface through points.
+    model: Option<ModelInfo>,
+    /// The box to sample in, where it is not to be fitted.
+    bounds: Option<Bounds>,
+    /// Whether that box was chosen for the surface, so that it may cut it.
+    has_own_box: bool,
 }
 
 pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
-    let begun = begin(&arguments.surface, &arguments.sampling, arguments.quiet)?;
-    let Begun { mut session, answer, settings, predicted_count, mut seconds } = begun;
+    let mut seconds = Seconds::default();
+    let clock = Clock::start();
+    let Chosen { field, name, formula, parameters, model, bounds, has_own_box } =
+        choose(&arguments.surface, arguments.quiet)?;
+    if model.is_some() {
+        seconds.points = clock.seconds();
+    }
+    let clock = Clock::start();
+    let settings_in = |fitted: &Bounds| {
+        let mut settings = arguments.sampling.settings(&bounds.unwrap_or(*fitted));
+        settings.bounds = bounds;
+        settings
+    };
+    let mut run = Run::start_with(field, settings_in).map_err(refused)?;
+    seconds.seeding += clock.seconds();
+    let settings = settings_in(&run.bounds());
+    let predicted_count = run.start_report().predicted_count;
     let bar = bar(arguments.quiet);
-    let last = sample(&mut session, &mut seconds, &bar);
+    step_to_end(&mut run, &mut seconds, &bar);
     bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
-    let count = session.count();
-    if count == 0 {
-        let reason = match (answer.reach, last.stop_reason) {
-            (Some(Reach::Nowhere), Some(StopReason::NoSurface)) => {
-                "there is no surface within ±10,000".to_owned()
-            }
-            _ => last.message.unwrap_or_else(|| "no particle could be placed".to_owned()),
-        };
-        return Err(Failure::Nothing(reason));
-    }
-
+    let reach = run.reach();
     let clock = Clock::start();
-    let report = session.report();
+    let sample = run.finish().map_err(|error| match error {
+        Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
+            Failure::Nothing("there is no surface within ±10,000".to_owned())
+        }
+        error => Failure::Nothing(error.to_string()),
+    })?;
     seconds.quality = clock.seconds();
     let clock = Clock::start();
-    let mesh = (!mesh_formats.is_empty()).then(|| joined(&mut session));
+    let mesh = (!mesh_formats.is_empty()).then(|| Mesh::new(&sample.mesh().into()));
     seconds.mesh = clock.seconds();
     let clock = Clock::start();
-    let (particles, measured) = (session.particles(), session.measured());
     for (path, format) in arguments.out.iter().zip(formats) {
-        write_file(path, |out| export::write(format, particles, measured, out))?;
+        write_file(path, |out| sample.write(format, out))?;
     }
     for (path, format) in arguments.mesh.iter().zip(mesh_formats) {
-        write_file(path, |out| export::write_mesh(format, particles, measured, session.triangles(), out))?;
+        write_file(path, |out| sample.write_mesh(format, out))?;
     }
     seconds.writing = clock.seconds();
 
+    let mut report = sample.report().clone();
+    if has_own_box {
+        report.cut = None;
+    }
     let capped = report.stop_reason == Some(StopReason::Cap);
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
-        surface: name(&arguments.surface, &answer),
-        model: answer.model,
-        formula: answer.formula,
-        parameters: answer.parameters.into_iter().map(|p| (p.name, p.value)).collect(),
-        bounds: answer.bounds,
+        surface: name,
+        model,
+        formula,
+        parameters,
+        bounds: sample.bounds(),
         settings,
         predicted_count,
         report,
@@ -221,42 +180,76 @@ fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
     Ok(fit)
 }
 
-fn set_field(session: &mut Session, arguments: &Surface) -> Result<FieldAnswer, Failure> {
-    let of_surface = arguments.surface.as_deref().and_then(gallery::find);
-    // A formula of the user's has neither the parameters nor the box of the default surface.
-    let declare = match of_surface {
-        Some(_) => Vec::new(),
-        None => arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
+/// The surface that the arguments name.
+fn choose(arguments: &Surface, quiet: bool) -> Result<Chosen, Failure> {
+    let given = arguments.bounds.and_then(BoxChoice::given);
+    if let Some(fit) = fit(arguments, quiet)? {
+        return Ok(Chosen {
+            field: Box::new(fit.field()),
+            name: arguments.surface.clone(),
+            formula: String::new(),
+            parameters: BTreeMap::new(),
+            bounds: given.or(Some(fit.bounds)),
+            model: Some(fit.info),
+            has_own_box: true,
+        });
+    }
+    let named = match (&arguments.surface, &arguments.formula) {
+        (Some(id), _) => Some(gallery::find(id).ok_or_else(|| Failure::Usage(unknown_surface(id)))?),
+        (None, Some(_)) => None,
+        (None, None) => gallery::SURFACES.first(),
     };
-    let own = arguments.formula.is_some() && of_surface.is_none();
-    let request = FieldRequest {
-        surface: arguments.surface.clone(),
-        formula: arguments.formula.clone(),
-        parameters: arguments.parameters.iter().cloned().collect(),
-        declare: if own { declare } else { Vec::new() },
+    let text = arguments.formula.as_deref().or(named.map(|surface| surface.formula)).unwrap_or_default();
+    let formula = formula(text, named, &arguments.parameters)?;
+    // A formula of the user's has neither the name nor the box of the surface that it replaces.
+    let surface = named.filter(|surface| surface.formula == text);
+    let own = surface.map(|surface| surface.bounds);
+    Ok(Chosen {
+        name: surface.map(|surface| surface.id.to_owned()),
+        formula: text.to_owned(),
+        parameters: formula.parameters().iter().map(|p| (p.name.clone(), p.value)).collect(),
+        field: Box::new(formula),
+        model: None,
         bounds: match arguments.bounds {
             Some(BoxChoice::Given(bounds)) => Some(bounds),
-            Some(BoxChoice::Fixed) if own => Some(FORMULA_BOX),
-            _ => None,
+            Some(BoxChoice::Fixed) => Some(named.map_or(FORMULA_BOX, |surface| surface.bounds)),
+            Some(BoxChoice::Fit) | None => own,
         },
+        has_own_box: own.is_some() && given.is_none(),
+    })
+}
+
+/// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.
+fn formula(
+    text: &str,
+    named: Option<&gallery::Surface>,
+    values: &[(String, f64)],
+) -> Result<Formula, Failure> {
+    let declared = match named {
+        Some(surface) => surface.declared(),
+        None => values.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
     };
-    let answer = session.set_field(&request).map_err(|error| match error {
-        FieldError::Formula(error) => {
-            Failure::Formula { text: arguments.formula.clone().unwrap_or_default(), error: Box::new(error) }
-        }
-        FieldError::UnknownSurface(id) => Failure::Usage(unknown_surface(&id)),
-        FieldError::Box | FieldError::Points(_) => Failure::Usage(error.to_string()),
-    })?;
-    for (name, _) in &arguments.parameters {
-        if !answer.parameters.iter().any(|parameter| parameter.name == *name) {
-            let known: Vec<&str> = answer.parameters.iter().map(|p| p.name.as_str()).collect();
+    let wrong = |error: FormulaError| Failure::Formula { text: text.to_owned(), error: Box::new(error) };
+    let mut formula = Formula::as_written(text, &declared).map_err(wrong)?.without_powers();
+    for (name, value) in values {
+        if !formula.parameters().iter().any(|parameter| parameter.name == *name) {
+            let known: Vec<&str> = formula.parameters().iter().map(|p| p.name.as_str()).collect();
             let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
             return Err(Failure::Usage(format!(
                 "the formula has no parameter `{name}`; its parameters: {known}"
             )));
         }
+        formula = formula.with(name, *value).map_err(wrong)?;
     }
-    Ok(answer)
+    Ok(formula)
+}
+
+/// Why a run was refused, by the names of the options.
+fn refused(error: Error) -> Failure {
+    match error {
+        Error::Settings(error) => Failure::Usage(refusal(&error)),
+        error => Failure::Nothing(error.to_string()),
+    }
 }
 
 fn unknown_surface(id: &str) -> String {
@@ -265,15 +258,15 @@ fn unknown_surface(id: &str) -> String {
     format!("there is no surface `{id}`; known are {}", known.join(", "))
 }
 
-/// Runs the session to its end and adds the times of the phases to `seconds`.
-fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
+/// Steps a run to its end and adds the times of the phases to `seconds`.
+fn step_to_end(run: &mut Run<Box<dyn Field>>, seconds: &mut Seconds, bar: &ProgressBar) {
     /// Steps between two updates of the progress bar.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
     let mut steps = 0_u32;
     loop {
         let clock = Clock::start();
-        let progress = session.step(BUDGET);
+        let progress = run.step(BUDGET);
         let spent = clock.seconds();
         match phase {
             Phase::Relaxation => seconds.relaxation += spent,
@@ -282,7 +275,7 @@ fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Pr
             _ => seconds.seeding += spent,
         }
         if progress.stop_reason.is_some() || progress.phase == Phase::Done {
-            return progress;
+            return;
         }
         phase = progress.phase;
         if steps.is_multiple_of(UPDATE) {

@@ -2,9 +2,10 @@
 
 use crate::mesh::Mesh;
 use crate::outcome::Outcome;
+use marching_particles::Cut;
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{grouped, shortest_text};
-use marching_particles::session::{Cut, ReportRow, describe};
+use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -28,8 +29,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         out,
         "{} particles of radius {:.6} in {} levels",
         grouped(report.count),
-        report.radius,
-        report.levels
+        report.sizes.radius,
+        report.growth.levels
     )?;
     let s = &outcome.seconds;
     if outcome.model.is_some() {
@@ -66,7 +67,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     }
     let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
     let of_mesh = outcome.mesh.iter().flat_map(mesh_warnings);
-    for warning in of_points.chain(&report.warnings).cloned().chain(of_mesh) {
+    let of_run = report.warnings.iter().map(ToString::to_string);
+    for warning in of_points.cloned().chain(of_run).chain(of_mesh) {
         writeln!(out, "warning: {warning}")?;
     }
     for file in &outcome.files {

@@ -44,7 +44,7 @@ pub enum FormulaErrorKind {
     BadParameter,
 }
 
-/// Error of [`FormulaField::parse`](super::FormulaField::parse) and of the other operations on formulas.
+/// Error of [`Formula::as_written`](super::Formula::as_written) and of the other operations on formulas.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct FormulaError {

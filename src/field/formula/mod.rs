@@ -111,23 +111,23 @@ impl Parameter {
 ///
 /// ```
 /// use marching_particles::field::Field;
-/// use marching_particles::field::formula::FormulaField;
+/// use marching_particles::field::formula::Formula;
 ///
-/// let mut field = FormulaField::parse("x^2/a^2 + y^2 + z^2 = 1", &[])?;
+/// let mut field = Formula::as_written("x^2/a^2 + y^2 + z^2 = 1", &[])?;
 /// assert_eq!(field.auto(), ["a"]);
 /// field.set_parameter("a", 2.0)?;
 /// let jet = field.jet((2.0, 0.0, 0.0).into());
 /// assert_eq!((jet.value, jet.gradient.x), (0.0, 1.0));
 ///
-/// let error = FormulaField::parse("x^2 + sin y z", &[]).unwrap_err();
+/// let error = Formula::as_written("x^2 + sin y z", &[]).unwrap_err();
 /// assert_eq!((error.span.clone(), error.suggestion.as_deref()), (6..11, Some("sin(y)")));
 /// # Ok::<(), marching_particles::field::formula::FormulaError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct FormulaField {
+pub struct Formula {
     text: String,
     equation: Equation,
-    /// Equation of the same surface that is evaluated instead, if [`FormulaField::without_powers`] has found one.
+    /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
     simplified: Option<Equation>,
     parameters: Vec<Parameter>,
     /// Names of the parameters that were not declared.
@@ -149,8 +149,29 @@ pub struct FormulaField {
     boxes: Vec<Bounds>,
 }
 
-impl FormulaField {
-    /// Parses and compiles a formula.
+impl Formula {
+    /// The field of a formula, whose unknown names become parameters: see [`Formula::with`].
+    ///
+    /// Powers and repeated factors stand once in what is evaluated, which has the same surface and a gradient on it.
+    ///
+    /// # Errors
+    ///
+    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`.
+    pub fn parse(text: &str) -> Result<Self, FormulaError> {
+        Ok(Self::as_written(text, &[])?.without_powers())
+    }
+
+    /// The same field with another value of a parameter. What [`Formula::parse`] finds has the value 1.
+    ///
+    /// # Errors
+    ///
+    /// [`FormulaErrorKind::BadParameter`] if there is no such parameter or the value is not finite.
+    pub fn with(mut self, name: &str, value: f64) -> Result<Self, FormulaError> {
+        self.set_parameter(name, value)?;
+        Ok(self)
+    }
+
+    /// Parses and compiles a formula, to be evaluated as it is written.
     ///
     /// The field's parameters are those of `declared` that occur in the text, in the order of declaration, followed by
     /// the unknown names as automatic parameters, in order of appearance.
@@ -159,7 +180,7 @@ impl FormulaField {
     ///
     /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an
     /// error are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
-    pub fn parse(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
+    pub fn as_written(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
         let (parsed, automatic) =
@@ -202,12 +223,6 @@ impl FormulaField {
             self.compiled = compiled;
         }
         self
-    }
-
-    /// Text of the equation that is evaluated in place of the formula, if [`FormulaField::without_powers`] found one.
-    #[must_use]
-    pub fn evaluated_as(&self) -> Option<String> {
-        self.simplified.as_ref().map(display::plain_equation)
     }
 
     /// Text that was parsed.
@@ -253,12 +268,6 @@ impl FormulaField {
         self.compiled.is_constant()
     }
 
-    /// Number of operations that an evaluation of f takes.
-    #[must_use]
-    pub fn operations(&self) -> usize {
-        self.compiled.value_program.instructions.len()
-    }
-
     /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the
     /// formula does not use is accepted and has no effect.
     ///
@@ -281,14 +290,6 @@ impl FormulaField {
         self.values[index] = value;
         self.compiled.set_parameters(&self.values);
         Ok(())
-    }
-
-    /// Counts the points and boxes that the methods of [`Field`] take from `origin`.
-    ///
-    /// With another origin than zero the batched methods compute in double precision, which takes longer: the coordinates of the
-    /// formula have more digits than single precision holds.
-    pub fn set_origin(&mut self, origin: DVec3) {
-        self.origin = origin;
     }
 
     /// Whether the batched methods compute in double precision.
@@ -427,7 +428,7 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
     Some((meant.to_owned(), message))
 }
 
-impl Field for FormulaField {
+impl Field for Formula {
     fn periods(&self) -> [Option<f64>; 3] {
         let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
         [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
@@ -480,6 +481,11 @@ impl Field for FormulaField {
         eval::run(self.compiled.hessian_program(&self.values), &mut self.scratch, points, &mut sink);
     }
 
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let jet = self.jet(p);
+        (jet.value, jet.gradient)
+    }
+
     fn jet(&mut self, p: DVec3) -> Jet {
         let jet = self.compiled.jet(&self.values, self.place(p), &mut self.jets);
         self.double.map_or(jet, |scale| double::scaled(jet, scale))
@@ -496,9 +502,24 @@ impl Field for FormulaField {
     fn origin(&self) -> DVec3 {
         self.origin
     }
+
+    /// With another origin than zero the batched methods compute in double precision, which takes longer: the coordinates of the
+    /// formula have more digits than single precision holds.
+    fn set_origin(&mut self, origin: DVec3) {
+        self.origin = origin;
+    }
+
+    /// The equation that [`Formula::without_powers`] has found.
+    fn sampled_as(&self) -> Option<String> {
+        self.simplified.as_ref().map(display::plain_equation)
+    }
 }
 
-impl Bounded for FormulaField {
+impl Bounded for Formula {
+    fn operations(&mut self) -> usize {
+        self.compiled.value_program.instructions.len()
+    }
+
     fn factors(&mut self) -> usize {
         self.compiled.factors(&self.values).len()
     }

@@ -3,11 +3,11 @@
 use super::graph::Graph;
 use super::operations::{Binary, Unary};
 use super::program::{Op, Program};
-use super::{FormulaField, build, derivative, parse};
+use super::{Formula, build, derivative, parse};
 use crate::field::{Field as _, gallery};
 
-fn compiled(text: &str) -> FormulaField {
-    FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
+fn compiled(text: &str) -> Formula {
+    Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
 }
 
 fn operations(program: &Program) -> Vec<Op> {

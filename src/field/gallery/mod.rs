@@ -6,7 +6,7 @@ mod open;
 mod periodic;
 mod singular;
 
-use super::formula::{FormulaField, Parameter};
+use super::formula::{Formula, Parameter};
 use crate::math::Bounds;
 
 /// A parameter of a gallery surface.
@@ -67,7 +67,7 @@ pub struct Group {
 }
 
 impl Surface {
-    /// The parameters in the form that [`FormulaField::parse`] takes.
+    /// The parameters in the form that [`Formula::as_written`] takes.
     #[must_use]
     pub fn declared(&self) -> Vec<Parameter> {
         self.parameters
@@ -89,8 +89,8 @@ impl Surface {
     ///
     /// Never: a test parses every formula of the gallery.
     #[must_use]
-    pub fn field(&self) -> FormulaField {
-        FormulaField::parse(self.formula, &self.declared())
+    pub fn field(&self) -> Formula {
+        Formula::as_written(self.formula, &self.declared())
             .unwrap_or_else(|error| panic!("gallery surface `{}`: {error}", self.id))
     }
 }

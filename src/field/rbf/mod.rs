@@ -70,6 +70,11 @@ impl Field for RbfField {
         self.tree.hessians(&self.data, points, &mut value[..n], &mut gradient[..n], &mut hessian[..n]);
     }
 
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let jet = self.data.jet(p);
+        (jet.value, jet.gradient)
+    }
+
     fn jet(&mut self, p: DVec3) -> Jet {
         self.data.jet(p)
     }

@@ -83,3 +83,18 @@ pub enum Doubt {
         position: [f64; 3],
     },
 }
+
+impl Doubt {
+    /// The same doubt with its place, if it has one, where `to` puts it.
+    pub(crate) fn moved(mut self, to: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        match &mut self {
+            Self::NoBounds | Self::Unfinished => {}
+            Self::Unresolved { position, .. }
+            | Self::Cells { position, .. }
+            | Self::Witnesses { position, .. } => {
+                *position = to(*position);
+            }
+        }
+        self
+    }
+}

@@ -117,7 +117,7 @@ pub(crate) fn nearest(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
 
     #[test]
     fn the_distance_of_a_near_sheet_is_found_down_to_a_billionth() {
@@ -127,7 +127,7 @@ mod tests {
                 (format!("(z-0.3)*(z-0.3-{gap})*(z-0.3-{})", 2.0 * gap), Some(2.0 * gap)),
                 (format!("(z-0.3)^2-{gap}*(z-0.3)"), None),
             ] {
-                let mut field = FormulaField::parse(&formula, &[]).expect("a formula");
+                let mut field = Formula::as_written(&formula, &[]).expect("a formula");
                 // From beside all sheets, as far as a particle may be.
                 let found = nearness(&mut field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
                     .unwrap_or_else(|| panic!("{formula}"));
@@ -146,7 +146,7 @@ mod tests {
     fn where_one_sheet_is_alone_none_is_near() {
         for formula in ["z-0.3", "x^2+y^2+z^2-0.14", "1-cos(z-0.3)", "exp(40*(z-0.3))-1", "(z-0.3)*(z-0.31)"]
         {
-            let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+            let mut field = Formula::as_written(formula, &[]).expect("a formula");
             assert_eq!(nearness(&mut field, DVec3::new(0.1, 0.2, 0.3), 2e-3), None, "{formula}");
         }
     }

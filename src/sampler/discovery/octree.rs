@@ -650,14 +650,14 @@ fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
 
     #[test]
     fn a_cell_has_the_same_fate_in_a_batch_as_alone() {
         // The search of one factor, in which small spheres lie about a large one.
         let text =
             "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
-        let mut field = FormulaField::parse(text, &[]).expect("a formula");
+        let mut field = Formula::as_written(text, &[]).expect("a formula");
         let begun = || {
             let mut octree = Octree { factors: 1, most: MOST_CELLS, ..Octree::default() };
             octree.begin(true, &Bounds::cube(1.0));
@@ -665,7 +665,7 @@ mod tests {
             octree
         };
         // All that visiting the cells leads to, and the cells of the next level among it.
-        let visited = |field: &mut FormulaField, cells: &[Cell]| {
+        let visited = |field: &mut Formula, cells: &[Cell]| {
             let mut octree = begun();
             octree.search.level = cells.to_vec();
             octree.visit(field, 0..cells.len());

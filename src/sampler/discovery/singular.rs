@@ -250,7 +250,7 @@ fn along(second: &Sym3<Interval>, d: DVec3) -> Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
 
     #[test]
     fn boxes_without_an_extremum_are_told_by_the_gradient_of_either_sign_or_by_a_saddle() {
@@ -279,7 +279,7 @@ mod tests {
             // Unbounded above at the plane that goes through the first box: not known to be continuous.
             ("x + 1/y", [false, true, true]),
         ] {
-            let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+            let mut field = Formula::as_written(formula, &[]).expect("a formula");
             let mut out = [false; 3];
             has_no_extremum(&mut field, 0, &boxes, &mut out);
             assert_eq!(out, expected, "{formula}");

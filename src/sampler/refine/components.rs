@@ -405,7 +405,7 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::formula::FormulaField;
+    use crate::field::formula::Formula;
     use crate::particles::Slots;
     use crate::sampler::probe::ProbeMemory;
 
@@ -424,7 +424,7 @@ mod tests {
 
     #[test]
     fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
-        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let mut field = Formula::as_written("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let mut memory = ProbeMemory::default();
         let mut probe = Probe::new(&mut field, &mut memory);
         let bounds = Bounds::cube(1.5);

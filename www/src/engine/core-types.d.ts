@@ -917,10 +917,41 @@ export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 export type Report = {
   /** Number of particles. */
   count: number,
+  /** Particles with a child that fell outside of the box. */
+  border: number,
+  /** Why there are such particles. */
+  cut: Cut | null,
+  /** Why the run ended. */
+  stop_reason: StopReason | null,
+  /** What the user should know. */
+  warnings: Array<string>,
+  /** Digest of the particles, 16 hexadecimal digits. */
+  digest: string,
+  /** Repulsion radius of the run; with adaptive sampling the one at which as many particles of equal radius would cover the
+  * surface. */
+  radius: number,
+  /** Repulsion radius of the smallest particle; 0 without particles. */
+  radius_min: number,
+  /** Repulsion radius of the largest particle. */
+  radius_max: number,
   /** Number of generation levels. */
   levels: number,
+  /** Particles per generation level. */
+  level_counts: Array<number>,
   /** Fronts started, each from a seed of its own. */
   components_seeded: number,
+  /** Particles placed in gaps between fronts. */
+  gaps_filled: number,
+  /** Number of proposed children by fate. */
+  fates: FateCounts,
+  /** Field evaluations of the whole run. */
+  evaluations: number,
+  /** Field evaluations of the front per particle. */
+  evaluations_per_particle: number,
+  /** Times that a coarse front was refined; none where it was not, or the front stands. */
+  refined_levels: number | null,
+  /** Energy per particle before the first relaxation step and after each; none where nothing was relaxed. */
+  energy: Array<number> | null,
   /** Number of components at this radius: those of the graph of natural neighbours of the particles. */
   components: number,
   /** Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
@@ -933,39 +964,9 @@ export type Report = {
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,
-  /** Particles placed in gaps between fronts. */
-  gaps_filled: number,
-  /** Repulsion radius. */
-  radius: number,
-  /** Repulsion radius of the smallest particle; 0 without particles. */
-  radius_min: number,
-  /** Repulsion radius of the largest particle. */
-  radius_max: number,
-  /** Field evaluations of the whole run. */
-  evaluations: number,
-  /** Field evaluations of the front per particle. */
-  evaluations_per_particle: number,
-  /** Number of proposed children by fate. */
-  fates: FateCounts,
-  /** Particles with a child that fell outside of the box. */
-  border: number,
-  /** Why there are such particles, unless the box was chosen for the surface. */
-  cut: Cut | null,
-  /** Times that a coarse front was refined; none where it was not, or the front stands. */
-  refined_levels: number | null,
-  /** Why the run ended. */
-  stop_reason: StopReason | null,
-  /** Things the user should know, in words. */
-  warnings: Array<string>,
-  /** Particles per generation level. */
-  level_counts: Array<number>,
-  /** Energy per particle before the first relaxation step and after each; none where nothing was relaxed. */
-  energy: Array<number> | null,
-  /** Digest of the particles, 16 hexadecimal digits. */
-  digest: string,
-  /** Quality now. */
+  /** Quality now; none without particles. */
   quality: Figures | null,
-  /** Quality after the front, before the relaxation. */
+  /** Quality after the front, before the relaxation; none where nothing was relaxed. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances. */
   nearest_histogram: Histogram,
@@ -1020,7 +1021,7 @@ export type Search = "proven" | "searched";
 
 /** A setting of a run. */
 export type Setting = {
-  /** Name in [`Settings`](super::Settings). */
+  /** Name in [`Settings`]. */
   name: string,
   /** Name for a person. */
   label: string,
@@ -1060,15 +1061,15 @@ export type SolvedModel = {
   bounds: Bounds,
 };
 
-/** What [`Sampler::start`] found out. */
+/** What is known of a run at its start. */
 export type Start = {
-  /** Repulsion radius of the run. */
+  /** Repulsion radius of the run, in the units of the field's coordinates. */
   radius: number,
-  /** Particles to expect. */
+  /** Number of particles to expect. */
   predicted_count: number,
   /** Estimated area of the surface in the box. */
   area: number,
-  /** Things the user should know, in words. */
+  /** What the user should know before the run. */
   warnings: Array<string>,
 };
 

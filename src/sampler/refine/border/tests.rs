@@ -6,7 +6,7 @@ use super::super::tally::Tally;
 use super::super::walls::{Planes, Walls};
 use super::{clip, grown};
 use crate::field::Field;
-use crate::field::formula::FormulaField;
+use crate::field::formula::Formula;
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::Slots;
@@ -16,8 +16,8 @@ use proptest::prelude::*;
 
 const SPACING: f32 = 0.2;
 
-fn saddle() -> FormulaField {
-    FormulaField::parse("z = 0.3*x*y", &[]).expect("a formula")
+fn saddle() -> Formula {
+    Formula::as_written("z = 0.3*x*y", &[]).expect("a formula")
 }
 
 /// A hexagonal grid over z = 0.3xy that reaches beyond the box, moved by `shift`.

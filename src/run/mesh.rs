@@ -1,8 +1,11 @@
-//! The mesh over the particles of a session: joined when it is asked for, in slices, and dropped when they change.
+//! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when they change.
 
-use super::Session;
+use super::Run;
 use crate::export::{MeshFormat, rows, write_rows};
+use crate::field::Field;
+use crate::math::Bounds;
 use crate::mesh::build::{self, Options, Triangulation};
+use crate::particles::Particles;
 use crate::slices::{self, Work};
 use crate::topology::Component;
 use serde::Serialize;
@@ -40,9 +43,15 @@ pub struct MeshComponent {
     pub open_edges: u32,
 }
 
-/// The mesh, as far as it is there.
+/// The mesh of a run, as far as it is there, and a file of it that is being written.
 #[derive(Default)]
-pub(super) enum Mesh {
+pub(super) struct Meshing {
+    state: State,
+    file: Option<File>,
+}
+
+#[derive(Default)]
+enum State {
     /// Nobody has asked for it since the particles have changed.
     #[default]
     None,
@@ -52,8 +61,27 @@ pub(super) enum Mesh {
     Joined(Triangulation),
 }
 
+impl Meshing {
+    /// Joins particles to triangles, or takes those that are `known`, in slices of work.
+    fn work(particles: &Particles, count: usize, known: &[[u32; 3]], bounds: Bounds) -> Work<Triangulation> {
+        if !known.is_empty() {
+            return Box::pin(Triangulation::known(known.to_vec(), count));
+        }
+        let (position, normal) = (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
+        Box::pin(async move {
+            let options = Options { bounds: Some(&bounds), ..Options::default() };
+            build::in_slices(&position, &normal, &options).await
+        })
+    }
+
+    /// Joins all particles at once. `bounds` is the clip box, counted from their origin.
+    pub(super) fn join(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
+        slices::complete(Self::work(particles, particles.len(), known, *bounds))
+    }
+}
+
 /// A mesh file that is being written.
-pub(super) struct File {
+struct File {
     format: MeshFormat,
     /// Rows that are written.
     next: usize,
@@ -66,8 +94,8 @@ impl File {
     }
 }
 
-impl MeshAnswer {
-    fn of(mesh: &Triangulation) -> Self {
+impl From<&Triangulation> for MeshAnswer {
+    fn from(mesh: &Triangulation) -> Self {
         let component = |component: &Component| MeshComponent {
             triangles: component.triangles,
             euler: component.euler(),
@@ -83,39 +111,28 @@ impl MeshAnswer {
     }
 }
 
-impl Session {
+impl<F: Field> Run<F> {
     /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds each; what it adds up to, once
     /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays
     /// until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
-        if let Mesh::None = self.mesh {
-            let count = self.count();
-            let known = self.sampler.triangles().to_vec();
-            self.mesh = Mesh::Joining(if known.is_empty() {
-                let particles = self.sampler.particles();
-                let (position, normal) =
-                    (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
-                let bounds = self.local_bounds();
-                Box::pin(async move {
-                    let options = Options { bounds: Some(&bounds), ..Options::default() };
-                    build::in_slices(&position, &normal, &options).await
-                })
-            } else {
-                Box::pin(Triangulation::known(known, count))
-            });
+        if let State::None = self.meshing.state {
+            let work =
+                Meshing::work(self.particles(), self.count(), self.sampler.triangles(), self.local_bounds());
+            self.meshing.state = State::Joining(work);
         }
-        if let Mesh::Joining(work) = &mut self.mesh {
-            self.mesh = Mesh::Joined(slices::advance(work.as_mut(), budget)?);
+        if let State::Joining(work) = &mut self.meshing.state {
+            self.meshing.state = State::Joined(slices::advance(work.as_mut(), budget)?);
         }
-        let Mesh::Joined(mesh) = &self.mesh else { return None };
-        Some(MeshAnswer::of(mesh))
+        let State::Joined(mesh) = &self.meshing.state else { return None };
+        Some(mesh.into())
     }
 
-    /// The triangles: triples of particles, counter-clockwise seen from outside. There are none before [`Session::join`] is done.
+    /// The triangles: triples of particles, counter-clockwise seen from outside. There are none before [`Run::join`] is done.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        match &self.mesh {
-            Mesh::Joined(mesh) => &mesh.triangles,
+        match &self.meshing.state {
+            State::Joined(mesh) => &mesh.triangles,
             _ => &[],
         }
     }
@@ -127,8 +144,8 @@ impl Session {
     ///
     /// Where a format's own counters, of 32 bits, are too small.
     pub fn mesh_file(&mut self, format: MeshFormat, budget: u32) -> io::Result<Option<Vec<u8>>> {
-        let File { next, mut bytes, .. } =
-            self.file.take().filter(|file| file.format == format).unwrap_or(File::new(format));
+        let begun = self.meshing.file.take().filter(|file| file.format == format);
+        let File { next, mut bytes, .. } = begun.unwrap_or(File::new(format));
         let (particles, measured, triangles) = (self.particles(), self.measured(), self.triangles());
         let all = rows(format, particles, triangles);
         let end = all.min(next.saturating_add(ROWS.saturating_mul(budget as usize)));
@@ -136,7 +153,7 @@ impl Session {
         if end == all {
             return Ok(Some(bytes));
         }
-        self.file = Some(File { format, next: end, bytes });
+        self.meshing.file = Some(File { format, next: end, bytes });
         Ok(None)
     }
 }

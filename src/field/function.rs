@@ -1,0 +1,125 @@
+//! Fields given by functions of the program.
+
+use super::{Field, Jet, difference_step, jet_by_differences};
+use crate::math::Sym3;
+use glam::DVec3;
+
+/// Steps of second differences are this many times those of first ones: ε^¼ in place of ε^⅓, the best compromise between the error
+/// of the formula, of order h², and that of rounding, of order ε/h².
+const SECOND: f64 = 20.0;
+
+/// A field given by a function of a point, with its gradient or without.
+///
+/// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not given are found by central
+/// differences, with seven evaluations for a gradient and nineteen for a Hessian: a gradient makes sampling several times as fast.
+/// There are no bounds to prove by that every component of the surface was found.
+///
+/// ```
+/// use glam::DVec3;
+/// use marching_particles::{FnField, Settings, sample};
+///
+/// let sphere = FnField::new(|p: DVec3| p.length() - 1.0).with_gradient(|p| p.normalize_or_zero());
+/// assert_eq!(sample(sphere, &Settings::with_count(500))?.report().proof.components, 1);
+/// # Ok::<(), marching_particles::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FnField<F, G = fn(DVec3) -> DVec3> {
+    value: F,
+    gradient: Option<G>,
+    origin: DVec3,
+}
+
+impl<F: FnMut(DVec3) -> f64 + Send> FnField<F> {
+    /// The field whose value at a point is `value` of it.
+    pub fn new(value: F) -> Self {
+        Self { value, gradient: None, origin: DVec3::ZERO }
+    }
+}
+
+impl<F, G> FnField<F, G> {
+    /// The same field, whose gradient at a point is `gradient` of it.
+    pub fn with_gradient<H: FnMut(DVec3) -> DVec3 + Send>(self, gradient: H) -> FnField<F, H> {
+        FnField { value: self.value, gradient: Some(gradient), origin: self.origin }
+    }
+}
+
+impl<F: FnMut(DVec3) -> f64 + Send, G: FnMut(DVec3) -> DVec3 + Send> Field for FnField<F, G> {
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let p = self.origin + p;
+        let value = (self.value)(p);
+        if let Some(gradient) = &mut self.gradient {
+            return (value, gradient(p));
+        }
+        let h = difference_step(p);
+        let along = |axis: DVec3| ((self.value)(p + h * axis) - (self.value)(p - h * axis)) / (2.0 * h);
+        (value, DVec3::from_array(DVec3::AXES.map(along)))
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        if self.gradient.is_some() {
+            return jet_by_differences(self, p);
+        }
+        let (value, gradient) = self.value_and_gradient(p);
+        let p = self.origin + p;
+        let h = SECOND * difference_step(p);
+        let mut at = |d: DVec3| (self.value)(p + h * d);
+        let [x, y, z] = DVec3::AXES;
+        let mut pure = |axis: DVec3| (at(axis) - 2.0 * value + at(-axis)) / (h * h);
+        let [xx, yy, zz] = [pure(x), pure(y), pure(z)];
+        let mut mixed = |a: DVec3, b: DVec3| (at(a + b) - at(a - b) - at(b - a) + at(-a - b)) / (4.0 * h * h);
+        let [xy, xz, yz] = [mixed(x, y), mixed(x, z), mixed(y, z)];
+        Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
+
+    fn values(&mut self, points: &[glam::Vec3], value: &mut [f32]) {
+        for (p, value) in points.iter().zip(value) {
+            *value = (self.value)(self.origin + p.as_dvec3()) as f32;
+        }
+    }
+
+    fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    fn set_origin(&mut self, origin: DVec3) {
+        self.origin = origin;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// f = x² y + sin z, with all derivatives known.
+    fn value(p: DVec3) -> f64 {
+        p.x * p.x * p.y + libm::sin(p.z)
+    }
+
+    fn gradient(p: DVec3) -> DVec3 {
+        DVec3::new(2.0 * p.x * p.y, p.x * p.x, libm::cos(p.z))
+    }
+
+    fn assert_is_near(jet: &Jet, p: DVec3) {
+        assert!((jet.value - value(p)).abs() < 1e-14, "{jet:?}");
+        assert!((jet.gradient - gradient(p)).length() < 1e-8, "{jet:?}");
+        let Sym3 { xx, xy, xz, yy, yz, zz } = jet.hessian;
+        let expected = [2.0 * p.y, 2.0 * p.x, 0.0, 0.0, 0.0, -libm::sin(p.z)];
+        for (found, expected) in [xx, xy, xz, yy, yz, zz].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-5, "{jet:?}");
+        }
+    }
+
+    #[test]
+    fn derivatives_by_differences_are_near_the_known_ones_around_any_origin() {
+        for origin in [DVec3::ZERO, DVec3::new(3.0, -2.0, 1.0)] {
+            for p in [DVec3::new(0.3, -0.7, 0.4), DVec3::new(-1.2, 0.1, 2.0)] {
+                let mut plain = FnField::new(value);
+                plain.set_origin(origin);
+                assert_is_near(&plain.jet(p - origin), p);
+                let mut given = FnField::new(value).with_gradient(gradient);
+                given.set_origin(origin);
+                assert_is_near(&given.jet(p - origin), p);
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Whether the gradient that a field gives is that of its values.
+
+use crate::field::{Field, difference_step};
+use crate::math::Bounds;
+use glam::DVec3;
+
+/// Points along each axis of the box that are looked at.
+const SIDE: usize = 3;
+/// A gradient differs if it does so by more than this share of its length. Differences of a smooth f are nearer by far.
+const DIFFERENT: f64 = 0.02;
+
+/// A point of the box, counted from the origin of the field, at which the gradient differs from the differences of f; none if it
+/// differs at fewer than half of the points, as at the kinks of a field that is right.
+pub(super) fn wrong_gradient(field: &mut dyn Field, bounds: &Bounds) -> Option<DVec3> {
+    let mut wrong = Vec::new();
+    let mut looked_at = 0;
+    for p in bounds.spread(SIDE) {
+        let (_, given) = field.value_and_gradient(p);
+        let h = difference_step(field.origin() + p);
+        let mut along = |d: DVec3| {
+            (field.value_and_gradient(p + h * d).0 - field.value_and_gradient(p - h * d).0) / (2.0 * h)
+        };
+        let found = DVec3::from_array(DVec3::AXES.map(&mut along));
+        if found.is_finite() && found != DVec3::ZERO {
+            looked_at += 1;
+            // True for a gradient that is not a number, too.
+            if !((given - found).length() <= DIFFERENT * found.length()) {
+                wrong.push(p);
+            }
+        }
+    }
+    wrong.first().copied().filter(|_| 2 * wrong.len() > looked_at)
+}

@@ -1,0 +1,124 @@
+//! What is measured of the particles of a run, in slices of work.
+
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::particles::Particles;
+use crate::quality::{self, Figures};
+use crate::sampler::Sampling;
+use crate::slices::{Work, pause, ranges};
+use crate::spatial::tree::Tree;
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
+const MAX_KEPT: usize = 400_000;
+
+/// The measurements of a run.
+#[derive(Default)]
+pub(super) struct Measuring {
+    /// The particles after the front, until they are measured.
+    pub(super) front: Option<Arc<Kept>>,
+    pub(super) front_figures: Option<Figures>,
+    pub(super) work: Option<Work<Measured>>,
+    /// What was measured last.
+    pub(super) measured: quality::Report,
+}
+
+impl Measuring {
+    /// Keeps the first `count` particles as those of the front, if none are kept.
+    pub(super) fn keep_front(&mut self, particles: &Particles, count: usize) {
+        if self.front.is_none() && count <= MAX_KEPT {
+            self.front = Some(Arc::new(Kept::of(particles)));
+        }
+    }
+
+    /// Gives a measurement under way up.
+    pub(super) fn stop(&mut self) {
+        self.work = None;
+    }
+
+    /// The particles of the front that are still to be measured.
+    pub(super) fn open_front(&self) -> Option<Arc<Kept>> {
+        self.front.clone().filter(|_| self.front_figures.is_none())
+    }
+}
+
+/// What is kept of particles for a later look at them.
+pub(super) struct Kept {
+    position: Vec<Vec3>,
+    normal: Vec<Vec3>,
+    radius: Vec<f32>,
+}
+
+impl Kept {
+    pub(super) fn of(particles: &Particles) -> Self {
+        let Particles { position, normal, radius, .. } = particles;
+        Self { position: position.clone(), normal: normal.clone(), radius: radius.clone() }
+    }
+
+    /// [`quality::measure`], a slice at a time.
+    async fn measure(&self, field: &mut dyn Field, bounds: &Bounds, sampling: Sampling) -> quality::Report {
+        let sizes = match sampling {
+            Sampling::Uniform => quality::Sizes::None,
+            Sampling::Adaptive => quality::Sizes::Given(&self.radius),
+        };
+        let options = quality::Options { sizes, ..quality::Options::default() };
+        quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
+    }
+}
+
+/// What a measurement gives.
+pub(super) struct Measured {
+    pub(super) front: Option<Figures>,
+    pub(super) now: quality::Report,
+    /// Number of particles that face another sheet.
+    pub(super) facing: usize,
+}
+
+/// What is measured, apart from the field.
+pub(super) struct Subject {
+    pub(super) front: Option<Arc<Kept>>,
+    pub(super) now: Kept,
+    pub(super) bounds: Bounds,
+    pub(super) sampling: Sampling,
+}
+
+impl Subject {
+    pub(super) async fn measure(self, field: &mut dyn Field) -> Measured {
+        let Self { front, now, bounds, sampling } = self;
+        let front = match front {
+            Some(front) => Some(front.measure(field, &bounds, sampling).await.figures),
+            None => None,
+        };
+        let report = now.measure(field, &bounds, sampling).await;
+        Measured { front, now: report, facing: facing_another_sheet(&now).await }
+    }
+}
+
+/// Number of particles nearer than 2r to one that faces the other way.
+async fn facing_another_sheet(particles: &Kept) -> usize {
+    /// Normals at more than 120° face each other: across a sharp edge they are nearer.
+    const FACING: f32 = -0.5;
+    /// Particles looked at in one slice of work.
+    const SLICE: usize = 64;
+    let tree = Tree::in_slices(particles.position.iter().copied().zip(0..).collect()).await;
+    let mut near = Vec::new();
+    let mut count = 0;
+    for range in ranges(tree.len(), SLICE) {
+        // In tree order: near particles look at the same memory.
+        for k in range {
+            let i = tree.origin[k] as usize;
+            let (p, n) = (particles.position[i], particles.normal[i]);
+            let reach = 2.0 * particles.radius[i];
+            near.clear();
+            tree.within_box(p - Vec3::splat(reach), p + Vec3::splat(reach), &mut near);
+            let is_facing = near.iter().any(|&k| {
+                particles.normal[tree.origin[k as usize] as usize].dot(n) < FACING
+                    && tree.position[k as usize].distance_squared(p) < reach * reach
+            });
+            count += usize::from(is_facing);
+        }
+        pause().await;
+    }
+    count
+}

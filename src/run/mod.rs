@@ -1,0 +1,372 @@
+//! A run: one field, sampled in one box, from the first survey to particles, report and mesh.
+//!
+//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in steps, for a caller that shows progress, cancels, relaxes
+//! further or measures in slices. What either leads to is a [`Sample`].
+
+mod check;
+mod measuring;
+mod mesh;
+mod report;
+mod sample;
+mod warning;
+
+pub use mesh::{MeshAnswer, MeshComponent};
+pub use report::{Cut, Growth, Measures, Proof, Report, Sizes};
+pub use sample::{Sample, sample};
+pub use warning::Warning;
+
+use crate::differential::{self, Curvature};
+use crate::extent::{self, Reach};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::particles::Particles;
+use crate::quality;
+use crate::sampler::{
+    self, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
+};
+use glam::DVec3;
+use measuring::Measuring;
+use mesh::Meshing;
+use serde::Serialize;
+
+/// Bytes per particle that a run takes beside the sampler: the particles kept after the front, and the report as measured.
+const KEPT_BYTES: usize = 28;
+const REPORT_BYTES: usize = 225;
+
+/// Why there is no sample of a surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A setting or the box is out of its range, or the memory does not hold the particles.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// No particle could be placed.
+    #[error("{message}")]
+    Nothing {
+        /// What the run met.
+        reason: StopReason,
+        /// That, and what to do, in a sentence.
+        message: String,
+    },
+}
+
+/// What is known of a run at its start.
+#[derive(Clone, Debug, Default, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Start {
+    /// Repulsion radius of the run, in the units of the field's coordinates.
+    pub radius: f64,
+    /// Number of particles to expect.
+    pub predicted_count: u64,
+    /// Estimated area of the surface in the box.
+    pub area: f64,
+    /// What the user should know before the run.
+    #[cfg_attr(test, ts(type = "Array<string>"))]
+    pub warnings: Vec<Warning>,
+}
+
+/// The sampling of one surface, in steps.
+///
+/// A run owns its field, or borrows it where `F` is a mutable reference, so that every step and every measurement is made of the
+/// same one. A budget is a count of work, never a time: however a run is cut into steps, its particles are the same to the last bit.
+///
+/// ```
+/// use marching_particles::{Formula, Run, Settings};
+///
+/// let surface = Formula::parse("x^2 + y^2 + z^2 = 1")?;
+/// let mut run = Run::start(surface, &Settings::with_count(500))?;
+/// let mut progress = run.step(100);
+/// while progress.stop_reason.is_none() {
+///     assert!(progress.fraction <= 1.0);
+///     progress = run.step(100);
+/// }
+/// let sample = run.finish()?;
+/// assert_eq!(sample.report().proof.components, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Run<F> {
+    field: F,
+    /// The clip box, in the coordinates of the field before it was given an origin.
+    bounds: Bounds,
+    /// How far the surface reaches, where the box was fitted to it.
+    reach: Option<Reach>,
+    sampler: Sampler,
+    /// Whether field and box are those of the last start.
+    is_surveyed: bool,
+    /// Runs of more particles are refused.
+    most_particles: usize,
+    /// What was known at the start.
+    start: Start,
+    last: Option<Progress>,
+    measuring: Measuring,
+    meshing: Meshing,
+}
+
+impl<F: Field> Run<F> {
+    /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the surface.
+    ///
+    /// It surveys the box, with some 40,000 evaluations, and fixes the radius. A fitted box is found by bounds of the field where it
+    /// has any, and by the signs of f on grids where it has none.
+    ///
+    /// # Errors
+    ///
+    /// If a setting or the box is out of its range, or the memory does not hold the particles to expect.
+    pub fn start(field: F, settings: &Settings) -> Result<Self, Error> {
+        Self::start_with(field, |_| *settings)
+    }
+
+    /// [`Run::start`] with settings that depend on the box, as lengths in the units of the coordinates do, which are shares of its
+    /// diagonal in the settings.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Run::start`].
+    pub fn start_with(mut field: F, settings_in: impl Fn(&Bounds) -> Settings) -> Result<Self, Error> {
+        /// Rounds in which a fitted box and the room for the largest particles in it follow each other.
+        const ROUNDS: u32 = 4;
+        let anywhere = Bounds::cube(1.0);
+        let (bounds, reach) = match settings_in(&anywhere).bounds {
+            Some(bounds) => (bounds, None),
+            None => {
+                let extent = extent::find(&mut field);
+                let bounds = (0..ROUNDS)
+                    .fold(extent.bounds, |bounds, _| extent.with_room(settings_in(&bounds).largest_share()));
+                (bounds, Some(extent.reach))
+            }
+        };
+        let mut run = Self { reach, ..Self::idle(field, bounds) };
+        run.begin(&settings_in(&bounds))?;
+        Ok(run)
+    }
+
+    /// A run that has not begun.
+    pub(crate) fn idle(field: F, bounds: Bounds) -> Self {
+        Self {
+            field,
+            bounds,
+            reach: None,
+            sampler: Sampler::new(),
+            is_surveyed: false,
+            most_particles: usize::MAX,
+            start: Start::default(),
+            last: None,
+            measuring: Measuring::default(),
+            meshing: Meshing::default(),
+        }
+    }
+
+    /// Begins a run in the present box; the survey is kept if field and box are those of the last start.
+    pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
+        settings.validate()?;
+        if !self.bounds.is_valid() {
+            return Err(SettingsError::Box);
+        }
+        self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
+        let start = if self.is_surveyed {
+            self.sampler.start_again(&mut self.field, settings)?
+        } else {
+            self.field.set_origin(self.bounds.local_origin());
+            let bounds = self.bounds.relative_to(self.field.origin());
+            self.sampler.start(&mut self.field, &bounds, settings)?
+        };
+        self.is_surveyed = true;
+        self.last = None;
+        self.measuring = Measuring::default();
+        self.meshing = Meshing::default();
+        let sampler::Start { radius, predicted_count, area } = start;
+        let warnings = self.known_at_start(predicted_count, settings.max_particles);
+        self.start = Start { radius, predicted_count, area, warnings };
+        Ok(self.start.clone())
+    }
+
+    /// Starts anew with other settings. The survey is kept, unless the settings name another box.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Run::start`].
+    pub fn restart(&mut self, settings: &Settings) -> Result<Start, Error> {
+        if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds) {
+            self.set_bounds(bounds, None);
+        }
+        Ok(self.begin(settings)?)
+    }
+
+    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step. It
+    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set.
+    pub fn step(&mut self, budget: u32) -> Progress {
+        let progress = self.sampler.step(&mut self.field, budget);
+        if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
+            self.measuring.keep_front(self.sampler.particles(), progress.particles);
+        }
+        self.remember(progress)
+    }
+
+    /// Asks for more relaxation steps on the particles of a finished run; [`Run::step`] does them.
+    pub fn relax(&mut self, steps: u32) {
+        if self.is_surveyed {
+            self.sampler.relax(steps);
+            let progress = self.sampler.progress();
+            self.remember(progress);
+        }
+    }
+
+    /// Ends the run where it is; the particles placed so far stay.
+    pub fn cancel(&mut self) -> Progress {
+        self.sampler.cancel();
+        // Marks the particles next to singular points.
+        let progress = self.sampler.step(&mut self.field, 0);
+        self.remember(progress)
+    }
+
+    fn remember(&mut self, progress: Progress) -> Progress {
+        self.forget_results();
+        self.last = Some(progress.clone());
+        progress
+    }
+
+    /// Drops a measurement under way and the mesh: they are of other particles, or of another field.
+    fn forget_results(&mut self) {
+        self.measuring.stop();
+        self.meshing = Meshing::default();
+    }
+
+    /// Measures the particles and makes a [`Sample`] of the run, where it stands.
+    ///
+    /// # Errors
+    ///
+    /// If there is no particle: the error says why.
+    pub fn finish(mut self) -> Result<Sample, Error> {
+        if self.count() == 0 {
+            let progress = self.last.unwrap_or_else(|| self.sampler.progress());
+            let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
+            if let Some(cause) =
+                self.start.warnings.iter().find(|warning| matches!(warning, Warning::Gradient { .. }))
+            {
+                message = format!("{message} {cause}");
+            }
+            return Err(Error::Nothing {
+                reason: progress.stop_reason.unwrap_or(StopReason::Cancelled),
+                message,
+            });
+        }
+        let report = self.report();
+        Ok(Sample::new(self, report))
+    }
+
+    /// The particles so far; of a generation level under way, the columns may hold provisional ones beyond [`Run::count`].
+    #[must_use]
+    pub fn particles(&self) -> &Particles {
+        self.sampler.particles()
+    }
+
+    /// Number of particles that will stay.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.last.as_ref().map_or(0, |progress| progress.particles)
+    }
+
+    /// The clip box, in the coordinates of the field as it was given.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// How far the surface reaches, where the box was fitted to it.
+    #[must_use]
+    pub fn reach(&self) -> Option<Reach> {
+        self.reach
+    }
+
+    /// What was known at the start.
+    #[must_use]
+    pub fn start_report(&self) -> &Start {
+        &self.start
+    }
+
+    /// The state after the last step; none before the first.
+    #[must_use]
+    pub fn progress(&self) -> Option<&Progress> {
+        self.last.as_ref()
+    }
+
+    /// The field. Its [origin](Field::origin) is that of the particles.
+    #[must_use]
+    pub fn field(&self) -> &F {
+        &self.field
+    }
+
+    /// The field again, at the end.
+    #[must_use]
+    pub fn into_field(self) -> F {
+        self.field
+    }
+
+    /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
+    pub fn limit_memory(&mut self, bytes: usize) {
+        // A refined run takes more than a front does, but before the report is made it has given most of that back.
+        let with_report = bytes_per_particle(&Settings::DEFAULT) + KEPT_BYTES + REPORT_BYTES;
+        self.most_particles = bytes / with_report;
+    }
+
+    /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length; NaN where the surface has none.
+    pub fn curvatures(&mut self, from: usize) -> Vec<[f32; 2]> {
+        let count = self.count();
+        let positions = &self.sampler.particles().position[from.min(count)..count];
+        let mut curvatures = vec![Curvature::default(); positions.len()];
+        differential::curvatures(&mut self.field, positions, &mut curvatures);
+        curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
+    }
+
+    /// Columns of the last report, a value of each kind for every particle.
+    #[must_use]
+    pub fn measured(&self) -> &quality::Report {
+        &self.measuring.measured
+    }
+
+    /// The sampler, for what the report leaves out.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn sampler(&self) -> &Sampler {
+        &self.sampler
+    }
+
+    /// The clip box, counted from the origin of the particles.
+    pub(crate) fn local_bounds(&self) -> Bounds {
+        self.bounds.relative_to(self.particles().origin)
+    }
+
+    /// Takes another box for the next start, which ends a run in the one before.
+    pub(crate) fn set_bounds(&mut self, bounds: Bounds, reach: Option<Reach>) {
+        self.reach = reach;
+        if bounds != self.bounds {
+            self.bounds = bounds;
+            self.end();
+        }
+    }
+
+    /// Takes another field for the next start. The particles stay until then. A field that `is_same` gives the same surface: the
+    /// survey stays good.
+    pub(crate) fn set_field(&mut self, mut field: F, is_same: bool) {
+        if is_same {
+            field.use_double(self.sampler.double());
+        } else {
+            self.end();
+        }
+        field.set_origin(self.particles().origin);
+        self.field = field;
+        self.measuring.stop();
+    }
+
+    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.
+    fn end(&mut self) {
+        if self.is_surveyed {
+            self.is_surveyed = false;
+            self.cancel();
+        }
+    }
+
+    /// The place of a point that is counted from the origin of the particles.
+    fn place(&self, position: [f64; 3]) -> [f64; 3] {
+        (self.particles().origin + DVec3::from_array(position)).to_array()
+    }
+}

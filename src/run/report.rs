@@ -1,0 +1,256 @@
+//! The report of a run: what the sampler counted and what was measured of the particles, before and after the relaxation.
+
+use super::measuring::{Kept, Measured, Subject};
+use super::{Run, Warning};
+use crate::extent::Reach;
+use crate::field::Field;
+use crate::particles::{SlotFate, Slots};
+use crate::quality::{Figures, Histogram, Places};
+use crate::sampler::{FateCounts, Sampled, Search, StopReason};
+use crate::slices;
+use glam::Vec3;
+use serde::Serialize;
+
+/// Everything worth knowing about a run.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Report {
+    /// Number of particles.
+    pub count: usize,
+    /// Repulsion radii.
+    #[serde(flatten)]
+    pub sizes: Sizes,
+    /// How the particles came to be.
+    #[serde(flatten)]
+    pub growth: Growth,
+    /// Components of the surface, and how sure it is that all were found.
+    #[serde(flatten)]
+    pub proof: Proof,
+    /// Figures of quality.
+    #[serde(flatten)]
+    pub measures: Measures,
+    /// Particles with a child that fell outside of the box.
+    pub border: usize,
+    /// Why there are such particles.
+    pub cut: Option<Cut>,
+    /// Why the run ended.
+    pub stop_reason: Option<StopReason>,
+    /// What the user should know.
+    #[cfg_attr(test, ts(type = "Array<string>"))]
+    pub warnings: Vec<Warning>,
+    /// Digest of the particles, 16 hexadecimal digits.
+    pub digest: String,
+}
+
+/// Why particles lie at the border of the box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum Cut {
+    /// The surface goes on beyond any box.
+    Endless,
+    /// The box was given, and the surface reaches beyond it.
+    Fixed,
+}
+
+/// Repulsion radii of a run, in the units of the field's coordinates.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Sizes {
+    /// Repulsion radius of the run; with adaptive sampling the one at which as many particles of equal radius would cover the
+    /// surface.
+    pub radius: f64,
+    /// Repulsion radius of the smallest particle; 0 without particles.
+    pub radius_min: f64,
+    /// Repulsion radius of the largest particle.
+    pub radius_max: f64,
+}
+
+/// How the particles of a run came to be.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Growth {
+    /// Number of generation levels.
+    pub levels: u32,
+    /// Particles per generation level.
+    pub level_counts: Vec<u32>,
+    /// Fronts started, each from a seed of its own.
+    pub components_seeded: u32,
+    /// Particles placed in gaps between fronts.
+    pub gaps_filled: u64,
+    /// Number of proposed children by fate.
+    pub fates: FateCounts,
+    /// Field evaluations of the whole run.
+    pub evaluations: u64,
+    /// Field evaluations of the front per particle.
+    pub evaluations_per_particle: f64,
+    /// Times that a coarse front was refined; none where it was not, or the front stands.
+    pub refined_levels: Option<u32>,
+    /// Energy per particle before the first relaxation step and after each; none where nothing was relaxed.
+    pub energy: Option<Vec<f64>>,
+}
+
+/// Components of the surface, and how sure it is that all were found.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Proof {
+    /// Number of components at this radius: those of the graph of natural neighbours of the particles.
+    pub components: usize,
+    /// Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
+    /// component of a particle or named in `sampled`.
+    pub search: Search,
+    /// Which of the witnessed components hold particles.
+    pub sampled: Sampled,
+    /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
+    /// attempted.
+    pub undecided_cells: Option<u64>,
+    /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
+    pub singular_points: Option<u64>,
+}
+
+/// Figures of quality of a run.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Measures {
+    /// Quality now; none without particles.
+    pub quality: Option<Figures>,
+    /// Quality after the front, before the relaxation; none where nothing was relaxed.
+    pub quality_before: Option<Figures>,
+    /// Nearest-neighbour distances.
+    pub nearest_histogram: Histogram,
+    /// Where the spacing is worst now.
+    pub places: Places,
+}
+
+impl<F: Field> Run<F> {
+    fn subject(&self) -> Subject {
+        Subject {
+            front: self.measuring.open_front(),
+            now: Kept::of(self.particles()),
+            bounds: self.local_bounds(),
+            sampling: self.sampler.settings().sampling,
+        }
+    }
+
+    /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended.
+    pub fn report(&mut self) -> Report {
+        self.measuring.stop();
+        let measured = slices::complete(self.subject().measure(&mut self.field));
+        self.take(measured)
+    }
+
+    /// [`Run::report`] in slices: up to `budget` of them, some 10 to 50 microseconds each; the report, once it is complete. A
+    /// measurement that anything comes between is given up, and the next call begins anew.
+    pub fn measure(&mut self, budget: u32) -> Option<Report>
+    where
+        F: Clone + 'static,
+    {
+        if self.measuring.work.is_none() {
+            let (subject, mut field) = (self.subject(), self.field.clone());
+            self.measuring.work = Some(Box::pin(async move { subject.measure(&mut field).await }));
+        }
+        let measured = slices::advance(self.measuring.work.as_mut()?.as_mut(), budget)?;
+        self.measuring.work = None;
+        Some(self.take(measured))
+    }
+
+    /// Keeps what was measured, and reports.
+    fn take(&mut self, Measured { front, now, facing }: Measured) -> Report {
+        if front.is_some() {
+            (self.measuring.front, self.measuring.front_figures) = (None, front);
+        }
+        self.measuring.measured = now;
+        let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
+        let mut report = self.reported(facing);
+        if is_overflowing {
+            report.warnings.push(Warning::Overflow);
+        }
+        report
+    }
+
+    fn reported(&self, facing: usize) -> Report {
+        let particles = self.sampler.particles();
+        let count = particles.len();
+        let measured = &self.measuring.measured;
+        let proof = self.proof(measured.figures.components);
+        let mut places = measured.places.clone();
+        for hole in &mut places.holes {
+            hole.position =
+                (particles.origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
+        }
+        let is_outside = |slots: &&Slots| (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside);
+        let border = particles.slots.iter().filter(is_outside).count();
+        Report {
+            count,
+            sizes: self.sizes(),
+            growth: self.growth(),
+            warnings: self.warnings_of_run(&proof.sampled, facing),
+            proof,
+            measures: Measures {
+                quality: (count > 0).then_some(measured.figures),
+                quality_before: self.measuring.front_figures,
+                nearest_histogram: measured.histogram.clone(),
+                places,
+            },
+            border,
+            cut: self.cut().filter(|_| border > 0),
+            stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
+            digest: format!("{:016x}", particles.digest()),
+        }
+    }
+
+    /// Why particles lie at the border, if some do.
+    fn cut(&self) -> Option<Cut> {
+        match self.reach {
+            // Particles that are large against the surface may have a child outside of a box that holds it.
+            Some(Reach::Bounded) => None,
+            Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
+            None => Some(Cut::Fixed),
+        }
+    }
+
+    fn sizes(&self) -> Sizes {
+        let sizes = self.particles().radius.iter().map(|&radius| f64::from(radius));
+        let radius_max = sizes.clone().fold(0.0, f64::max);
+        Sizes { radius: self.sampler.radius(), radius_min: sizes.fold(radius_max, f64::min), radius_max }
+    }
+
+    fn growth(&self) -> Growth {
+        let particles = self.particles();
+        let mut level_counts = Vec::new();
+        for &level in &particles.level {
+            if level_counts.len() <= level as usize {
+                level_counts.resize(level as usize + 1, 0);
+            }
+            level_counts[level as usize] += 1;
+        }
+        let counts = self.sampler.counts();
+        let evaluations =
+            counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
+        Growth {
+            levels: level_counts.len() as u32,
+            level_counts,
+            components_seeded: counts.seeds,
+            gaps_filled: counts.gaps_filled,
+            fates: counts.fates,
+            evaluations,
+            evaluations_per_particle: counts.front_evaluations as f64 / particles.len().max(1) as f64,
+            refined_levels: counts.refined_levels,
+            energy: Some(self.sampler.energy()).filter(|energy| !energy.is_empty()).map(<[f64]>::to_vec),
+        }
+    }
+
+    fn proof(&self, components: usize) -> Proof {
+        let mut sampled = self.sampler.sampled();
+        for witness in &mut sampled.without {
+            witness.position = self.place(witness.position);
+        }
+        Proof {
+            components,
+            search: self.sampler.search(),
+            sampled,
+            undecided_cells: self.sampler.undecided_cells(),
+            singular_points: self.sampler.singular_points(),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The whole job in one call, and what it leads to.
+
+use super::mesh::Meshing;
+use super::{Error, Report, Run};
+use crate::export::{self, Format, MeshFormat};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::mesh::build::Triangulation;
+use crate::particles::Particles;
+use crate::quality;
+use crate::sampler::Settings;
+use std::cell::OnceCell;
+use std::io::{self, Write};
+
+/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them.
+///
+/// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
+/// on for ever a part. The same field, settings and seed give the same particles to the last bit, on every platform. For progress,
+/// cancelling or slices of work take a [`Run`].
+///
+/// # Errors
+///
+/// If a setting or the box is out of its range, the memory does not hold the particles to expect, or no particle could be placed: the
+/// error says why. Anything else that a field may do wrong is a [`Warning`](super::Warning) in the report.
+///
+/// ```
+/// use marching_particles::{Formula, Format, Settings, sample};
+///
+/// let surface = Formula::parse("x^4 + y^4 + z^4 = a")?.with("a", 0.5)?;
+/// let sample = sample(surface, &Settings::with_count(1_000))?;
+/// let mut file = Vec::new();
+/// sample.write(Format::Ply, &mut file)?;
+/// assert!(sample.report().measures.quality.is_some_and(|figures| figures.six > 0.8));
+/// assert_eq!(sample.mesh().topology.components.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn sample(field: impl Field, settings: &Settings) -> Result<Sample, Error> {
+    let mut run = Run::start(field, settings)?;
+    while run.step(u32::MAX).stop_reason.is_none() {}
+    run.finish()
+}
+
+/// The particles of a finished run, with the report on them; their mesh is made when it is first asked for.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    particles: Particles,
+    report: Report,
+    measured: quality::Report,
+    bounds: Bounds,
+    /// The clip box, counted from the origin of the particles.
+    local_bounds: Bounds,
+    /// The triangles that a refined run has led to.
+    known: Vec<[u32; 3]>,
+    mesh: OnceCell<Triangulation>,
+}
+
+impl Sample {
+    pub(super) fn new<F: Field>(run: Run<F>, report: Report) -> Self {
+        Self {
+            bounds: run.bounds(),
+            local_bounds: run.local_bounds(),
+            known: run.sampler.triangles().to_vec(),
+            particles: run.sampler.particles().clone(),
+            measured: run.measuring.measured,
+            report,
+            mesh: OnceCell::new(),
+        }
+    }
+
+    /// The particles, as columns.
+    #[must_use]
+    pub fn particles(&self) -> &Particles {
+        &self.particles
+    }
+
+    /// What was counted and measured, and what the user should know.
+    #[must_use]
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// What was measured of each particle: columns as long as those of [`Sample::particles`].
+    #[must_use]
+    pub fn measured(&self) -> &quality::Report {
+        &self.measured
+    }
+
+    /// The clip box, in the coordinates of the field.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The triangles over the particles: an oriented manifold, closed where the surface is, counter-clockwise seen from outside. The
+    /// first call joins the particles, in below a microsecond each.
+    #[must_use]
+    pub fn mesh(&self) -> &Triangulation {
+        self.mesh.get_or_init(|| Meshing::join(&self.particles, &self.known, &self.local_bounds))
+    }
+
+    /// Writes the particles with what was measured of them to `out`, which should be buffered.
+    ///
+    /// # Errors
+    ///
+    /// Those of `out`.
+    pub fn write(&self, format: Format, out: &mut dyn Write) -> io::Result<()> {
+        export::write(format, &self.particles, &self.measured, out)
+    }
+
+    /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered.
+    ///
+    /// # Errors
+    ///
+    /// Those of `out`; and where a format's own counters, of 32 bits, are too small.
+    pub fn write_mesh(&self, format: MeshFormat, out: &mut dyn Write) -> io::Result<()> {
+        export::write_mesh(format, &self.particles, &self.measured, &self.mesh().triangles, out)
+    }
+}

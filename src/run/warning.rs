@@ -1,0 +1,362 @@
+//! What a user should know about a run: a typed list, whose `Display` is a sentence for each.
+
+use super::{Run, check};
+use crate::field::Field;
+use crate::math::{grouped, shortest_text};
+use crate::sampler::{COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SizeMode, StopReason, Unsampled};
+use core::fmt;
+use serde::{Serialize, Serializer};
+
+/// Sheets are said to be close if at least this share of the particles face one, and at least this many: a few do so across every
+/// sharp edge.
+const CLOSE_SHARE: f64 = 0.005;
+const CLOSE_COUNT: usize = 8;
+/// Places of components without a particle that are named in words; the report has all.
+const NAMED: usize = 4;
+
+/// What a user should know about a run. `Display` says it in one or two sentences, with what to do.
+///
+/// Places are coordinates of the field. `length` is the radius of the run, to a thousandth of which they are told.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// More particles would fit than the limit allows.
+    Limit {
+        /// Number of particles to expect.
+        predicted: u64,
+        /// [`Settings::max_particles`](crate::sampler::Settings::max_particles).
+        limit: u32,
+    },
+    /// f touches zero without changing its sign.
+    Touches,
+    /// Another equation of the same surface is sampled.
+    SampledAs {
+        /// That equation.
+        equation: String,
+    },
+    /// The gradient that the field gives is not that of its values.
+    Gradient {
+        /// Where they differ.
+        position: [f64; 3],
+        /// A length to a thousandth of which the place is told.
+        length: f64,
+    },
+    /// A wanted number of particles was missed by more than the 3 % that are promised.
+    Count {
+        /// Number of particles.
+        count: usize,
+        /// Wanted number.
+        wanted: u32,
+    },
+    /// A refinement was asked for, and the front stands.
+    NotRefined(Refusal),
+    /// Children could not be placed.
+    Children {
+        /// Number of children that found no surface at the right distance.
+        not_converged: u64,
+        /// Number of children that met a place without a value or a normal.
+        undefined: u64,
+    },
+    /// Particles face another sheet within their diameter.
+    CloseSheets {
+        /// Number of such particles.
+        count: usize,
+    },
+    /// The run was ended because too many seeds stayed alone beside other particles.
+    EndedEarly {
+        /// Number of seeds taken back.
+        seeds: u32,
+    },
+    /// Features within the reach of other particles are too small for a particle of their own.
+    SmallFeatures {
+        /// Number of such features.
+        count: u32,
+    },
+    /// Components of the surface hold no particle.
+    WithoutParticle {
+        /// The components; there is at least one.
+        components: Vec<Unsampled>,
+        /// Radius of the run.
+        length: f64,
+        /// Whether sheets are too near to be told apart, so that a smaller radius is no remedy.
+        is_unresolved: bool,
+    },
+    /// The triangles between the particles do not close the surface.
+    Open {
+        /// Number of edges of one triangle alone.
+        edges: usize,
+        /// Number of particles in no triangle.
+        points: usize,
+        /// One of the places.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
+    /// It is not proven that every component has been found.
+    Unproven {
+        /// Why; its place is in the coordinates of the field.
+        doubt: Doubt,
+        /// Radius of the run.
+        length: f64,
+    },
+    /// The search was left open beside places where f is beyond double precision.
+    Overflow,
+}
+
+impl Serialize for Warning {
+    /// As the sentence.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<F: Field> Run<F> {
+    /// What is to be said at the start of a run of about so many particles.
+    pub(super) fn known_at_start(&mut self, predicted: u64, limit: u32) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if predicted > u64::from(limit) {
+            warnings.push(Warning::Limit { predicted, limit });
+        }
+        if self.sampler.touches() {
+            warnings.push(Warning::Touches);
+        }
+        // Derivatives of a field that has bounds are derived, not given.
+        let bounds = self.local_bounds();
+        if self.field.bounded().is_none()
+            && let Some(at) = check::wrong_gradient(&mut self.field, &bounds)
+        {
+            let position = self.place(at.to_array());
+            warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
+        }
+        warnings.extend(self.field.sampled_as().map(|equation| Warning::SampledAs { equation }));
+        warnings
+    }
+
+    /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing` is the number of particles that
+    /// face another sheet.
+    pub(super) fn warnings_of_run(&self, sampled: &Sampled, facing: usize) -> Vec<Warning> {
+        let total = self.particles().len();
+        let (length, settings, counts) =
+            (self.sampler.radius(), self.sampler.settings(), self.sampler.counts());
+        let mut warnings = self.start.warnings.clone();
+        let stop_reason = self.last.as_ref().and_then(|progress| progress.stop_reason);
+        let is_met = (total as f64 / f64::from(settings.count) - 1.0).abs() <= COUNT_TOLERANCE;
+        if settings.size_mode == SizeMode::Count
+            && matches!(stop_reason, Some(StopReason::Complete | StopReason::OneParticle))
+            && !is_met
+        {
+            warnings.push(Warning::Count { count: total, wanted: settings.count });
+        }
+        let doubts = self.sampler.doubts();
+        let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
+        let origin = self.particles().origin;
+        warnings.extend(counts.refusal.map(|refusal| Warning::NotRefined(refusal.counted_from_zero(origin))));
+        // Children of a coarse front are no trouble once its mesh has been checked and refined.
+        let FateCounts { not_converged, undefined, .. } =
+            if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
+        if not_converged > 0 || undefined > 0 {
+            warnings.push(Warning::Children { not_converged, undefined });
+        }
+        if !is_unresolved && facing >= CLOSE_COUNT && facing as f64 >= CLOSE_SHARE * total as f64 {
+            warnings.push(Warning::CloseSheets { count: facing });
+        }
+        if counts.ended_early {
+            warnings.push(Warning::EndedEarly { seeds: counts.left_out });
+        }
+        // Where the run was audited, components without particles are named.
+        if sampled.missing.is_none() && counts.left_out > 0 {
+            warnings.push(Warning::SmallFeatures { count: counts.left_out });
+        }
+        if !sampled.without.is_empty() {
+            let components = sampled.without.clone();
+            warnings.push(Warning::WithoutParticle { components, length, is_unresolved });
+        }
+        if let Some(opening) = self.measuring.measured.opening.filter(|_| !is_unresolved) {
+            let position = self.place(opening.position.as_dvec3().to_array());
+            let (edges, points) = (opening.edges, opening.points);
+            warnings.push(Warning::Open { edges, points, position, length });
+        }
+        // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already. No model from
+        // points has bounds, which the row of the report says.
+        let is_told = |doubt: &Doubt| match doubt {
+            Doubt::NoBounds => false,
+            Doubt::Witnesses { .. } => !is_unresolved,
+            _ => true,
+        };
+        let moved = doubts.into_iter().filter(is_told).map(|doubt| doubt.moved(|place| self.place(place)));
+        warnings.extend(moved.map(|doubt| Warning::Unproven { doubt, length }));
+        warnings
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Limit { predicted, limit } => write!(
+                f,
+                "about {predicted} particles would fit, more than the limit of {limit}; the run will stop there."
+            ),
+            Self::Touches => f.write_str(
+                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
+                 If f is a square, enter what is squared instead.",
+            ),
+            Self::SampledAs { equation } => write!(
+                f,
+                "f has powers, roots or absolute values of whole factors, which take its gradient on the surface. The same surface \
+                 with every factor once is sampled: {equation}"
+            ),
+            Self::Gradient { position, length } => write!(
+                f,
+                "Near {} the gradient that the field gives is not that of its values: particles may lie off the surface and face the \
+                 wrong way. Correct the gradient, or leave it out and it is found by differences.",
+                place(*position, *length)
+            ),
+            Self::Count { count, wanted } => write!(
+                f,
+                "There are {count} particles, not the {wanted} wanted: where they are large against the surface or its box, their \
+                 number changes by leaps."
+            ),
+            Self::NotRefined(refusal) => refusal.fmt(f),
+            Self::Children { not_converged, undefined } => {
+                let children = |count: u64| counted(count as usize, "child", "children");
+                let mut troubles = Vec::new();
+                if *not_converged > 0 {
+                    troubles.push(format!("{} found no surface at the right distance", children(*not_converged)));
+                }
+                if *undefined > 0 {
+                    troubles.push(format!("{} met a place without a value or a normal", children(*undefined)));
+                }
+                let troubles = troubles.join(" and ");
+                write!(f, "{troubles}: an edge, a singular point or a radius too large for the curvature.")
+            }
+            Self::CloseSheets { count } => write!(
+                f,
+                "{count} particles face another sheet of the surface within 2r. The sheets are kept apart, but the particles are \
+                 too large to tell them apart by position alone: choose a smaller radius."
+            ),
+            Self::EndedEarly { seeds } => write!(
+                f,
+                "The run was ended early: {seeds} seeds had stayed alone beside other particles, because the particles are larger \
+                 than the distances between the parts of the surface. Choose a smaller radius."
+            ),
+            Self::SmallFeatures { count } => write!(
+                f,
+                "Within 2r of other particles lie features too small for a particle of their own, {count} in all: a smaller radius \
+                 shows whether they are components of their own."
+            ),
+            Self::WithoutParticle { components, length, is_unresolved } => {
+                without_particle(f, components, *length, *is_unresolved)
+            }
+            Self::Open { edges, points, position, length } => {
+                let edges_open = format!("{} open", counted(*edges, "edge", "edges"));
+                let points_out = format!("{} out", counted(*points, "particle", "particles"));
+                let found = match (edges, points) {
+                    (_, 0) => edges_open,
+                    (0, _) => points_out,
+                    _ => format!("{edges_open} and {points_out}"),
+                };
+                write!(
+                    f,
+                    "The triangles between the particles leave {found}, first near {}: the components and the Euler number of the \
+                     sample need not be those of the surface. The surface has an edge, a point or an end there, or is thinner or bends \
+                     more sharply than the particles are large; then choose a smaller radius.",
+                    place(*position, *length)
+                )
+            }
+            Self::Unproven { doubt, length } => unproven(f, doubt, *length),
+            Self::Overflow => f.write_str(
+                "f is too large for double precision in a part of the box, where components may be missed: enter it in a form with \
+                 smaller numbers, each factor by its logarithm for example, or make the box smaller.",
+            ),
+        }
+    }
+}
+
+/// A number of things, in words.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// A number rounded to a thousandth of a length.
+fn short(x: f64, length: f64) -> String {
+    let digits = (3.0 - libm::floor(libm::log10(length))).clamp(0.0, 15.0) as usize;
+    shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0)
+}
+
+/// A place in words, rounded to a thousandth of a length.
+fn place(position: [f64; 3], length: f64) -> String {
+    format!("({})", position.map(|x| short(x, length)).join(", "))
+}
+
+/// A distance with two digits.
+fn about_length(x: f64) -> String {
+    shortest_text(format!("{x:.1e}").parse::<f64>().unwrap_or(x))
+}
+
+/// Names the places of the components without a particle.
+fn without_particle(
+    f: &mut fmt::Formatter<'_>,
+    components: &[Unsampled],
+    length: f64,
+    is_unresolved: bool,
+) -> fmt::Result {
+    let named = components.iter().take(NAMED).map(|&Unsampled { position, reach, goes_on }| {
+        let about = if goes_on { "more than" } else { "about" };
+        format!("{}, reaching {about} {} from there", place(position, length), short(reach, length))
+    });
+    let places = named.collect::<Vec<_>>().join("; near ");
+    let more = components.len().saturating_sub(NAMED);
+    let rest = if more > 0 { format!("; and at {more} more places") } else { String::new() };
+    let cause = if is_unresolved {
+        "is too near another one"
+    } else {
+        "is too small or too near another one for this radius: choose a smaller radius"
+    };
+    write!(
+        f,
+        "No particle lies on the surface near {places}{rest}. A component there, or a part of one, {cause}."
+    )
+}
+
+/// Says why it is not proven that every component has been found.
+fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Result {
+    match *doubt {
+        Doubt::NoBounds => f.write_str(
+            "The field has no bounds to prove by that every component was found: one that is smaller than the grid of the survey can \
+             be missing.",
+        ),
+        Doubt::Unfinished => {
+            f.write_str("The run ended before the search for components did: one can be missing.")
+        }
+        Doubt::Unresolved { position, gap, least } => write!(
+            f,
+            "Near {} two sheets of the surface are {} apart. Particles have single-precision coordinates, which tell sheets apart \
+             down to about {} in this box. Nearer ones may be sampled as one, and the components and the Euler number of the sample \
+             need not be those of the surface. A smaller radius does not help: move the sheets apart, or sample one factor of f at \
+             a time.",
+            place(position, length),
+            about_length(gap),
+            about_length(least)
+        ),
+        Doubt::Cells { count, position, size } => write!(
+            f,
+            "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
+             hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
+            grouped_count(count, "cell", "cells"),
+            place(position, size.min(length)),
+            about_length(size)
+        ),
+        Doubt::Witnesses { count, position } => write!(
+            f,
+            "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
+             may be too near there for this radius: a smaller one may decide it.",
+            grouped_count(count, "point of the surface", "points of the surface"),
+            place(position, length)
+        ),
+    }
+}
+
+/// A large number of things, in words.
+fn grouped_count(count: u64, one: &str, many: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{} {many}", grouped(count as usize)) }
+}

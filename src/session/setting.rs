@@ -1,0 +1,469 @@
+//! The settings as they are shown: from this table the page builds a control for each, the command line an option, and the README a
+//! row. Defaults and ranges are those of [`Settings`].
+
+use super::fitting::BoxMode;
+use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
+use core::ops::RangeInclusive;
+use serde::Serialize;
+
+/// A setting of a run.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Setting {
+    /// Name in [`Settings`].
+    pub name: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+    /// One line of explanation.
+    pub help: &'static str,
+    /// Group it is shown in.
+    pub group: Group,
+    /// What its values are.
+    pub kind: Kind,
+    /// Default value.
+    pub default: Value,
+    /// Smallest value; 0 for a choice.
+    pub min: f64,
+    /// Largest value that the page offers; 0 for a choice.
+    pub max: f64,
+    /// Largest value that is accepted.
+    #[serde(skip)]
+    pub accepted_max: f64,
+    /// Step of a slider; on a logarithmic scale a factor minus one. 0 for a choice.
+    pub step: f64,
+    /// How values are spread over a slider.
+    pub scale: Scale,
+    /// Unit; `%` stands for a share of the diagonal of the box, which is shown times 100.
+    pub unit: &'static str,
+    /// Values of a choice.
+    pub choices: &'static [Choice],
+    /// The setting has an effect, and is shown, while all of these hold; always if there is none.
+    pub when: &'static [Condition],
+    /// The value of some settings.
+    #[serde(skip)]
+    read: fn(&Settings) -> Value,
+}
+
+impl Setting {
+    /// The values of a number that are accepted.
+    #[must_use]
+    pub fn accepted(&self) -> RangeInclusive<f64> {
+        self.min..=self.accepted_max
+    }
+
+    /// Whether it is a share of the diagonal of the box.
+    #[must_use]
+    pub fn is_share(&self) -> bool {
+        self.unit == "%"
+    }
+
+    /// Whether it has an effect only while another setting has this value.
+    #[must_use]
+    pub fn needs(&self, name: &str, value: &str) -> bool {
+        self.when
+            .iter()
+            .any(|condition| condition.equal && (condition.name, condition.value) == (name, value))
+    }
+
+    /// Name of its option of the command line, without the dashes. The options of the kind of sampling and of the count choose by being
+    /// there.
+    #[must_use]
+    pub fn option(&self) -> String {
+        match self.name {
+            "box_mode" => "box".to_owned(),
+            "sampling" => "adaptive".to_owned(),
+            "size_mode" => "count".to_owned(),
+            "radius_share" => "radius".to_owned(),
+            "radius_law" => "law".to_owned(),
+            "radius_min_share" => "radius-min".to_owned(),
+            "radius_max_share" => "radius-max".to_owned(),
+            "relax_steps" => "relax".to_owned(),
+            name => name.replace('_', "-"),
+        }
+    }
+
+    /// Its value among some settings.
+    #[must_use]
+    pub fn value(&self, settings: &Settings) -> Value {
+        (self.read)(settings)
+    }
+}
+
+/// Where a setting is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub enum Group {
+    /// With what everyone uses.
+    Sampling,
+    /// With what few need.
+    Advanced,
+}
+
+/// What the values of a setting are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Numbers.
+    Number,
+    /// Whole numbers.
+    Integer,
+    /// A few named values.
+    Choice,
+}
+
+/// How values are spread over a slider.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum Scale {
+    /// Equal steps add the same.
+    Linear,
+    /// Equal steps multiply by the same.
+    Log,
+}
+
+/// The value of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(untagged)]
+pub enum Value {
+    /// Of a number.
+    Number(f64),
+    /// Of a whole number.
+    Integer(u64),
+    /// Of a choice: [`Choice::value`].
+    Choice(&'static str),
+}
+
+impl Value {
+    /// What kind of setting it is a value of.
+    #[must_use]
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Number(_) => Kind::Number,
+            Self::Integer(_) => Kind::Integer,
+            Self::Choice(_) => Kind::Choice,
+        }
+    }
+
+    /// The value of a number, whole or not.
+    #[must_use]
+    pub fn as_number(self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(number),
+            Self::Integer(whole) => Some(whole as f64),
+            Self::Choice(_) => None,
+        }
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<u64> for Value {
+    fn from(whole: u64) -> Self {
+        Self::Integer(whole)
+    }
+}
+
+impl From<u32> for Value {
+    fn from(whole: u32) -> Self {
+        Self::Integer(whole.into())
+    }
+}
+
+/// One value of a choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Choice {
+    /// Value, as it stands in JSON.
+    pub value: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+}
+
+/// What has to hold of another setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Condition {
+    /// Name of the other setting.
+    pub name: &'static str,
+    /// One of its choices.
+    pub value: &'static str,
+    /// Whether it has that value then, or another one.
+    pub equal: bool,
+}
+
+/// A setting that is a number, with the range that is accepted.
+fn number(
+    name: &'static str,
+    read: fn(&Settings) -> Value,
+    label: &'static str,
+    help: &'static str,
+) -> Setting {
+    let (min, max) = Settings::range(name).unwrap_or(0.0..=0.0).into_inner();
+    let default = read(&Settings::DEFAULT);
+    Setting {
+        name,
+        label,
+        help,
+        group: Group::Sampling,
+        kind: default.kind(),
+        default,
+        min,
+        max,
+        accepted_max: max,
+        step: 0.01,
+        scale: Scale::Linear,
+        unit: "",
+        choices: &[],
+        when: &[],
+        read,
+    }
+}
+
+/// A setting that is one of a few named values.
+fn choice(
+    name: &'static str,
+    read: fn(&Settings) -> Value,
+    label: &'static str,
+    help: &'static str,
+    choices: &'static [Choice],
+) -> Setting {
+    Setting { step: 0.0, choices, ..number(name, read, label, help) }
+}
+
+const fn when(name: &'static str, value: &'static str) -> Condition {
+    Condition { name, value, equal: true }
+}
+
+const UNIFORM: Condition = when("sampling", "uniform");
+const ADAPTIVE: Condition = when("sampling", "adaptive");
+const BY_RADIUS: Condition = when("size_mode", "radius");
+const BY_COUNT: Condition = when("size_mode", "count");
+const BY_CHORD: Condition = when("radius_law", "chord_error");
+const BY_CURVATURE: Condition = Condition { equal: false, ..BY_CHORD };
+
+/// Declares the values of a choice: variant, value in JSON, name for a person.
+macro_rules! choices {
+    ($list:ident of $name:ident: $($variant:ident $value:literal $label:literal),*) => {
+        const $list: &[Choice] = &[$(Choice { value: $value, label: $label }),*];
+
+        impl From<$name> for Value {
+            fn from(choice: $name) -> Self {
+                Self::Choice(match choice { $($name::$variant => $value),* })
+            }
+        }
+    };
+}
+
+choices!(BOXES of BoxMode: Fit "fit" "Fit", Fixed "fixed" "Fixed");
+choices!(SAMPLINGS of Sampling: Uniform "uniform" "Uniform", Adaptive "adaptive" "Adaptive");
+choices!(SIZES of SizeMode: Radius "radius" "Radius", Count "count" "Count");
+choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "max_curvature" "Largest curvature",
+    SumOfCurvatures "sum_of_curvatures" "Sum of curvatures");
+choices!(METHODS of Method: Front "front" "Front", Refined "refined" "Refined");
+choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
+
+/// Every setting, in the order in which they are shown.
+#[must_use]
+pub fn settings() -> Vec<Setting> {
+    let log = |setting| Setting { scale: Scale::Log, ..setting };
+    let share = |setting| Setting { unit: "%", ..log(setting) };
+    let particles = |setting| Setting { unit: "particles", ..log(setting) };
+    let advanced = |setting| Setting { group: Group::Advanced, ..setting };
+    vec![
+        // It acts before a run: a run has the box that it is given.
+        choice(
+            "box_mode",
+            |_| BoxMode::default().into(),
+            "Box",
+            "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
+            BOXES,
+        ),
+        choice(
+            "sampling",
+            |settings| settings.sampling.into(),
+            "Sampling",
+            "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
+            SAMPLINGS,
+        ),
+        choice(
+            "size_mode",
+            |settings| settings.size_mode.into(),
+            "Size by",
+            "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
+            SIZES,
+        ),
+        Setting {
+            when: &[UNIFORM, BY_RADIUS],
+            ..share(number(
+                "radius_share",
+                |settings| settings.radius_share.into(),
+                "Radius",
+                "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
+            ))
+        },
+        Setting {
+            when: &[BY_COUNT],
+            ..particles(number(
+                "count",
+                |settings| settings.count.into(),
+                "Count",
+                "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
+            ))
+        },
+        Setting {
+            when: &[ADAPTIVE],
+            ..choice(
+                "radius_law",
+                |settings| settings.radius_law.into(),
+                "Radius law",
+                "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
+                LAWS,
+            )
+        },
+        Setting {
+            when: &[ADAPTIVE, BY_CHORD],
+            ..share(number(
+                "chord_error",
+                |settings| settings.chord_error.into(),
+                "Chord error",
+                "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
+            ))
+        },
+        Setting {
+            unit: "× 1/κ",
+            when: &[ADAPTIVE, BY_CURVATURE],
+            ..log(number(
+                "curvature_scale",
+                |settings| settings.curvature_scale.into(),
+                "Curvature scale",
+                "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
+            ))
+        },
+        Setting {
+            when: &[ADAPTIVE],
+            ..advanced(share(number(
+                "radius_min_share",
+                |settings| settings.radius_min_share.into(),
+                "Smallest radius",
+                "No particle is smaller than this share of the box diagonal.",
+            )))
+        },
+        Setting {
+            when: &[ADAPTIVE],
+            ..advanced(share(number(
+                "radius_max_share",
+                |settings| settings.radius_max_share.into(),
+                "Largest radius",
+                "No particle is larger than this share of the box diagonal.",
+            )))
+        },
+        Setting {
+            when: &[ADAPTIVE],
+            ..advanced(number(
+                "grading",
+                |settings| settings.grading.into(),
+                "Grading",
+                "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
+            ))
+        },
+        Setting {
+            max: 100.0,
+            step: 1.0,
+            unit: "steps",
+            ..number(
+                "relax_steps",
+                |settings| settings.relax_steps.into(),
+                "Relaxation",
+                "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
+            )
+        },
+        advanced(choice(
+            "method",
+            |settings| settings.method.into(),
+            "Method",
+            "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on smooth surfaces.",
+            METHODS,
+        )),
+        Setting {
+            unit: "× 2r",
+            ..advanced(number(
+                "match_tolerance",
+                |settings| settings.match_tolerance.into(),
+                "Match tolerance",
+                "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+            ))
+        },
+        advanced(choice(
+            "gaps",
+            |settings| settings.gaps.into(),
+            "Gaps",
+            "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
+            GAPS,
+        )),
+        Setting {
+            max: 999_999.0,
+            step: 1.0,
+            ..advanced(number(
+                "seed",
+                |settings| settings.seed.into(),
+                "Seed",
+                "Chooses the point on the surface where the front begins.",
+            ))
+        },
+        advanced(particles(number(
+            "max_particles",
+            |settings| settings.max_particles.into(),
+            "Limit",
+            "The run stops when it has placed this many.",
+        ))),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Map, Value as Json, json};
+
+    #[test]
+    fn every_setting_of_a_run_is_shown_with_the_value_that_it_has_as_text() {
+        let mut text: Map<String, Json> = match json!(Settings::DEFAULT) {
+            Json::Object(text) => text,
+            other => panic!("settings are an object, not {other}"),
+        };
+        text.insert("box_mode".to_owned(), json!(BoxMode::default()));
+        let shown: Map<String, Json> = settings()
+            .iter()
+            .map(|setting| (setting.name.to_owned(), json!(setting.value(&Settings::DEFAULT))))
+            .collect();
+        assert_eq!(shown, text);
+    }
+
+    #[test]
+    fn every_value_of_a_choice_is_read_as_itself() {
+        for setting in settings().iter().filter(|setting| setting.name != "box_mode") {
+            for choice in setting.choices {
+                let settings: Settings =
+                    serde_json::from_value(json!({ setting.name: choice.value })).expect("settings");
+                assert_eq!(setting.value(&settings), Value::Choice(choice.value), "{}", setting.name);
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_have_a_range_and_a_step() {
+        for setting in settings().iter().filter(|setting| setting.kind != Kind::Choice) {
+            assert!(
+                setting.min < setting.max && setting.max <= setting.accepted_max && setting.step > 0.0,
+                "{}",
+                setting.name
+            );
+        }
+    }
+}
