@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 /// A torus around the z axis, whose tube becomes thinner on one side. Its derivatives are found by differences.
 fn horn(p: DVec3) -> f64 {
-    let ring = p.x.hypot(p.y) - 1.0;
+    let ring = p.truncate().length() - 1.0;
     let tube = 0.3 + 0.15 * p.x;
     ring * ring + p.z * p.z - tube * tube
 }

@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release --example points -- scan.xyz`; without a file, points of a ball are taken.
 
+use marching_particles::glam::DVec2;
 use marching_particles::{Settings, fit_points, sample};
 use std::error::Error;
 
@@ -10,9 +11,8 @@ fn ball() -> Vec<u8> {
     const COUNT: u32 = 600;
     let line = |k: u32| {
         let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(COUNT);
-        let (sin, cos) = (2.4 * f64::from(k)).sin_cos();
-        let radius = (1.0 - z * z).sqrt();
-        format!("{} {} {z}\n", radius * cos, radius * sin)
+        let around = (1.0 - z * z).sqrt() * DVec2::from_angle(2.4 * f64::from(k));
+        format!("{} {} {z}\n", around.x, around.y)
     };
     (0..COUNT).map(line).collect::<String>().into_bytes()
 }

@@ -199,7 +199,7 @@ fn a_field_without_bounds_is_looked_at_on_a_grid() {
     struct Blob;
     impl Field for Blob {
         fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-            (p.length() - 2.5, p.normalize())
+            (p.length() - 2.5, p.normalize_or_zero())
         }
     }
     let mut fit = BoxFit::new(Blob);

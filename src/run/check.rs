@@ -23,8 +23,8 @@ pub(super) fn wrong_gradient(field: &mut dyn Field, bounds: &Bounds) -> Option<D
         let found = DVec3::from_array(DVec3::AXES.map(&mut along));
         if found.is_finite() && found != DVec3::ZERO {
             looked_at += 1;
-            // True for a gradient that is not a number, too.
-            if !((given - found).length() <= DIFFERENT * found.length()) {
+            let error = (given - found).length();
+            if error.is_nan() || error > DIFFERENT * found.length() {
                 wrong.push(p);
             }
         }

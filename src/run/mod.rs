@@ -112,6 +112,7 @@ impl<F: Field> Run<F> {
     ///
     /// If a setting or the box is out of its range, or the memory does not hold the particles to expect.
     pub fn start(field: F, settings: &Settings) -> Result<Self, Error> {
+        settings.validate()?;
         Self::start_with(field, |_| *settings)
     }
 

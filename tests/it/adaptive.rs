@@ -296,7 +296,7 @@ fn fates_of_slots_agree_with_the_counts() {
             let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
             slots.filter(|&f| f == fate).count() as u64
         };
-        let context = format!("{surface}");
+        let context = surface;
         assert_eq!(count(SlotFate::Added), fates.added, "{context}");
         assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
         assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");

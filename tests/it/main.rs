@@ -11,6 +11,7 @@ mod box_fit;
 mod cli;
 mod components;
 mod differential;
+mod door;
 mod far;
 mod faults;
 mod formula;

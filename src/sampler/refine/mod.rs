@@ -404,7 +404,7 @@ impl Refinement {
                 layer.centre(&mut ground, springs, near);
             }
             Pass::Thin => {
-                self.tools.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.level.spacing)))
+                self.tools.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.level.spacing)));
             }
             Pass::Land => {
                 layer.land(&mut ground, self.level.spacing, next..last);

@@ -1,0 +1,155 @@
+//! Tests of the door: what a program that uses the library meets.
+
+use marching_particles::glam::DVec3;
+use marching_particles::{
+    Bounds, Error, Field, FnField, Format, Formula, MeshFormat, Run, Settings, SettingsError, StopReason,
+    Warning, sample,
+};
+
+const FEW: u32 = 1_500;
+
+fn sphere(p: DVec3) -> f64 {
+    p.length() - 1.0
+}
+
+fn outward(p: DVec3) -> DVec3 {
+    p.normalize_or_zero()
+}
+
+#[test]
+fn a_closure_is_sampled_as_evenly_as_the_formula_of_its_surface() {
+    let settings = Settings::with_count(FEW);
+    let formula = sample(Formula::parse("x^2 + y^2 + z^2 = 1").unwrap(), &settings).unwrap();
+    let plain = sample(FnField::new(sphere), &settings).unwrap();
+    let given = sample(FnField::new(sphere).with_gradient(outward), &settings).unwrap();
+    for sample in [&formula, &plain, &given] {
+        let report = sample.report();
+        assert!(report.count.abs_diff(FEW as usize) <= 45, "{}", report.count);
+        assert_eq!(report.warnings, []);
+        assert_eq!((report.proof.components, sample.mesh().topology.euler()), (1, 2));
+        assert!(report.measures.quality.unwrap().six > 0.85);
+        let off = sample.particles().position.iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-5, "{off}");
+    }
+}
+
+#[test]
+fn a_run_that_borrows_its_field_is_the_same_as_the_whole_job() {
+    let settings = Settings::with_count(FEW).adaptive();
+    let whole = sample(FnField::new(sphere), &settings).unwrap();
+    let mut field = FnField::new(sphere);
+    let mut run = Run::start(&mut field, &settings).unwrap();
+    while run.step(37).stop_reason.is_none() {}
+    assert_eq!(run.particles().digest(), whole.particles().digest());
+    // More steps, and a cancelled run, are measured as they stand.
+    run.relax(2);
+    while run.step(1_000).stop_reason.is_none() {}
+    assert_eq!(run.report().growth.energy.map(|energy| energy.len()), Some(13));
+    run.restart(&Settings::with_count(4 * FEW)).unwrap();
+    while run.count() < 200 {
+        run.step(100);
+    }
+    run.cancel();
+    let part = run.finish().unwrap();
+    assert_eq!(part.report().stop_reason, Some(StopReason::Cancelled));
+    assert!(part.particles().len() < 4 * FEW as usize);
+}
+
+#[test]
+fn a_box_that_is_given_is_kept_and_one_that_is_not_is_fitted() {
+    let given = sample(FnField::new(sphere), &Settings::with_count(FEW).in_box(Bounds::cube(0.8))).unwrap();
+    assert_eq!(given.bounds(), Bounds::cube(0.8));
+    assert!(given.report().border > 0 && given.report().cut.is_some());
+    let fitted = sample(FnField::new(sphere), &Settings::with_count(FEW)).unwrap();
+    assert!(fitted.bounds().max.iter().all(|end| (1.0..1.6).contains(end)), "{:?}", fitted.bounds());
+    // Far from zero, too, where single precision does not hold the places of particles.
+    let centre = DVec3::new(1e4, -2e4, 0.0);
+    let mut far = Bounds::cube(1.2);
+    for axis in 0..3 {
+        far.min[axis] += centre[axis];
+        far.max[axis] += centre[axis];
+    }
+    let settings = Settings::with_count(FEW).in_box(Bounds { min: far.min, max: far.max });
+    let far = sample(FnField::new(|p: DVec3| sphere(p - centre)), &settings);
+    assert_eq!(far.err(), Some(Error::Settings(SettingsError::Box)));
+    let near = DVec3::new(100.0, -200.0, 0.0);
+    let around = Bounds { min: (near - 1.2).to_array(), max: (near + 1.2).to_array() };
+    let sampled =
+        sample(FnField::new(|p: DVec3| sphere(p - near)), &Settings::with_count(FEW).in_box(around)).unwrap();
+    let off = (0..sampled.particles().len()).map(|i| sphere(sampled.particles().place(i) - near).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-5);
+}
+
+#[test]
+fn files_are_written_from_a_sample() {
+    let sample = sample(FnField::new(sphere), &Settings::with_count(FEW)).unwrap();
+    for (_, format) in Format::ALL {
+        let mut bytes = Vec::new();
+        sample.write(format, &mut bytes).unwrap();
+        assert!(bytes.len() > 24 * sample.particles().len(), "{format:?}");
+    }
+    for (_, format) in MeshFormat::ALL {
+        let mut bytes = Vec::new();
+        sample.write_mesh(format, &mut bytes).unwrap();
+        assert!(bytes.len() > 12 * sample.mesh().triangles.len(), "{format:?}");
+    }
+}
+
+#[test]
+fn a_gradient_that_is_not_that_of_the_values_is_told() {
+    let settings = Settings::with_count(FEW);
+    let is_told = |field: &mut dyn Field| match sample(field, &settings) {
+        Ok(sample) => {
+            sample.report().warnings.iter().any(|warning| matches!(warning, Warning::Gradient { .. }))
+        }
+        Err(error) => {
+            error.to_string().contains("the gradient that the field gives is not that of its values")
+        }
+    };
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|p| -outward(p))));
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|p| 3.0 * outward(p))));
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|_| DVec3::X)));
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|_| DVec3::ZERO)));
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|_| DVec3::splat(f64::INFINITY))));
+    assert!(is_told(&mut FnField::new(sphere).with_gradient(|_| DVec3::NAN)));
+    assert!(!is_told(&mut FnField::new(sphere).with_gradient(outward)));
+    // A kink is no wrong gradient.
+    let cube = |p: DVec3| p.abs().max_element() - 1.0;
+    assert!(!is_told(&mut FnField::new(cube)));
+}
+
+#[test]
+fn a_field_without_a_surface_gets_a_sentence() {
+    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.5));
+    let refused = |value: fn(DVec3) -> f64| match sample(FnField::new(value), &settings) {
+        Err(Error::Nothing { reason, message }) => (reason, message),
+        other => panic!("{other:?}"),
+    };
+    let (reason, message) = refused(|_| f64::NAN);
+    assert_eq!(reason, StopReason::Undefined);
+    assert!(message.contains("no value"), "{message}");
+    let (reason, message) = refused(|p| if p.x > 0.1 { 1.0 } else { -1.0 });
+    assert_eq!(reason, StopReason::NoSurface);
+    assert!(message.contains("jumps"), "{message}");
+    let (_, message) = refused(|p| p.length() + 1.0);
+    assert!(message.contains("keeps one sign"), "{message}");
+    let (_, message) = refused(|p| if p.x > 0.1 { f64::INFINITY } else { f64::NEG_INFINITY });
+    assert!(!message.is_empty());
+}
+
+#[test]
+fn settings_out_of_range_are_refused_before_any_work() {
+    let untouched = || FnField::new(|_: DVec3| -> f64 { panic!("the field is asked for nothing") });
+    let mut settings = Settings::with_count(FEW).in_box(Bounds::cube(1.0));
+    settings.grading = 2.0;
+    let error = sample(untouched(), &settings).unwrap_err();
+    assert_eq!(error.to_string(), "grading is 2, but must lie between 0.01 and 0.5");
+    let flat = Bounds { min: [0.0; 3], max: [1.0, 1.0, 0.0] };
+    let error = sample(untouched(), &Settings::with_count(FEW).in_box(flat)).unwrap_err();
+    assert_eq!(error, Error::Settings(SettingsError::Box));
+    let error = sample(untouched(), &Settings::with_radius(0.5)).unwrap_err();
+    assert!(
+        matches!(error, Error::Settings(SettingsError::OutOfRange { name: "radius_share", .. })),
+        "{error:?}"
+    );
+}
