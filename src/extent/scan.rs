@@ -204,7 +204,7 @@ async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &m
 struct Batch {
     boxes: Vec<Bounds>,
     known: Vec<Enclosure>,
-    /// Those that the bounds of the expression leave open.
+    /// Indices of the boxes that the bounds of the expression leave open.
     open: Vec<usize>,
     middles: Vec<Bounds>,
     at_middle: Vec<Enclosure>,

@@ -317,9 +317,9 @@ impl Sampler {
         }
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);
-            let limits = (self.survey.tolerance(), self.least_gap());
+            let (tolerance, least_gap) = (self.survey.tolerance(), self.least_gap());
             let probe = &mut Probe::new(field, &mut self.tools.memory);
-            while self.components.search(probe, &self.bounds, limits, u32::MAX) == 0 {}
+            while self.components.search(probe, &self.bounds, tolerance, least_gap, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
             self.survey.adopt(probe.field, found, &self.bounds, self.components.witnessed());
         }

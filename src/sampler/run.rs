@@ -216,7 +216,7 @@ impl Sampler {
         let slack = f64::from(2.0 * self.attempt.tolerance(&self.survey).residual);
         let others = self.tools.front.active_mut().within(seed.position, reach as f32);
         let others = others.iter().map(|near| near.index as usize).filter(|&j| j != last);
-        !holds_any(field, &self.output.particles, (seed, reach), others, slack)
+        !holds_any(field, &self.output.particles, seed, reach, others, slack)
     }
 
     /// Calls a method of the front with what it works on.
@@ -259,8 +259,8 @@ impl Sampler {
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
-        let limits = (tolerance, self.least_gap());
-        let unused = self.components.search(probe, &self.bounds, limits, slice);
+        let least_gap = self.least_gap();
+        let unused = self.components.search(probe, &self.bounds, tolerance, least_gap, slice);
         if unused == 0 {
             *left = 0;
             return PhaseState::Search;
@@ -280,7 +280,7 @@ impl Sampler {
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
             self.tools.front.active_mut().list_cover(&self.output.particles, point, &mut near);
             let start = probe.evaluations();
-            let cover = self.components.cover(probe, &self.output.particles, seed, near, (tolerance, rule));
+            let cover = self.components.cover(probe, &self.output.particles, seed, near, tolerance, rule);
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if cover == Cover::Bare
                 && let Some(next) = self.begin_front(probe, point, None)
@@ -495,7 +495,9 @@ impl Sampler {
         let unused = self.components.audit(
             probe,
             &self.output.particles,
-            (self.attempt.radius, tolerance, self.tools.front.active().rule()),
+            self.attempt.radius,
+            tolerance,
+            self.tools.front.active().rule(),
             slice,
         );
         self.counts.seeding_evaluations += probe.evaluations() - start;

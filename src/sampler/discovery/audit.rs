@@ -52,7 +52,7 @@ pub(crate) struct Audit {
     pub(crate) first_open: DVec3,
     /// Components without a particle, each by its first witness.
     pub(crate) without: Vec<Unsampled>,
-    /// These witnesses.
+    /// The first witness of each component without a particle.
     named: Vec<Seed>,
 }
 
@@ -309,7 +309,8 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
 pub(crate) fn holds_any(
     field: &mut dyn Bounded,
     particles: &Particles,
-    (seed, reach): (Seed, f64),
+    seed: Seed,
+    reach: f64,
     mut indices: impl Iterator<Item = usize>,
     slack: f64,
 ) -> bool {

@@ -5,8 +5,10 @@
 //! which of them have a particle on their component.
 
 pub(crate) mod audit;
+mod cell;
 pub(crate) mod completeness;
 mod dips;
+pub(crate) mod grid;
 mod interval_newton;
 pub(crate) mod nearness;
 pub(crate) mod octree;

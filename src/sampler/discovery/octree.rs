@@ -47,13 +47,15 @@
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3};
+use crate::sampler::discovery::cell::{CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise};
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed.
 const DEPTH: u8 = 16;
-/// The same where f jumps or is not defined. Such cells lie along curves and faces, so there are many.
+/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie along curves and faces, so there are
+/// many.
 const IRREGULAR_DEPTH: u8 = 6;
 /// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third of
 /// a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add
@@ -85,35 +87,8 @@ const LEAST_RISE: f64 = 0.02;
 const MOST_RISE: f64 = 2.0;
 /// A cell is halved along the sides that are longer than this share of the longest.
 const LONG: f64 = 0.7;
-/// Position of the cut, and of the probe in the footprint of a decided cell, as a share of the side. It is not the middle, where
-/// symmetric surfaces have their highest points and cross themselves.
-const CUT: f64 = 0.4709;
 /// Largest height difference between a witness and the surface, as a share of the rise over the footprint.
 const BESIDE: f64 = 1.0 - CUT;
-
-/// A cell of a stratum. A side has the length 0 where a face or an edge of the box fixes the coordinate.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    bounds: Bounds,
-    level: u8,
-}
-
-impl Cell {
-    /// The point of the footprint at which a decided cell is probed along up.
-    fn probe(&self) -> DVec3 {
-        self.bounds.lo() + CUT * self.bounds.size()
-    }
-
-    /// The sides of the footprint, then up.
-    fn axes(&self) -> ([Option<usize>; 2], usize) {
-        let free = |axis: usize| (self.bounds.min[axis] < self.bounds.max[axis]).then_some(axis);
-        match [free(0), free(1), free(2)] {
-            [x, y, Some(z)] => ([x, y], z),
-            [x, Some(y), None] => ([x, None], y),
-            [x, None, None] => ([None, None], x.unwrap_or(0)),
-        }
-    }
-}
 
 /// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -572,56 +547,6 @@ impl Octree {
             }
         }
     }
-}
-
-/// Adds the faces and edges of a box to the cells of a level.
-fn push_boundary(level: &mut Vec<Cell>, whole: &Bounds) {
-    // Each axis free, or pinned to either end.
-    for stratum in 1..27 {
-        let Bounds { mut min, mut max } = *whole;
-        let mut rest = stratum;
-        for axis in 0..3 {
-            match rest % 3 {
-                1 => max[axis] = min[axis],
-                2 => min[axis] = max[axis],
-                _ => {}
-            }
-            rest /= 3;
-        }
-        // A corner belongs to three edges.
-        if min != max {
-            level.push(Cell { bounds: Bounds { min, max }, level: 0 });
-        }
-    }
-}
-
-/// Whether a cell lies in the interior of a box.
-fn is_inside(cell: &Cell, around: &Bounds) -> bool {
-    around.holds_inside(&cell.bounds)
-}
-
-/// Whether a cell lies in a box that is left out of the search.
-fn is_left_out(cell: &Cell, isolated: &[Bounds]) -> bool {
-    isolated.iter().any(|around| is_inside(cell, around))
-}
-
-/// Whether no highest point lies in a cell on which f is defined and continuous.
-fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
-    let (sides, _) = cell.axes();
-    !known.may_vanish
-        || known.value.excludes_zero()
-        || sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
-}
-
-/// Returns a bound for the rise or fall of the surface over the footprint of the cell, by the bounds of the gradient; none where
-/// f is not monotone along up.
-fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
-    let (sides, up) = cell.axes();
-    let least = known.gradient[up].away_from_zero()?;
-    let size = cell.bounds.size();
-    let t: f64 =
-        sides.into_iter().flatten().map(|side| known.gradient[side].magnitude() / least * size[side]).sum();
-    t.is_finite().then_some(t)
 }
 
 /// Intersects bounds over a box with the mean value forms around its middle; `half` is half its size.

@@ -1,7 +1,7 @@
 //! Whether single precision holds the values of a field. Where it does not, the field is to be evaluated in double precision,
 //! compressed to a scale that is found here.
 
-use super::survey::CELLS;
+use super::grid::CELLS;
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};

@@ -19,7 +19,7 @@ use glam::{DVec3, Vec3};
 const UNITS: u32 = 16;
 /// Largest number of particles with which a connection is tried.
 const MOST_TRIED: usize = 6;
-/// The same for a connection through a chain of segments.
+/// Largest number of particles with which a connection through a chain of segments is tried.
 const MOST_TRIED_BY_SEGMENTS: usize = 2;
 /// Largest number of evaluations in the projection of a witness onto the surface as single precision computes it.
 const MAX_STEPS: u32 = 12;
@@ -90,7 +90,8 @@ impl ComponentSearch {
         &mut self,
         probe: &mut Probe,
         bounds: &Bounds,
-        (tolerance, least_gap): (Tolerance, f64),
+        tolerance: Tolerance,
+        least_gap: f64,
         budget: u32,
     ) -> u32 {
         let Some(field) = probe.field.bounded() else { return budget };
@@ -216,7 +217,8 @@ impl ComponentSearch {
         particles: &Particles,
         seed: Seed,
         near: Vec<u32>,
-        (tolerance, rule): (Tolerance, SheetRule),
+        tolerance: Tolerance,
+        rule: SheetRule,
     ) -> Cover {
         // Without bounds there is no witness.
         let Some(field) = probe.field.bounded() else { return Cover::Covered };
@@ -259,7 +261,9 @@ impl ComponentSearch {
         &mut self,
         probe: &mut Probe,
         particles: &Particles,
-        (radius, tolerance, rule): (f64, Tolerance, SheetRule),
+        radius: f64,
+        tolerance: Tolerance,
+        rule: SheetRule,
         budget: u32,
     ) -> u32 {
         if probe.field.bounded().is_none() {
@@ -334,7 +338,8 @@ impl ComponentSearch {
             .then_some(self.octree.undecided.len() as u64 + self.lost)
     }
 
-    /// These, and the witnesses of which the audit does not know whether their component holds particles.
+    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not know whether their component holds
+    /// particles; none without a search.
     pub(crate) fn open_questions(&self) -> Option<u64> {
         self.unwitnessed().map(|open| open + self.audit.open)
     }

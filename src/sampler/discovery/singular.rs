@@ -37,7 +37,7 @@ const MOST_STEPS: u32 = 24;
 /// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It is
 /// far above rounding.
 const LARGEST_VALUE: f64 = 1e-8;
-/// The same for the narrow neck that a cone point leaves when it opens, which the search treats as a singular point.
+/// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search treats as a singular point.
 const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
 /// curve: the Newton step does not run along it.

@@ -5,30 +5,17 @@ use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Crossing, Dip, End, Look};
+use crate::sampler::discovery::grid::{Dense, Grid, Layer};
 use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{Accuracy, Descent, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
-/// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
-pub(crate) const CELLS: f64 = 32.0;
-/// The same for fields without bounds, of which only the grid shows the surface. It does not miss a sphere whose radius is
-/// 1.4 % of the box's longest side.
-const DENSE_CELLS: f64 = 64.0;
 /// Largest number of evaluations in the Newton projection of a candidate.
 const MAX_STEPS: u32 = 12;
-/// Number of points at which the resolution is measured.
-const RESOLUTION_SAMPLES: usize = 48;
-/// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
-/// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
-const TOUCH_PROBE: f32 = 0.02;
 /// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
 /// apart is missed.
 const LOOKS: usize = 3;
-/// Number of points at which near sheets are looked for.
-const SAMPLES: usize = 256;
-/// Distance, in resolutions, below which rounding may decide the sign of f.
-const NOISE: f32 = 16.0;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
 const POLE_PROBE: f32 = 4.0;
 
@@ -87,77 +74,6 @@ pub(crate) enum Absence {
     NoZero,
     /// The grid shows no change of sign. A feature finer than the grid may have been missed.
     NotSeen,
-}
-
-/// The regular grid at whose nodes the field is evaluated.
-struct Grid {
-    lo: DVec3,
-    /// Distance between two nodes along each axis.
-    step: DVec3,
-    /// Number of nodes along each axis.
-    nodes: [usize; 3],
-    /// Wanted distance between two nodes; along the longest side of the box it is met.
-    spacing: f64,
-}
-
-impl Grid {
-    /// The grid over a box, which has a whole number of blocks if it `is_dense`.
-    fn over(bounds: &Bounds, is_dense: bool) -> Self {
-        let size = bounds.hi() - bounds.lo();
-        let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
-        let block = if is_dense { COARSEST as f64 } else { 1.0 };
-        let cells = block * (size / (block * spacing)).ceil();
-        let nodes = cells.to_array().map(|c| c as usize + 1);
-        Self { lo: bounds.lo(), step: size / cells, nodes, spacing }
-    }
-
-    fn node(&self, i: usize, j: usize, k: usize) -> Vec3 {
-        (self.lo + self.step * DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
-    }
-
-    /// Returns the number of nodes in a layer.
-    fn layer(&self) -> usize {
-        self.nodes[0] * self.nodes[1]
-    }
-}
-
-/// The nodes of the grid that have one third coordinate.
-struct Layer {
-    value: Vec<f32>,
-    gradient: Vec<Vec3>,
-}
-
-impl Layer {
-    fn new(grid: &Grid) -> Self {
-        Self { value: vec![f32::NAN; grid.layer()], gradient: vec![Vec3::ZERO; grid.layer()] }
-    }
-
-    /// Evaluates the field at layer `k`, or takes it from a dense grid.
-    fn fill(&mut self, probe: &mut Probe, grid: &Grid, dense: Option<&Dense>, k: usize) {
-        let count = grid.layer();
-        if let Some(dense) = dense {
-            let layer = k * count..(k + 1) * count;
-            self.value.copy_from_slice(&dense.value[layer.clone()]);
-            self.gradient.copy_from_slice(&dense.gradient[layer]);
-            return;
-        }
-        let nx = grid.nodes[0];
-        let mut points = Vec::with_capacity(BATCH);
-        for first in (0..count).step_by(BATCH) {
-            let last = (first + BATCH).min(count);
-            points.clear();
-            points.extend((first..last).map(|m| grid.node(m % nx, m / nx, k)));
-            let (value, gradient) = probe.gradients(&points);
-            self.value[first..last].copy_from_slice(value);
-            self.gradient[first..last].copy_from_slice(gradient);
-        }
-    }
-
-    /// Node (i, j) of layer `k`.
-    fn at(&self, grid: &Grid, [i, j, k]: [usize; 3]) -> End {
-        let m = j * grid.nodes[0] + i;
-        End { place: grid.node(i, j, k), value: self.value[m], gradient: self.gradient[m] }
-    }
 }
 
 /// Candidates for points of the surface, and the range of the values on the grid.
@@ -296,88 +212,6 @@ impl Candidates {
     }
 }
 
-/// The nodes of a dense grid, evaluated only where the surface can be.
-///
-/// The box is cut into blocks of [`COARSEST`] grid cells to an edge, and those that may hold the surface are halved until
-/// they are grid cells. In the others only the sign of f is known.
-struct Dense {
-    value: Vec<f32>,
-    gradient: Vec<Vec3>,
-    /// Whether the node is a corner of a grid cell that may hold the surface.
-    is_near: Vec<bool>,
-}
-
-/// Grid cells along the edge of the first blocks of a dense grid: a power of two.
-const COARSEST: usize = 4;
-/// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at them times so many
-/// diagonals. No point of a block is farther than half a diagonal from all corners; between them |∇f| may be somewhat larger.
-const REACH: f32 = 0.7;
-
-impl Dense {
-    fn new(probe: &mut Probe, grid: &Grid) -> Self {
-        let [nx, ny, nz] = grid.nodes;
-        let index = |[i, j, k]: [usize; 3]| (k * ny + j) * nx + i;
-        // The eight places at the corners of a cube.
-        let eight = |[i, j, k]: [usize; 3], width: usize| {
-            (0..8).map(move |c| [i + width * (c & 1), j + width * (c >> 1 & 1), k + width * (c >> 2)])
-        };
-        let nodes = nx * ny * nz;
-        let mut dense = Self {
-            value: vec![f32::NAN; nodes],
-            gradient: vec![Vec3::ZERO; nodes],
-            is_near: vec![false; nodes],
-        };
-        let mut is_known = vec![false; nodes];
-        let mut wanted = Vec::new();
-        let mut points = Vec::with_capacity(BATCH);
-        let along = |n: usize| (0..n - 1).step_by(COARSEST);
-        let mut blocks: Vec<[usize; 3]> =
-            along(nz).flat_map(|k| along(ny).flat_map(move |j| along(nx).map(move |i| [i, j, k]))).collect();
-        let mut width = COARSEST;
-        loop {
-            for corner in blocks.iter().flat_map(|&block| eight(block, width)) {
-                if !core::mem::replace(&mut is_known[index(corner)], true) {
-                    wanted.push(corner);
-                }
-                dense.is_near[index(corner)] = width == 1;
-            }
-            for chunk in wanted.chunks(BATCH) {
-                points.clear();
-                points.extend(chunk.iter().map(|&[i, j, k]| grid.node(i, j, k)));
-                let (value, gradient) = probe.gradients(&points);
-                for ((&corner, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
-                    (dense.value[index(corner)], dense.gradient[index(corner)]) = (value, gradient);
-                }
-            }
-            wanted.clear();
-            if width == 1 {
-                return dense;
-            }
-            let reach = REACH * width as f32 * grid.step.length() as f32;
-            let mut halves = Vec::new();
-            for block in blocks {
-                let corners = || eight(block, width).map(index);
-                let least = corners().fold(f32::INFINITY, |least, n| least.min(dense.value[n].abs()));
-                let slope = corners().fold(0.0_f32, |most, n| most.max(dense.gradient[n].length()));
-                let first = dense.value[index(block)];
-                let differs = |n: usize| dense.value[n].is_nan() || (dense.value[n] <= 0.0) != (first <= 0.0);
-                if least <= reach * slope || corners().any(differs) {
-                    halves.extend(eight(block, width / 2));
-                    continue;
-                }
-                let [i, j, k] = block;
-                for row in (k..=k + width).flat_map(|k| (j..=j + width).map(move |j| [i, j, k])) {
-                    for value in &mut dense.value[index(row)..=index(row) + width] {
-                        // Any value of that sign.
-                        *value = if value.is_nan() { first } else { *value };
-                    }
-                }
-            }
-            (blocks, width) = (halves, width / 2);
-        }
-    }
-}
-
 /// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
 ///
 /// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose ends f has the other sign (two
@@ -468,6 +302,81 @@ fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
     slopes.get(slopes.len() / 2).copied().unwrap_or(0.0)
 }
 
+impl Survey {
+    /// How near this surface particles have to be.
+    pub(crate) fn accuracy(&self) -> Accuracy {
+        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
+        /// fifth of the way there.
+        const SHARE: f32 = 0.1;
+        let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
+        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
+    }
+
+    /// Sheets nearer to each other than this are not told apart.
+    pub(crate) fn least_gap(&self, is_adaptive: bool) -> f64 {
+        UNRESOLVED[usize::from(is_adaptive)] * f64::from(self.resolution)
+    }
+
+    /// What counts as being on the surface before there is a radius.
+    pub(crate) fn tolerance(&self) -> Tolerance {
+        let residual = self.residual.max(self.resolution);
+        Tolerance { residual, ..tolerance(0.0, Accuracy::UNLIMITED, self.gradient_scale) }
+    }
+
+    /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
+    pub(crate) fn adopt(
+        &mut self,
+        field: &mut dyn Field,
+        found: impl Iterator<Item = (Vec3, Vec3)>,
+        bounds: &Bounds,
+        search: Search,
+    ) {
+        self.is_adopted = true;
+        let mut slopes = Vec::new();
+        for (position, normal) in found {
+            let jet = field.jet(position.as_dvec3());
+            slopes.push(jet.gradient.length() as f32);
+            // A sphere of the same curvature has the area 4π/κ².
+            let size = jet.gradient.length_squared()
+                / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
+            let sphere = 4.0 * core::f64::consts::PI * size;
+            let most = bounds.diagonal() * bounds.diagonal();
+            // The search finds two points on each sphere, the highest and the lowest.
+            self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
+            self.position.push(position);
+            self.normal.push(normal);
+            self.weight.push(0.0);
+        }
+        sort_numbers(&mut slopes);
+        self.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(self.gradient_scale);
+        if !self.position.is_empty() {
+            self.absence = Absence::None;
+        } else if search == Search::Proven && matches!(self.absence, Absence::NoZero | Absence::NotSeen) {
+            self.absence = Absence::Proven;
+        }
+    }
+
+    /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
+    /// zero and falls away from a pole.
+    pub(crate) fn is_zero(&self, probe: &mut Probe, i: usize) -> bool {
+        let (p, n) = (self.position[i], self.normal[i]);
+        let step = POLE_PROBE * self.residual.max(self.resolution);
+        let (value, _) = probe.gradients(&[p, p + n * step, p - n * step]);
+        // NaN, where f ends, is no larger.
+        value[1].abs() > value[0].abs() || value[2].abs() > value[0].abs()
+    }
+}
+
+/// Number of points at which the resolution is measured.
+const RESOLUTION_SAMPLES: usize = 48;
+/// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
+/// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
+const TOUCH_PROBE: f32 = 0.02;
+/// Number of points at which near sheets are looked for.
+const SAMPLES: usize = 256;
+/// Distance, in resolutions, below which rounding may decide the sign of f.
+const NOISE: f32 = 16.0;
+
 /// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
 fn ulps(bounds: &Bounds) -> f32 {
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
@@ -537,71 +446,6 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
     out.position.truncate(kept);
     out.normal.truncate(kept);
     out.weight.truncate(kept);
-}
-
-impl Survey {
-    /// How near this surface particles have to be.
-    pub(crate) fn accuracy(&self) -> Accuracy {
-        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
-        /// fifth of the way there.
-        const SHARE: f32 = 0.1;
-        let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
-        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
-    }
-
-    /// Sheets nearer to each other than this are not told apart.
-    pub(crate) fn least_gap(&self, is_adaptive: bool) -> f64 {
-        UNRESOLVED[usize::from(is_adaptive)] * f64::from(self.resolution)
-    }
-
-    /// What counts as being on the surface before there is a radius.
-    pub(crate) fn tolerance(&self) -> Tolerance {
-        let residual = self.residual.max(self.resolution);
-        Tolerance { residual, ..tolerance(0.0, Accuracy::UNLIMITED, self.gradient_scale) }
-    }
-
-    /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
-    pub(crate) fn adopt(
-        &mut self,
-        field: &mut dyn Field,
-        found: impl Iterator<Item = (Vec3, Vec3)>,
-        bounds: &Bounds,
-        search: Search,
-    ) {
-        self.is_adopted = true;
-        let mut slopes = Vec::new();
-        for (position, normal) in found {
-            let jet = field.jet(position.as_dvec3());
-            slopes.push(jet.gradient.length() as f32);
-            // A sphere of the same curvature has the area 4π/κ².
-            let size = jet.gradient.length_squared()
-                / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
-            let sphere = 4.0 * core::f64::consts::PI * size;
-            let most = bounds.diagonal() * bounds.diagonal();
-            // The search finds two points on each sphere, the highest and the lowest.
-            self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
-            self.position.push(position);
-            self.normal.push(normal);
-            self.weight.push(0.0);
-        }
-        sort_numbers(&mut slopes);
-        self.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(self.gradient_scale);
-        if !self.position.is_empty() {
-            self.absence = Absence::None;
-        } else if search == Search::Proven && matches!(self.absence, Absence::NoZero | Absence::NotSeen) {
-            self.absence = Absence::Proven;
-        }
-    }
-
-    /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
-    /// zero and falls away from a pole.
-    pub(crate) fn is_zero(&self, probe: &mut Probe, i: usize) -> bool {
-        let (p, n) = (self.position[i], self.normal[i]);
-        let step = POLE_PROBE * self.residual.max(self.resolution);
-        let (value, _) = probe.gradients(&[p, p + n * step, p - n * step]);
-        // NaN, where f ends, is no larger.
-        value[1].abs() > value[0].abs() || value[2].abs() > value[0].abs()
-    }
 }
 
 /// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there may
@@ -688,40 +532,4 @@ fn rounding(probe: &mut Probe, points: &[Vec3]) -> f32 {
         .collect();
     sort_numbers(&mut distance);
     2.0 * distance.get(distance.len() * 3 / 4).copied().unwrap_or(0.0)
-}
-
-#[cfg(all(test, feature = "points"))]
-mod tests {
-    use super::*;
-    use crate::field::model::MODELS;
-    use crate::field::rbf::RbfField;
-    use crate::pointcloud::models;
-    use crate::sampler::probe::ProbeMemory;
-
-    #[test]
-    fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
-        for model in MODELS {
-            let fit = models::begin(model).finish().expect("a model is solved for");
-            let mut field = RbfField::new(fit.data).expect("a field");
-            let n = [65, 49, 57];
-            let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
-            let grid = Grid { lo: fit.bounds.lo(), step, nodes: n, spacing: step.max_element() };
-            let dense = Dense::new(&mut Probe::new(&mut field, &mut ProbeMemory::default()), &grid);
-            let mut all = Vec::new();
-            for k in 0..n[2] {
-                for j in 0..n[1] {
-                    all.extend((0..n[0]).map(|i| grid.node(i, j, k)));
-                }
-            }
-            let mut value = vec![0.0; all.len()];
-            field.values(&all, &mut value);
-            let near = dense.is_near.iter().filter(|near| **near).count();
-            assert!(near * 2 < all.len(), "{}: {near} of {} nodes are near", model.id, all.len());
-            for (m, &exact) in value.iter().enumerate() {
-                let told = dense.value[m];
-                assert_eq!(told <= 0.0, exact <= 0.0, "{}: {told} for {exact} at {}", model.id, all[m]);
-                assert!(!dense.is_near[m] || told == exact, "{}: {told} for {exact} at {}", model.id, all[m]);
-            }
-        }
-    }
 }

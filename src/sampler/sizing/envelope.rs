@@ -1,7 +1,7 @@
 //! The envelope of the radius: the largest function of a given slope below some radii at points of the surface.
 
 use crate::math::{Bounds, SQRT_3};
-use crate::sampler::discovery::survey::CELLS;
+use crate::sampler::discovery::grid::CELLS;
 use glam::Vec3;
 
 /// Largest number of passes forwards and backwards over the nodes. One would be enough on a full grid; in a thin band
