@@ -15,8 +15,7 @@ use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::models;
-use marching_particles::quality::{self, Figures, Sizes};
-use marching_particles::sampler::{Method, Sampler, Sampling, Settings, SizeMode};
+use marching_particles::{Figures, Method, Run, Sampling, Settings, SizeMode, Warning};
 use std::io::{self, Write};
 use std::time::Instant;
 
@@ -107,30 +106,24 @@ fn row(make: &dyn Fn() -> Box<dyn Field>, bounds: &Bounds, settings: Settings, s
     let start = Instant::now();
     let mut row: Option<Row> = None;
     for seed in 0..seeds {
-        let settings = settings!(seed; ..settings);
+        let settings = settings!(seed; ..settings).in_box(*bounds);
         let mut seconds = 0.0;
-        let mut sampler = Sampler::new();
+        let mut last = None;
         for _ in 0..RUNS {
-            let mut field = make();
+            let field = make();
             let begun = processor_seconds(start);
-            sampler.start(&mut *field, bounds, &settings).expect("valid settings");
-            while sampler.step(&mut *field, 65_536).stop_reason.is_none() {}
+            let mut run = Run::start(field, &settings).expect("valid settings");
+            while run.step(65_536).stop_reason.is_none() {}
             seconds += (processor_seconds(start) - begun) / f64::from(RUNS);
+            last = Some(run);
         }
-        let particles = sampler.particles();
-        let sizes = match settings.sampling {
-            Sampling::Uniform => quality::Options::default().sizes,
-            Sampling::Adaptive => Sizes::Given(&particles.radius),
-        };
-        let options = quality::Options { sizes, ..quality::Options::default() };
-        let (position, normal) = (&particles.position, &particles.normal);
-        let figures = quality::measure(position, normal, &mut *make(), Some(bounds), &options).figures;
-        let counts = sampler.counts();
-        let reason = || counts.refusal.map(|refusal| refusal.to_string()).unwrap_or_default();
+        let report = last.expect("there is a run").report();
+        let refusal = report.warnings.iter().find(|warning| matches!(warning, Warning::NotRefined(_)));
+        let reason = || refusal.map(ToString::to_string).unwrap_or_default();
         let next = Row {
-            particles: particles.len(),
-            levels: counts.refined_levels.ok_or_else(reason),
-            figures,
+            particles: report.count,
+            levels: report.growth.refined_levels.ok_or_else(reason),
+            figures: report.measures.quality.expect("there are particles"),
             seconds,
         };
         row = Some(match row.take() {

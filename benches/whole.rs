@@ -26,7 +26,7 @@ use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::models;
 use marching_particles::quality::{Options, measure};
-use marching_particles::sampler::{Phase, Sampler, Sampling, Settings, SizeMode, StopReason};
+use marching_particles::{Phase, Run, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -53,22 +53,31 @@ impl Job {
             max_particles: count + count / 10; ..Settings::default());
         let mut job = Self { field: surface.field(), bounds: surface.bounds, settings: by_count };
         let found = job.run();
-        let radius_share = found.radius() / job.bounds.diagonal();
+        let radius_share = radius(&found) / job.bounds.diagonal();
         job.settings = settings!(size_mode: SizeMode::Radius, radius_share, relax_steps: 10; ..by_count);
         job
     }
 
-    fn run(&mut self) -> Sampler {
-        let mut sampler = Sampler::new();
-        sampler.start(&mut self.field, &self.bounds, &self.settings).expect("valid settings");
-        finish(&mut sampler, &mut self.field);
-        sampler
+    fn run(&self) -> Run<Formula> {
+        finished(self.field.clone(), &self.settings.in_box(self.bounds))
     }
 }
 
-fn finish(sampler: &mut Sampler, field: &mut dyn Field) {
+/// A run to its end.
+fn finished<F: Field>(field: F, settings: &Settings) -> Run<F> {
+    let mut run = Run::start(field, settings).expect("valid settings");
+    finish(&mut run);
+    run
+}
+
+/// Radius of a run that has ended.
+fn radius<F: Field>(run: &Run<F>) -> f64 {
+    run.progress().expect("it has ended").radius
+}
+
+fn finish<F: Field>(run: &mut Run<F>) {
     let reason = loop {
-        if let Some(reason) = sampler.step(field, 65_536).stop_reason {
+        if let Some(reason) = run.step(65_536).stop_reason {
             break reason;
         }
     };
@@ -142,13 +151,12 @@ fn parts(criterion: &mut Criterion, set: &str, count: u32) {
     job.settings.relax_steps = 0;
     group.bench_function("front", |bencher| bencher.iter(|| black_box(job.run())));
     group.bench_function("ten relaxation steps", |bencher| {
-        let mut field = job.field.clone();
         bencher.iter_batched(
             || job.run(),
-            |mut sampler| {
-                sampler.relax(10);
-                finish(&mut sampler, &mut field);
-                sampler
+            |mut run| {
+                run.relax(10);
+                finish(&mut run);
+                run
             },
             BatchSize::PerIteration,
         );
@@ -194,7 +202,7 @@ fn processor_seconds(start: Instant) -> f64 {
 fn ratio(count: u32, rounds: usize) {
     /// Number of runs of the mesher in a round. The system counts time in ticks of a few milliseconds.
     const REPEAT: u32 = 8;
-    let mut job = Job::new(count);
+    let job = Job::new(count);
     let mut front = Job::new(count);
     front.settings.relax_steps = 0;
     let mut mesher = Mesher::with_vertices(count);
@@ -233,21 +241,21 @@ fn ratio(count: u32, rounds: usize) {
 /// proof, and the check of every candidate.
 fn search_share(id: &str, count: u32, rounds: usize) {
     let surface = gallery::find(id).expect("a gallery surface");
-    let mut field = surface.field();
-    let mut settings = settings!(size_mode: SizeMode::Count, count; ..Settings::default());
+    let mut settings =
+        settings!(size_mode: SizeMode::Count, count; ..Settings::default()).in_box(surface.bounds);
     let mut shares: Vec<[f64; 3]> = Vec::new();
     let mut cells = None;
     for round in 0..=rounds {
-        let mut sampler = Sampler::new();
+        let field = surface.field();
         let start = Instant::now();
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        let mut run = Run::start(field, &settings).expect("valid settings");
         let surveyed = start.elapsed().as_secs_f64();
         let (mut seeding, mut phase) = (0.0, Phase::Seeding);
         let reason = loop {
             let before = start.elapsed().as_secs_f64();
             // The steps are small, so that hardly any work of the front is included.
             let is_seeding = matches!(phase, Phase::Seeding | Phase::Search);
-            let progress = sampler.step(&mut field, if is_seeding { 64 } else { 4_096 });
+            let progress = run.step(if is_seeding { 64 } else { 4_096 });
             if is_seeding {
                 seeding += start.elapsed().as_secs_f64() - before;
             }
@@ -260,11 +268,11 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         let whole = start.elapsed().as_secs_f64();
         if round == 0 {
             // A wanted count runs the front twice; from here on the radius is given, and it runs once.
-            let radius_share = sampler.radius() / surface.bounds.diagonal();
-            settings = settings!(radius_share; ..Settings::default());
+            let radius_share = radius(&run) / surface.bounds.diagonal();
+            settings = Settings::with_radius(radius_share).in_box(surface.bounds);
         } else {
             shares.push([surveyed, seeding, (surveyed + seeding) / whole]);
-            cells = sampler.undecided_cells();
+            cells = run.sampler().undecided_cells();
         }
     }
     let [survey, seeding, share] = [0, 1, 2].map(|k| median(&shares, k));
@@ -283,21 +291,19 @@ fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
     let fit = models::begin(model).finish().expect("the bunny is solved for");
     let mut field = RbfField::new(fit.data.clone()).expect("a field");
-    let mut ellipsoid = Job::new(count);
+    let ellipsoid = Job::new(count);
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {
         let by_count = settings!(size_mode: SizeMode::Count, count, relax_steps: 0; ..Settings::default());
         let start = Instant::now();
         let run = |field: &mut RbfField, settings: &Settings| {
-            let mut sampler = Sampler::new();
             let before = processor_seconds(start);
-            sampler.start(field, &fit.bounds, settings).expect("valid settings");
-            finish(&mut sampler, field);
-            (processor_seconds(start) - before, sampler)
+            let run = finished(field, &settings.in_box(fit.bounds));
+            (processor_seconds(start) - before, radius(&run), run.count())
         };
         let settings = match sampling {
             // A run that meets a count does the front twice, so the timed runs are given the radius.
             Sampling::Uniform => {
-                let radius_share = run(&mut field, &by_count).1.radius() / fit.bounds.diagonal();
+                let radius_share = run(&mut field, &by_count).1 / fit.bounds.diagonal();
                 settings!(radius_share; ..Settings::default())
             }
             Sampling::Adaptive => settings!(sampling; ..Settings::default()),
@@ -306,12 +312,12 @@ fn bunny(count: u32, rounds: usize) {
         let mut particles = 0;
         for _ in 0..rounds {
             let mut cold = RbfField::new(fit.data.clone()).expect("a field");
-            let (first, _) = run(&mut cold, &settings);
-            let (again, sampler) = run(&mut field, &settings);
+            let (first, ..) = run(&mut cold, &settings);
+            let (again, _, count) = run(&mut field, &settings);
             let before = processor_seconds(start);
             let other = black_box(ellipsoid.run()).particles().len();
             let other = (processor_seconds(start) - before) / other as f64;
-            particles = sampler.particles().len();
+            particles = count;
             times.push([first / particles as f64, again / particles as f64, other]);
         }
         let [first, again, other] = [0, 1, 2].map(|k| median(&times, k) * 1e6);

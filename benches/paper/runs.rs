@@ -10,7 +10,7 @@ use marching_particles::math::Bounds;
 use marching_particles::paper::Particle;
 use marching_particles::pointcloud::models;
 use marching_particles::quality::{self, Figures, Sizes};
-use marching_particles::sampler::{LawKind, Phase, Sampler, Sampling, Settings, SizeMode};
+use marching_particles::{LawKind, Phase, Run, Sampling, Settings, SizeMode};
 use std::time::Instant;
 
 /// A surface that the paper samples, or what stands in for it.
@@ -138,7 +138,7 @@ impl Job {
         let surface = Surface::of(id);
         let wanted = settings!(size_mode: SizeMode::Count, count; ..Settings::default());
         let diagonal = surface.bounds.diagonal();
-        let radius = sampled(&surface, &wanted, |_| {}).radius();
+        let radius = sampled(&surface, &wanted, |_| {}).progress().map_or(0.0, |progress| progress.radius);
         let mut sizes = settings!(radius_share: radius / diagonal; ..Settings::default());
         if sampling == Sampling::Adaptive {
             let share = radius / diagonal;
@@ -193,7 +193,7 @@ impl Job {
         let clock = Clock::start();
         let mut relaxation = 0.0;
         let mut begun = 0.0;
-        let sampler = sampled(&self.surface, &self.sizes, |phase| {
+        let run = sampled(&self.surface, &self.sizes, |phase| {
             let now = clock.seconds();
             if phase == Phase::Relaxation {
                 relaxation += now - begun;
@@ -201,14 +201,13 @@ impl Job {
             begun = now;
         });
         let total = clock.seconds();
-        let particles = sampler.particles();
+        let particles = run.particles();
         let set = Set {
             position: particles.position.clone(),
             normal: particles.normal.clone(),
             radius: particles.radius.clone(),
             level: particles.level.clone(),
         };
-        let counts = sampler.counts();
         let steps = self.sizes.relax_steps;
         Outcome {
             steps,
@@ -216,9 +215,7 @@ impl Job {
             generation: total - relaxation,
             relaxation,
             last_step: relaxation / f64::from(steps),
-            evaluations: counts.seeding_evaluations
-                + counts.generation_evaluations
-                + counts.relaxation_evaluations,
+            evaluations: run.progress().map_or(0, |progress| progress.evaluations),
             figures: self.figures(&set),
             set,
         }
@@ -263,15 +260,13 @@ impl Job {
 const UNITS: u32 = 500;
 
 /// The fast sampler at its end. `each` is told the phase of every step.
-fn sampled(surface: &Surface, settings: &Settings, mut each: impl FnMut(Phase)) -> Sampler {
-    let field = &mut *surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(field, &surface.bounds, settings).expect("valid settings");
+fn sampled(surface: &Surface, settings: &Settings, mut each: impl FnMut(Phase)) -> Run<Box<dyn Field>> {
+    let mut run = Run::start(surface.field(), &settings.in_box(surface.bounds)).expect("valid settings");
     loop {
-        let progress = sampler.step(field, 4_096);
+        let progress = run.step(4_096);
         each(progress.phase);
         if progress.stop_reason.is_some() {
-            return sampler;
+            return run;
         }
     }
 }
