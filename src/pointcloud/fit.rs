@@ -59,6 +59,7 @@ impl Fit {
 
 /// Why points cannot be interpolated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// There are too few centres to bound a volume.
     #[error("{count} points are too few: at least {MIN_CENTRES} are needed, and a few hundred are better")]

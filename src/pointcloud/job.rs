@@ -58,6 +58,7 @@ pub struct Progress {
 
 /// Why a job failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum JobError {
     /// The file cannot be read.
     #[error(transparent)]

@@ -70,6 +70,7 @@ impl Cloud {
 
 /// Why no surface can be fitted to points.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CloudError {
     /// All points coincide.
     #[error("all points are at the same place; a surface takes points all round it")]

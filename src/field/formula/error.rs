@@ -47,6 +47,7 @@ pub enum FormulaErrorKind {
 /// Error of [`Formula::as_written`](super::Formula::as_written) and of the other operations on formulas.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
+#[non_exhaustive]
 pub struct FormulaError {
     /// The class of the error.
     pub kind: FormulaErrorKind,

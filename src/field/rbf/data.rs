@@ -28,6 +28,7 @@ pub struct RbfData {
 
 /// Why the data does not describe a field.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DataError {
     /// There is no centre.
     #[error("a field needs at least one centre")]

@@ -52,6 +52,7 @@ pub struct Unsampled {
 
 /// Why a search is not proven. There is a doubt exactly where the [`Search`] is only searched.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Doubt {
     /// The field has no bounds to prove anything by.
     NoBounds,

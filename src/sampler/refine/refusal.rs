@@ -8,6 +8,7 @@ use serde::Serialize;
 /// Why the particles of a run were not refined, and near which place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Refusal {
     /// Too few particles are expected.
     #[error(
