@@ -175,7 +175,8 @@ test('a stop in a run on a model keeps what there is, and nobody takes it for a 
   const out = /** @type {any} */ (
     await page.evaluate(async () => {
       const p = /** @type {any} */ (window).marchingParticles;
-      void p.set({ settings: { sampling: 'adaptive', chord_error: 2e-5 } });
+      // The page hears of the run only between two pictures, so it is long, and quick to draw.
+      void p.set({ settings: { sampling: 'adaptive', chord_error: 5e-5, relax_steps: 100 } });
       await new Promise((resolve) => {
         const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
           if (v.phase === 'generation' && v.particles > 200) setTimeout(() => resolve(off()));
