@@ -153,7 +153,7 @@ pub use pointcloud::fit_points;
 pub use pointcloud::job::JobError;
 pub use quality::{Figures, Histogram, Hole, Pair, Places};
 pub use run::{
-    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Report, Run, Sample, Sizes, Start,
+    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Run, Sample, Start,
     Warning, sample,
 };
 pub use sampler::{

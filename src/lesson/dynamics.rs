@@ -1,4 +1,4 @@
-//! What moves a particle of a particle system in an iteration, and where to.
+//! Dynamics of the two particle systems: the forces on a particle in an iteration, and its move.
 
 use crate::paper::Particle;
 use glam::DVec3;

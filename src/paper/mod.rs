@@ -10,8 +10,8 @@
 //! | §4.5 and §5.4 relaxation | `relaxation` |
 //! | §4.4 "a space partitioning scheme" | `buckets` |
 //!
-//! What the paper discusses, or leaves open, is one of the [`Rules`]. What happens is told to an [`Observer`]. The fast fronts of
-//! the sampler are held to this, and the lesson is built on it.
+//! [`Rules`] holds every choice that the paper discusses or leaves open. An [`Observer`] is told every event. Tests hold the fast
+//! fronts of the sampler to these algorithms, and the lesson is built on them.
 //!
 //! ```
 //! use marching_particles::field::gallery;

@@ -20,7 +20,7 @@ pub(super) struct Measuring {
     pub(super) front: Option<Arc<Kept>>,
     pub(super) front_figures: Option<Figures>,
     pub(super) work: Option<Work<Measured>>,
-    /// What was measured last.
+    /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Report,
 }
 

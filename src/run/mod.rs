@@ -11,7 +11,7 @@ mod sample;
 mod warning;
 
 pub use mesh::{MeshAnswer, MeshComponent};
-pub use report::{Cut, Growth, Measures, Proof, Report, Sizes};
+pub use report::{Cut, Growth, Measures, Proof, Radii, Report};
 pub use sample::{Sample, sample};
 pub use warning::Warning;
 
@@ -60,7 +60,7 @@ pub struct Start {
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,
-    /// What the user should know before the run.
+    /// Warnings that are known before the first particle is placed.
     #[cfg_attr(test, ts(type = "Array<string>"))]
     pub warnings: Vec<Warning>,
 }
@@ -88,7 +88,7 @@ pub struct Run<F> {
     field: F,
     /// The clip box, in the coordinates of the field before it was given an origin.
     bounds: Bounds,
-    /// How far the surface reaches, where the box was fitted to it.
+    /// Whether the surface is bounded, if its box was fitted; none if the box was given.
     reach: Option<Reach>,
     sampler: Sampler,
     /// Whether field and box are those of the last start.
@@ -272,7 +272,7 @@ impl<F: Field> Run<F> {
         self.bounds
     }
 
-    /// How far the surface reaches, where the box was fitted to it.
+    /// Returns whether the surface is bounded, if its box was fitted; none if the box was given.
     #[must_use]
     pub fn reach(&self) -> Option<Reach> {
         self.reach

@@ -19,7 +19,7 @@ pub struct Report {
     pub count: usize,
     /// Repulsion radii.
     #[serde(flatten)]
-    pub sizes: Sizes,
+    pub sizes: Radii,
     /// How the particles came to be.
     #[serde(flatten)]
     pub growth: Growth,
@@ -35,7 +35,7 @@ pub struct Report {
     pub cut: Option<Cut>,
     /// Why the run ended.
     pub stop_reason: Option<StopReason>,
-    /// What the user should know.
+    /// Warnings about the field, the settings and the result.
     #[cfg_attr(test, ts(type = "Array<string>"))]
     pub warnings: Vec<Warning>,
     /// Digest of the particles, 16 hexadecimal digits.
@@ -56,7 +56,7 @@ pub enum Cut {
 /// Repulsion radii of a run, in the units of the field's coordinates.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
-pub struct Sizes {
+pub struct Radii {
     /// Repulsion radius of the run; with adaptive sampling the one at which as many particles of equal radius would cover the
     /// surface.
     pub radius: f64,
@@ -209,10 +209,10 @@ impl<F: Field> Run<F> {
         }
     }
 
-    fn sizes(&self) -> Sizes {
+    fn sizes(&self) -> Radii {
         let sizes = self.particles().radius.iter().map(|&radius| f64::from(radius));
         let radius_max = sizes.clone().fold(0.0, f64::max);
-        Sizes { radius: self.sampler.radius(), radius_min: sizes.fold(radius_max, f64::min), radius_max }
+        Radii { radius: self.sampler.radius(), radius_min: sizes.fold(radius_max, f64::min), radius_max }
     }
 
     fn growth(&self) -> Growth {

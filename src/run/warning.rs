@@ -111,7 +111,7 @@ impl Serialize for Warning {
 }
 
 impl<F: Field> Run<F> {
-    /// What is to be said at the start of a run of about so many particles.
+    /// Returns the warnings that are known at the start: `predicted` particles are expected, and `limit` are allowed.
     pub(super) fn known_at_start(&mut self, predicted: u64, limit: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if predicted > u64::from(limit) {

@@ -212,19 +212,19 @@ impl Settings {
         Self { radius_share: share, ..Self::DEFAULT }
     }
 
-    /// The same settings in a given box.
+    /// Sets the box that is sampled and returns the settings.
     #[must_use]
     pub fn in_box(self, bounds: Bounds) -> Self {
         Self { bounds: Some(bounds), ..self }
     }
 
-    /// The same settings with sizes that follow the curvature (paper §5).
+    /// Asks for adaptive sampling (paper §5), in which the repulsion radius follows the curvature, and returns the settings.
     #[must_use]
     pub fn adaptive(self) -> Self {
         Self { sampling: Sampling::Adaptive, ..self }
     }
 
-    /// The same settings by the refined method: a coarse front, brought into order and refined.
+    /// Asks for the refined method, which orders and subdivides a coarse front, and returns the settings.
     #[must_use]
     pub fn refined(self) -> Self {
         Self { method: Method::Refined, ..self }

@@ -128,11 +128,11 @@ pub enum Scale {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(untagged)]
 pub enum Value {
-    /// Of a number.
+    /// The value of a setting that is a real number.
     Number(f64),
-    /// Of a whole number.
+    /// The value of a setting that is a whole number.
     Integer(u64),
-    /// Of a choice: [`Choice::value`].
+    /// The value of a setting that is a choice, as [`Choice::value`] has it.
     Choice(&'static str),
 }
 

@@ -218,7 +218,7 @@ export type Figures = {
   tri_ok: number,
   /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners. */
   agree: number,
-  /** Euler number of the triangles kept where stars disagree (see [`super::triangles`]). */
+  /** Euler number of the triangles kept where stars disagree (see `quality::triangles`). */
   euler: number,
   /** Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
   * all of them. */
@@ -923,7 +923,7 @@ export type Report = {
   cut: Cut | null,
   /** Why the run ended. */
   stop_reason: StopReason | null,
-  /** What the user should know. */
+  /** Warnings about the field, the settings and the result. */
   warnings: Array<string>,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
@@ -1069,7 +1069,7 @@ export type Start = {
   predicted_count: number,
   /** Estimated area of the surface in the box. */
   area: number,
-  /** What the user should know before the run. */
+  /** Warnings that are known before the first particle is placed. */
   warnings: Array<string>,
 };
 
