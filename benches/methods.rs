@@ -168,7 +168,7 @@ fn sources(plan: &Plan) -> Vec<Source> {
         (surface.id, make, surface.bounds)
     });
     let models = model::MODELS.iter().filter(|model| plan.has(model.id)).map(|model| {
-        let fit = models::begin(model).finish().expect("a built-in model can be solved for");
+        let fit = models::fit(model);
         let data = fit.data.clone();
         let make: Box<dyn Fn() -> Box<dyn Field>> =
             Box::new(move || Box::new(RbfField::new(data.clone()).expect("a solved system is a field")));

@@ -289,7 +289,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
 /// later ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
 fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
-    let fit = models::begin(model).finish().expect("the bunny is solved for");
+    let fit = models::fit(model);
     let mut field = RbfField::new(fit.data.clone()).expect("a field");
     let ellipsoid = Job::new(count);
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {

@@ -7,9 +7,10 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::pointcloud::job::Job;
-use marching_particles::pointcloud::read::{ReadError, Reader};
+use marching_particles::pointcloud::read::Reader;
 use marching_particles::sampler::{Search, Settings};
 use marching_particles::session::{FieldRequest, Session};
+use marching_particles::slices::complete;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -174,7 +175,7 @@ fn check_batch(field: &mut Formula, first: Vec3, length: usize) {
     assert!(is_same, "{} at {}: {} {}", field.text(), points[k], value[k], alone[0]);
 }
 
-/// A file of points: it is read alike in steps of any size or refused in words, what is read is finite, and a surface is fitted to
+/// A file of points: it is read or refused in words, what is read is finite, and a surface is fitted to
 /// it or refused. The first byte chooses the extension of its name.
 pub fn file(bytes: &[u8]) {
     /// Steps that no job on so small a file needs.
@@ -183,27 +184,15 @@ pub fn file(bytes: &[u8]) {
     const MOST_SOLVED: usize = 64;
     let Some((&first, content)) = bytes.split_first() else { return };
     let name = ["a", "a.ply", "a.obj", "a.stl", "a.xyz"][usize::from(first) % 5];
-    let read = |rows: u32| -> Result<_, ReadError> {
-        let mut reader = Reader::new(name, content.to_vec())?;
-        while !reader.step(rows)? {
-            assert!((0.0..=1.0).contains(&reader.fraction()), "{}", reader.fraction());
-        }
-        Ok(reader.into_mesh())
-    };
-    let (by_three, by_many) = (read(3), read(1_000));
-    let mut mesh = match (by_three, by_many) {
-        (Ok(a), Ok(b)) => {
-            assert!(a.position == b.position && a.faces == b.faces, "steps change what is read");
-            b
-        }
-        (Err(a), Err(b)) => {
-            assert!(a == b && !a.to_string().is_empty(), "{a} but {b}");
+    let tell = |fraction: f64| assert!((0.0..=1.0).contains(&fraction), "{fraction}");
+    let mesh = match Reader::new(name, content.to_vec()).and_then(|reader| complete(reader.read(tell))) {
+        Ok(mesh) => mesh,
+        Err(error) => {
+            assert!(!error.to_string().is_empty(), "an error without words: {error:?}");
             return;
         }
-        (a, b) => panic!("{:?} but {:?}", a.err(), b.err()),
     };
-    while !mesh.sum_areas(3).expect("memory enough") {}
-    let (cloud, _) = mesh.into_cloud();
+    let (cloud, _) = complete(mesh.into_cloud(tell)).expect("memory enough");
     assert!(cloud.position.iter().all(|p| p.is_finite()));
     assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-9), "{:?}", cloud.normal);
     if cloud.len() <= MOST_SOLVED

@@ -128,7 +128,8 @@ pub mod run;
 pub mod sampler;
 #[doc(hidden)]
 pub mod session;
-mod slices;
+#[doc(hidden)]
+pub mod slices;
 #[doc(hidden)]
 pub mod spatial;
 #[doc(hidden)]

@@ -10,22 +10,22 @@ use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 
 /// A computation under way.
-pub(crate) type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
+pub type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
 
 /// Ends a slice of work. A slice should take 10 to 50 µs natively.
-pub(crate) fn pause() -> impl Future<Output = ()> + Send {
+pub fn pause() -> impl Future<Output = ()> + Send {
     let mut is_over = false;
     poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })
 }
 
 /// Divides 0..`count` into ranges of `size`, one for each slice.
-pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
+pub fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
 /// Does up to `budget` slices and returns the result, if the last one is done. The computation must not be advanced
 /// after that.
-pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
+pub fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     (0..budget).find_map(|_| match work.as_mut().poll(&mut context) {
         Poll::Ready(result) => Some(result),
@@ -34,7 +34,7 @@ pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>,
 }
 
 /// Does all slices and returns the result.
-pub(crate) fn complete<T>(work: impl Future<Output = T>) -> T {
+pub fn complete<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
     loop {
         if let Some(result) = advance(work.as_mut(), u32::MAX) {

@@ -27,7 +27,7 @@ impl Surface {
             return Self { make: Box::new(move || Box::new(field.clone())), bounds: surface.bounds };
         }
         let model = model::find(id).expect("a surface or a model");
-        let fit = models::begin(model).finish().expect("a built-in model can be solved for");
+        let fit = models::fit(model);
         let data = fit.data;
         let make =
             move || Box::new(RbfField::new(data.clone()).expect("a solved system is a field")) as Box<_>;

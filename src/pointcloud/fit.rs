@@ -5,12 +5,13 @@
 //! Functions Implicits", 2011). With −β as unknown the matrix is symmetric. The system is set up in local coordinates,
 //! in which the centres fill a box of about one unit, and solved in double precision.
 
-use super::solve::{Elimination, Singular};
-use super::thin::check_spread;
+use super::solve::{Decomposition, Singular};
+use super::thin::{check_spread, corners};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
 use crate::field::rbf::{Frame, RbfData, RbfField};
 use crate::math::{Bounds, sort_numbers};
+use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -27,11 +28,11 @@ const MAX_CONDITION: f64 = 1e13;
 const WARN_CONDITION: f64 = 1e10;
 /// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box.
 const MARGIN: f64 = 0.06;
-/// Number of points at which a unit of work takes the residual.
+/// Number of points at which a slice of work takes the residual.
 const BATCH: usize = 1024;
-/// Number of centres whose equations a unit of work writes.
+/// Number of centres whose columns a slice of work writes.
 const ASSEMBLY_BATCH: usize = 8;
-/// Fraction of the whole work at which the elimination begins and ends, for the display of progress.
+/// Fraction of the work at which the elimination begins and ends, for the display of progress.
 const ELIMINATION_SPAN: [f64; 2] = [0.1, 0.9];
 
 /// A field that interpolates points, with the box to sample in and a report.
@@ -114,218 +115,117 @@ impl From<Singular> for FitError {
     }
 }
 
-/// Computes a [`Fit`] in slices of bounded work.
-#[derive(Debug)]
-pub struct Fitter {
-    frame: Frame,
-    /// In local coordinates.
-    centres: Vec<DVec3>,
-    normals: Vec<DVec3>,
-    /// All points, at which the residual is taken.
-    given: Vec<DVec3>,
+/// Interpolates `centres`. The residual is taken at all points `given`. The fit's report has the name, credit and warnings of `info`.
+/// `tell` gets the fraction of the work done.
+///
+/// # Errors
+///
+/// If there are too few or too many centres, if they are not finite, coincide or lie in one plane, if the system cannot be solved,
+/// or if memory runs out.
+pub async fn interpolate(
+    centres: &Cloud,
+    given: &[DVec3],
     info: ModelInfo,
-    stage: FitStage,
+    tell: impl Fn(f64),
+) -> Result<Fit, FitError> {
+    let normals = check_numbers(centres)?;
+    let frame = Frame::of(centres.position.iter().copied());
+    // The centres are rounded to single precision, so that sampling finds exactly the same ones.
+    let local: Vec<DVec3> = centres.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
+    check_centres(&local)?;
+    let [begin, end] = ELIMINATION_SPAN;
+    let matrix = assemble(&local, |share| tell(begin * share)).await?;
+    let decomposition = Decomposition::new(matrix, |share| tell(begin + (end - begin) * share)).await?;
+    let condition = decomposition.condition()?;
+    if condition.is_nan() || condition >= MAX_CONDITION {
+        return Err(FitError::Singular { condition });
+    }
+    let data = coefficients(&decomposition, &frame, &local, &normals)?;
+    let mut field = RbfField::new(data).map_err(|_| FitError::Singular { condition })?;
+    let residuals = residuals(&mut field, given, |share| tell(end + (1.0 - end) * share)).await;
+    let info = ModelInfo {
+        points: given.len().max(centres.len()) as u32,
+        centres: centres.len() as u32,
+        normals: centres.source,
+        condition,
+        ..info
+    };
+    Ok(reported(&field, given, residuals, info))
 }
 
-#[derive(Debug)]
-enum FitStage {
-    /// Writes the equations; those of centre `next` come next.
-    Assembling {
-        matrix: DMatrix<f64>,
-        next: usize,
-    },
-    Eliminating(Elimination),
-    /// Measures the distances of the points from the surface; point `next` comes next.
-    Measuring {
-        field: Box<RbfField>,
-        condition: f64,
-        next: usize,
-        residuals: Vec<f32>,
-    },
-    /// Finished or failed.
-    Over,
+/// Unit normals of the centres, whose number and numbers are checked.
+fn check_numbers(centres: &Cloud) -> Result<Vec<DVec3>, FitError> {
+    let count = centres.len();
+    match count {
+        ..MIN_CENTRES => return Err(FitError::TooFew { count }),
+        _ if count > MAX_CENTRES => return Err(FitError::TooMany { count }),
+        _ if count != centres.normal.len() => {
+            return Err(FitError::Normals { points: count, normals: centres.normal.len() });
+        }
+        _ => {}
+    }
+    let pairs = centres.position.iter().zip(&centres.normal).enumerate();
+    pairs
+        .map(|(index, (p, n))| {
+            n.try_normalize().filter(|_| p.is_finite()).ok_or(FitError::NotFinite { index })
+        })
+        .collect()
 }
 
-impl Fitter {
-    /// Begins the interpolation of `centres`. The residual will be taken at all points `given`. The fit's report has
-    /// the name, credit and warnings of `info`.
-    ///
-    /// # Errors
-    ///
-    /// If there are too few or too many centres, if they are not finite, coincide or lie in one plane, or if memory
-    /// runs out.
-    pub fn new(centres: &Cloud, given: Vec<DVec3>, info: ModelInfo) -> Result<Self, FitError> {
-        let count = centres.len();
-        match count {
-            ..MIN_CENTRES => return Err(FitError::TooFew { count }),
-            _ if count > MAX_CENTRES => return Err(FitError::TooMany { count }),
-            _ if count != centres.normal.len() => {
-                return Err(FitError::Normals { points: count, normals: centres.normal.len() });
-            }
-            _ => {}
-        }
-        let mut normals = Vec::with_capacity(count);
-        for (index, (p, n)) in centres.position.iter().zip(&centres.normal).enumerate() {
-            match n.try_normalize() {
-                Some(n) if p.is_finite() => normals.push(n),
-                _ => return Err(FitError::NotFinite { index }),
-            }
-        }
-        let frame = Frame::of(centres.position.iter().copied());
-        // The centres are rounded to single precision, so that sampling finds exactly the same ones.
-        let local: Vec<DVec3> =
-            centres.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
-        check_centres(&local)?;
-        let info = ModelInfo {
-            points: given.len().max(count) as u32,
-            centres: count as u32,
-            normals: centres.source,
-            ..info
-        };
-        let stage = FitStage::Assembling { matrix: equations(count)?, next: 0 };
-        Ok(Self { frame, centres: local, normals, given, info, stage })
-    }
-
-    /// Fraction of the work done, from 0 to 1.
-    #[must_use]
-    pub fn fraction(&self) -> f64 {
-        let share = |done: usize, of: usize| done as f64 / of.max(1) as f64;
-        let [begin, end] = ELIMINATION_SPAN;
-        match &self.stage {
-            FitStage::Assembling { next, .. } => begin * share(*next, self.centres.len()),
-            FitStage::Eliminating(elimination) => begin + (end - begin) * elimination.fraction(),
-            FitStage::Measuring { next, .. } => end + (1.0 - end) * share(*next, self.given.len()),
-            FitStage::Over => 1.0,
+/// Solves for the coefficients of the function.
+fn coefficients(
+    decomposition: &Decomposition,
+    frame: &Frame,
+    centres: &[DVec3],
+    normals: &[DVec3],
+) -> Result<RbfData, Singular> {
+    let mut x = DVector::zeros(4 * centres.len());
+    for (i, normal) in normals.iter().enumerate() {
+        for axis in 0..3 {
+            x[4 * i + 1 + axis] = normal[axis];
         }
     }
-
-    /// Does up to `budget` units of work, of about a millisecond each. Returns the fit once it is complete.
-    ///
-    /// # Errors
-    ///
-    /// If the system cannot be solved.
-    ///
-    /// # Panics
-    ///
-    /// If called after it has returned a fit or an error.
-    pub fn step(&mut self, budget: u32) -> Result<Option<Fit>, FitError> {
-        for _ in 0..budget {
-            let stage = core::mem::replace(&mut self.stage, FitStage::Over);
-            self.stage = match stage {
-                FitStage::Assembling { mut matrix, next } => {
-                    let end = (next + ASSEMBLY_BATCH).min(self.centres.len());
-                    for j in next..end {
-                        assemble(&mut matrix, &self.centres, j);
-                    }
-                    if end < self.centres.len() {
-                        FitStage::Assembling { matrix, next: end }
-                    } else {
-                        FitStage::Eliminating(Elimination::new(matrix))
-                    }
-                }
-                FitStage::Eliminating(mut elimination) => {
-                    if elimination.step()? {
-                        self.solved(&elimination)?
-                    } else {
-                        FitStage::Eliminating(elimination)
-                    }
-                }
-                FitStage::Measuring { mut field, condition, next, mut residuals } => {
-                    let end = (next + BATCH).min(self.given.len());
-                    measure(&mut field, &self.given[next..end], &mut residuals);
-                    if end == self.given.len() {
-                        return Ok(Some(self.measured(&field, condition, residuals)));
-                    }
-                    FitStage::Measuring { field, condition, next: end, residuals }
-                }
-                FitStage::Over => panic!("this fit is over"),
-            };
-        }
-        Ok(None)
+    decomposition.solve(&mut x)?;
+    let mut data = RbfData::default();
+    let scale = frame.scale();
+    for (i, &centre) in centres.iter().enumerate() {
+        // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients
+        // are α s² and β s.
+        data.centres.push(frame.world(centre).to_array());
+        data.alpha.push(x[4 * i] * scale * scale);
+        data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
     }
-
-    /// Does all remaining work.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Fitter::step`].
-    pub fn finish(mut self) -> Result<Fit, FitError> {
-        loop {
-            if let Some(fit) = self.step(u32::MAX)? {
-                return Ok(fit);
-            }
-        }
-    }
-
-    /// Solves the eliminated system for the coefficients and begins to measure.
-    fn solved(&mut self, elimination: &Elimination) -> Result<FitStage, FitError> {
-        let mut x = DVector::zeros(4 * self.centres.len());
-        for (i, normal) in self.normals.iter().enumerate() {
-            for axis in 0..3 {
-                x[4 * i + 1 + axis] = normal[axis];
-            }
-        }
-        elimination.solve(&mut x)?;
-        let condition = elimination.condition()?;
-        if condition.is_nan() || condition >= MAX_CONDITION {
-            return Err(FitError::Singular { condition });
-        }
-        let mut data = RbfData::default();
-        let scale = self.frame.scale();
-        for (i, &centre) in self.centres.iter().enumerate() {
-            // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients
-            // are α s² and β s.
-            data.centres.push(self.frame.world(centre).to_array());
-            data.alpha.push(x[4 * i] * scale * scale);
-            data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
-        }
-        match RbfField::new(data) {
-            Ok(field) => Ok(FitStage::Measuring {
-                field: Box::new(field),
-                condition,
-                next: 0,
-                residuals: Vec::with_capacity(self.given.len()),
-            }),
-            Err(_) => Err(FitError::Singular { condition }),
-        }
-    }
-
-    /// Fit with its report, after all distances are measured.
-    fn measured(&mut self, field: &RbfField, condition: f64, mut residuals: Vec<f32>) -> Fit {
-        let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
-        let (lo, hi) = corners(self.given.iter().copied().chain(centres));
-        let diagonal = (hi - lo).length();
-        let margin = DVec3::splat(MARGIN * diagonal);
-        let mut info = core::mem::take(&mut self.info);
-        info.condition = condition;
-        let sum: f64 = residuals.iter().copied().map(f64::from).sum();
-        info.residual_mean = sum / residuals.len().max(1) as f64 / diagonal;
-        sort_numbers(&mut residuals);
-        let of_share = |share: f64| {
-            let at = (share * residuals.len() as f64).ceil() as usize;
-            residuals.get(at.saturating_sub(1)).map_or(0.0, |&residual| f64::from(residual) / diagonal)
-        };
-        (info.residual_95, info.residual_max) = (of_share(0.95), of_share(1.0));
-        if condition > WARN_CONDITION {
-            info.warnings.push(format!(
-                "The points nearly contradict each other (condition {condition:.0e}); expect a rough surface."
-            ));
-        }
-        let bounds = Bounds { min: (lo - margin).to_array(), max: (hi + margin).to_array() };
-        Fit { data: field.data().clone(), bounds, info }
-    }
+    Ok(data)
 }
 
-/// Smallest and largest corner of the box of the points.
-fn corners(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    points.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)))
+/// The fit with its report.
+fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
+    let centres: Vec<DVec3> = field.data().centres.iter().map(|&c| DVec3::from_array(c)).collect();
+    let (lo, hi) = corners(given.iter().chain(&centres));
+    let diagonal = (hi - lo).length();
+    let margin = DVec3::splat(MARGIN * diagonal);
+    let sum: f64 = residuals.iter().copied().map(f64::from).sum();
+    info.residual_mean = sum / residuals.len().max(1) as f64 / diagonal;
+    sort_numbers(&mut residuals);
+    let of_share = |share: f64| {
+        let at = (share * residuals.len() as f64).ceil() as usize;
+        residuals.get(at.saturating_sub(1)).map_or(0.0, |&residual| f64::from(residual) / diagonal)
+    };
+    (info.residual_95, info.residual_max) = (of_share(0.95), of_share(1.0));
+    if info.condition > WARN_CONDITION {
+        info.warnings.push(format!(
+            "The points nearly contradict each other (condition {:.0e}); expect a rough surface.",
+            info.condition
+        ));
+    }
+    let bounds = Bounds { min: (lo - margin).to_array(), max: (hi + margin).to_array() };
+    Fit { data: field.data().clone(), bounds, info }
 }
 
 /// Checks that the centres are distinct and not in one plane.
 fn check_centres(centres: &[DVec3]) -> Result<(), FitError> {
     check_spread(centres)?;
-    let (lo, hi) = corners(centres.iter().copied());
+    let (lo, hi) = corners(centres);
     let tolerance = DUPLICATE_SHARE * (hi - lo).length();
     for (second, p) in centres.iter().enumerate() {
         if let Some(first) = centres[..second].iter().position(|q| p.distance(*q) <= tolerance) {
@@ -335,17 +235,25 @@ fn check_centres(centres: &[DVec3]) -> Result<(), FitError> {
     Ok(())
 }
 
-/// Zero matrix for the equations of `count` centres.
-fn equations(count: usize) -> Result<DMatrix<f64>, CloudError> {
-    let side = 4 * count;
+/// The equations for the coefficients: the columns of the unknowns α and −β of each centre, in the rows of f and ∇f at every centre.
+async fn assemble(centres: &[DVec3], tell: impl Fn(f64)) -> Result<DMatrix<f64>, CloudError> {
+    let side = 4 * centres.len();
     let mut entries = Vec::new();
     entries.try_reserve_exact(side * side).map_err(|_| CloudError::Memory)?;
     entries.resize(side * side, 0.0);
-    Ok(DMatrix::from_vec(side, side, entries))
+    let mut matrix = DMatrix::from_vec(side, side, entries);
+    for columns in ranges(centres.len(), ASSEMBLY_BATCH) {
+        tell(columns.start as f64 / centres.len() as f64);
+        for j in columns {
+            assemble_columns(&mut matrix, centres, j);
+        }
+        pause().await;
+    }
+    Ok(matrix)
 }
 
-/// Writes the columns of the unknowns α and −β of centre `j`, in the rows of f and ∇f at every centre.
-fn assemble(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
+/// Writes the columns of centre `j`.
+fn assemble_columns(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
     for (i, &centre) in centres.iter().enumerate() {
         let d = centre - centres[j];
         let r = d.length();
@@ -366,16 +274,18 @@ fn assemble(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
     }
 }
 
-/// Adds the residuals |f|/|∇f| of the points; there is none where ∇f vanishes.
-fn measure(field: &mut RbfField, points: &[DVec3], residuals: &mut Vec<f32>) {
-    let points: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
-    let mut value = vec![0.0; points.len()];
-    let mut gradient = vec![Vec3::ZERO; points.len()];
-    field.gradients(&points, &mut value, &mut gradient);
-    for (value, gradient) in value.iter().zip(&gradient) {
-        let residual = value.abs() / gradient.length();
-        if residual.is_finite() {
-            residuals.push(residual);
-        }
+/// Residuals |f|/|∇f| of the points; there is none where ∇f vanishes.
+async fn residuals(field: &mut RbfField, points: &[DVec3], tell: impl Fn(f64)) -> Vec<f32> {
+    let mut residuals = Vec::with_capacity(points.len());
+    for range in ranges(points.len(), BATCH) {
+        tell(range.start as f64 / points.len() as f64);
+        let batch: Vec<Vec3> = points[range].iter().map(|p| p.as_vec3()).collect();
+        let mut value = vec![0.0; batch.len()];
+        let mut gradient = vec![Vec3::ZERO; batch.len()];
+        field.gradients(&batch, &mut value, &mut gradient);
+        let of_each = value.iter().zip(&gradient).map(|(value, gradient)| value.abs() / gradient.length());
+        residuals.extend(of_each.filter(|residual| residual.is_finite()));
+        pause().await;
     }
+    residuals
 }

@@ -1,25 +1,19 @@
 //! A job that takes a file or a built-in model to a field, in slices of bounded work.
 
-use super::fit::{Fit, FitError, Fitter};
+use super::fit::{Fit, FitError, interpolate};
 use super::models;
-use super::normals::Estimator;
-use super::read::{FileMesh, ReadError, Reader};
-use super::thin::{Merger, Spreader, Thinner, check_spread, corners};
+use super::normals::estimate;
+use super::read::{ReadError, Reader};
+use super::thin::{check_spread, corners, merge, spread, thin};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::model;
 pub use crate::field::model::{CENTRES, DEFAULT_CENTRES};
+use crate::slices;
+use core::cell::{Cell, OnceCell};
+use core::pin::Pin;
 use glam::DVec3;
 use serde::Serialize;
-
-/// Rows of a file read per unit of work. This and the following numbers make a unit of work take up to about a tenth of
-/// a millisecond natively.
-const ROWS: u32 = 500;
-/// Faces summed per unit of work.
-const FACES: u32 = 2000;
-/// Points merged or thinned out per unit of work.
-const POINTS: u32 = 1000;
-/// Normals estimated per unit of work.
-const PLANES: u32 = 20;
+use std::rc::Rc;
 
 /// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to the origin. Within
 /// it, single precision, in which the surface is sampled, resolves a millionth of the diagonal.
@@ -129,27 +123,62 @@ fn names() -> String {
     names.join(", ")
 }
 
+/// A stage of a job in words, with its begin and length as shares of the whole time for a file of some megabytes. A smaller one is done
+/// at once.
+struct Part {
+    stage: JobStage,
+    label: &'static str,
+    begins: f64,
+    length: f64,
+}
+
+const fn part(stage: JobStage, label: &'static str, begins: f64, length: f64) -> Part {
+    Part { stage, label, begins, length }
+}
+
+const READING: Part = part(JobStage::Reading, "Reading the file", 0.0, 0.4);
+const FACING: Part = part(JobStage::Normals, "Finding normals from the faces", 0.4, 0.05);
+const MERGING: Part = part(JobStage::Thinning, "Joining equal points", 0.45, 0.15);
+/// The number of grids that thinning takes is not known, so its fraction stands still.
+const THINNING: Part = part(JobStage::Thinning, "Thinning out", 0.6, 0.05);
+const ESTIMATING: Part = part(JobStage::Normals, "Estimating normals", 0.65, 0.1);
+const SPREADING: Part = part(JobStage::Thinning, "Choosing centres", 0.75, 0.05);
+const SOLVING: Part = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
+const DONE: Part = part(JobStage::Done, "Done", 1.0, 0.0);
+
+/// What a job tells while it runs.
+struct Told {
+    progress: Cell<Progress>,
+    centres: OnceCell<Vec<DVec3>>,
+}
+
+impl Told {
+    fn new(first: &Part) -> Rc<Self> {
+        Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
+    }
+
+    /// Begins a part of the job. The answer takes the fraction of it that is done.
+    fn begin(&self, part: &'static Part) -> impl Fn(f64) {
+        self.progress.set(part.at(0.0));
+        |share| self.progress.set(part.at(share))
+    }
+}
+
+impl Part {
+    fn at(&self, share: f64) -> Progress {
+        let fraction = self.begins + share * self.length;
+        Progress { stage: self.stage, label: self.label, fraction, done: self.stage == JobStage::Done }
+    }
+}
+
 /// A file or a built-in model on its way to a field.
 pub struct Job {
     state: State,
-    info: ModelInfo,
-    /// Number of centres to choose.
-    wanted: u32,
-    /// All distinct points, once they are known; the fitter takes them.
-    given: Vec<DVec3>,
-    /// The centres, once they are chosen.
-    centres: Vec<DVec3>,
+    told: Rc<Told>,
 }
 
-/// State of the current stage.
 enum State {
-    Reading(Box<Reader>),
-    Facing(FileMesh),
-    Merging(Merger),
-    Thinning(Thinner),
-    Estimating(Cloud, Box<Estimator>),
-    Spreading(Cloud, Spreader),
-    Solving(Box<Fitter>),
+    Working(Pin<Box<dyn Future<Output = Result<Fit, JobError>>>>),
     Done(Box<Fit>),
     Failed(JobError),
 }
@@ -162,18 +191,12 @@ impl Job {
     ///
     /// If the number of centres is out of range, or if the size, format or header of the file is wrong.
     pub fn file(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Self, JobError> {
-        if !CENTRES.contains(&centres) {
-            return Err(JobError::Centres { count: centres });
-        }
-        let reader = Box::new(Reader::new(name, bytes)?);
+        check_number(centres)?;
+        let reader = Reader::new(name, bytes)?;
         let info = ModelInfo { name: name.to_owned(), ..ModelInfo::default() };
-        Ok(Self {
-            state: State::Reading(reader),
-            info,
-            wanted: centres,
-            given: Vec::new(),
-            centres: Vec::new(),
-        })
+        let told = Told::new(&READING);
+        let work = Box::pin(of_file(reader, centres as usize, info, told.clone()));
+        Ok(Self { state: State::Working(work), told })
     }
 
     /// Job for a built-in model. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated, or all of them if
@@ -183,74 +206,38 @@ impl Job {
     ///
     /// If the number of centres is out of range, or if there is no model with this identifier.
     pub fn model(id: &str, centres: u32) -> Result<Self, JobError> {
-        if !CENTRES.contains(&centres) {
-            return Err(JobError::Centres { count: centres });
-        }
+        check_number(centres)?;
         let unknown = || JobError::UnknownModel { id: id.to_owned() };
-        let model = model::find(id).ok_or_else(unknown)?;
+        let info = models::info(model::find(id).ok_or_else(unknown)?);
         let cloud = models::cloud(id).ok_or_else(unknown)?;
-        let mut job = Self {
-            state: State::Failed(unknown()),
-            info: models::info(model),
-            wanted: centres,
-            given: cloud.position.clone(),
-            centres: Vec::new(),
-        };
-        job.state = if centres as usize >= cloud.len() {
-            job.centres.clone_from(&cloud.position);
-            State::Solving(Box::new(models::begin(model)))
-        } else {
-            job.spread(cloud)
-        };
-        Ok(job)
+        let told = Told::new(&SPREADING);
+        let given = cloud.position.clone();
+        let work = Box::pin(of_cloud(cloud, given, centres as usize, info, told.clone()));
+        Ok(Self { state: State::Working(work), told })
     }
 
     /// Current progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        // Begin and length of the stage as shares of the whole time, for a file of some megabytes. A smaller one is
-        // done at once.
-        let (stage, label, begins, length, share) = match &self.state {
-            State::Reading(reader) => (JobStage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
-            State::Facing(mesh) => {
-                (JobStage::Normals, "Finding normals from the faces", 0.4, 0.05, mesh.fraction_summed())
-            }
-            State::Merging(merger) => {
-                (JobStage::Thinning, "Joining equal points", 0.45, 0.15, merger.fraction())
-            }
-            // The number of grids that thinning will take is not known.
-            State::Thinning(_) => (JobStage::Thinning, "Thinning out", 0.6, 0.05, 0.0),
-            State::Estimating(_, estimator) => {
-                (JobStage::Normals, "Estimating normals", 0.65, 0.1, estimator.fraction())
-            }
-            State::Spreading(_, spreader) => {
-                (JobStage::Thinning, "Choosing centres", 0.75, 0.05, spreader.fraction())
-            }
-            State::Solving(fitter) => {
-                (JobStage::Solving, "Solving for the surface", 0.8, 0.2, fitter.fraction())
-            }
-            State::Done(_) | State::Failed(_) => (JobStage::Done, "Done", 1.0, 0.0, 0.0),
-        };
-        let done = matches!(self.state, State::Done(_));
-        Progress { stage, label, fraction: begins + share * length, done }
+        match self.state {
+            State::Done(_) => DONE.at(0.0),
+            State::Working(_) | State::Failed(_) => self.told.progress.get(),
+        }
     }
 
-    /// Does up to `budget` units of work and returns the progress.
+    /// Does up to `budget` slices of the work and returns the progress.
     ///
-    /// A unit takes about a tenth of a millisecond natively; between two stages of a file with millions of points it may take some
-    /// tens of milliseconds.
+    /// A slice takes about a tenth of a millisecond natively, one of solving about a millisecond; between two stages of a file with
+    /// millions of points it may take some tens of milliseconds.
     ///
     /// # Errors
     ///
     /// What is wrong with the file, the points or the system. Every later call returns the same error.
     pub fn step(&mut self, budget: u32) -> Result<Progress, JobError> {
-        for _ in 0..budget {
-            let state = match &self.state {
-                State::Done(_) => break,
-                State::Failed(error) => return Err(error.clone()),
-                _ => core::mem::replace(&mut self.state, State::Failed(CloudError::Memory.into())),
-            };
-            self.state = self.advance(state).unwrap_or_else(State::Failed);
+        if let State::Working(work) = &mut self.state
+            && let Some(result) = slices::advance(work.as_mut(), budget)
+        {
+            self.state = result.map_or_else(State::Failed, |fit| State::Done(Box::new(fit)));
         }
         match &self.state {
             State::Failed(error) => Err(error.clone()),
@@ -270,107 +257,72 @@ impl Job {
     /// Points that are interpolated, once they are chosen.
     #[must_use]
     pub fn centres(&self) -> &[DVec3] {
-        &self.centres
+        self.told.centres.get().map_or(&[], Vec::as_slice)
     }
+}
 
-    /// Does one unit of work and returns the next state.
-    fn advance(&mut self, state: State) -> Result<State, JobError> {
-        Ok(match state {
-            State::Reading(mut reader) => {
-                if reader.step(ROWS)? {
-                    let mesh = reader.into_mesh();
-                    self.info.points = mesh.position.len() as u32;
-                    State::Facing(mesh)
-                } else {
-                    State::Reading(reader)
-                }
-            }
-            State::Facing(mut mesh) => {
-                if mesh.sum_areas(FACES)? {
-                    let (cloud, warnings) = mesh.into_cloud();
-                    self.info.warnings = warnings;
-                    self.info.normals = cloud.source;
-                    State::Merging(Merger::new(cloud))
-                } else {
-                    State::Facing(mesh)
-                }
-            }
-            State::Merging(mut merger) => {
-                if merger.step(POINTS)? {
-                    let (mut cloud, _) = merger.finish();
-                    check_spread(&cloud.position)?;
-                    self.bring_near(&mut cloud.position);
-                    self.given.clone_from(&cloud.position);
-                    State::Thinning(Thinner::new(cloud))
-                } else {
-                    State::Merging(merger)
-                }
-            }
-            State::Thinning(mut thinner) => {
-                if !thinner.step(POINTS)? {
-                    return Ok(State::Thinning(thinner));
-                }
-                let cloud = thinner.finish();
-                if cloud.normal.is_empty() {
-                    let estimator = Estimator::new(&cloud.position);
-                    State::Estimating(cloud, Box::new(estimator))
-                } else {
-                    self.spread(cloud)
-                }
-            }
-            State::Estimating(mut cloud, mut estimator) => {
-                if estimator.step(PLANES) {
-                    self.info.warnings.extend(estimator.finish(&mut cloud)?);
-                    self.spread(cloud)
-                } else {
-                    State::Estimating(cloud, estimator)
-                }
-            }
-            State::Spreading(cloud, mut spreader) => {
-                if spreader.step(&cloud.position) {
-                    let chosen = cloud.only(spreader.chosen());
-                    self.centres.clone_from(&chosen.position);
-                    let given = core::mem::take(&mut self.given);
-                    let fitter = Fitter::new(&chosen, given, self.info.clone())?;
-                    State::Solving(Box::new(fitter))
-                } else {
-                    State::Spreading(cloud, spreader)
-                }
-            }
-            State::Solving(mut fitter) => match fitter.step(1)? {
-                Some(mut fit) => {
-                    // The fit counts only distinct points.
-                    fit.info.points = self.info.points.max(fit.info.points);
-                    State::Done(Box::new(fit))
-                }
-                None => State::Solving(fitter),
-            },
-            over @ (State::Done(_) | State::Failed(_)) => over,
-        })
-    }
+fn check_number(centres: u32) -> Result<(), JobError> {
+    if CENTRES.contains(&centres) { Ok(()) } else { Err(JobError::Centres { count: centres }) }
+}
 
-    fn spread(&self, cloud: Cloud) -> State {
-        let spreader = Spreader::new(&cloud.position, self.wanted as usize);
-        State::Spreading(cloud, spreader)
+/// From a file to a field.
+async fn of_file(
+    reader: Reader,
+    wanted: usize,
+    mut info: ModelInfo,
+    told: Rc<Told>,
+) -> Result<Fit, JobError> {
+    let mesh = reader.read(told.begin(&READING)).await?;
+    info.points = mesh.position.len() as u32;
+    let (cloud, warnings) = mesh.into_cloud(told.begin(&FACING)).await?;
+    info.warnings = warnings;
+    let mut cloud = merge(cloud, told.begin(&MERGING)).await?;
+    check_spread(&cloud.position)?;
+    info.warnings.extend(bring_near(&mut cloud.position));
+    let given = cloud.position.clone();
+    told.begin(&THINNING)(0.0);
+    let mut cloud = thin(cloud).await?;
+    if cloud.normal.is_empty() {
+        info.warnings.extend(estimate(&mut cloud, told.begin(&ESTIMATING)).await?);
     }
+    of_cloud(cloud, given, wanted, info, told).await
+}
 
-    /// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.
-    fn bring_near(&mut self, points: &mut [DVec3]) {
-        let (lo, hi) = corners(points);
-        let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
-        if middle.abs().max_element() <= FAR * diagonal {
-            return;
-        }
-        let moved = middle.map(|x| round_to(-x, diagonal));
-        for p in points {
-            *p += moved;
-        }
-        self.info.warnings.push(format!(
-            "The points lie far from the origin for their size and were moved by {}, {}, {}: single precision would lose \
-             their last digits.",
-            moved.x, moved.y, moved.z
-        ));
+/// From points with normals to a field. The distances from the surface are measured at the points `given`.
+async fn of_cloud(
+    mut cloud: Cloud,
+    given: Vec<DVec3>,
+    wanted: usize,
+    info: ModelInfo,
+    told: Rc<Told>,
+) -> Result<Fit, JobError> {
+    if wanted < cloud.len() {
+        cloud = cloud.only(&spread(&cloud.position, wanted, told.begin(&SPREADING)).await);
     }
+    told.centres.get_or_init(|| cloud.position.clone());
+    // Those of a file are counted before equal ones are joined.
+    let points = info.points;
+    let mut fit = interpolate(&cloud, &given, info, told.begin(&SOLVING)).await?;
+    fit.info.points = fit.info.points.max(points);
+    Ok(fit)
+}
+
+/// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.
+fn bring_near(points: &mut [DVec3]) -> Option<String> {
+    let (lo, hi) = corners(&*points);
+    let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
+    if middle.abs().max_element() <= FAR * diagonal {
+        return None;
+    }
+    let moved = middle.map(|x| round_to(-x, diagonal));
+    for p in points {
+        *p += moved;
+    }
+    Some(format!(
+        "The points lie far from the origin for their size and were moved by {}, {}, {}: single precision would lose \
+         their last digits.",
+        moved.x, moved.y, moved.z
+    ))
 }
 
 /// Multiple nearest to `x` of the largest power of ten not above `unit`.

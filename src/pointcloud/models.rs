@@ -4,9 +4,10 @@
 //! follow for each point: its position in the cube, and its normal in the octahedral encoding (Q. Meyer et al., "On
 //! Floating-Point Normal Vectors", 2010). `tests/it/models.rs` makes the files and states where the points come from.
 
-use super::fit::Fitter;
+use super::fit::{Fit, interpolate};
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
+use crate::slices::complete;
 use glam::{DVec2, DVec3};
 
 /// Largest 16-bit integer.
@@ -29,16 +30,16 @@ pub fn cloud(id: &str) -> Option<Cloud> {
     Some(Cloud { source, ..decode(bytes) })
 }
 
-/// Fitter of a built-in model, all of whose points are centres.
+/// Fit of a built-in model, all of whose points are centres.
 ///
 /// # Panics
 ///
 /// Never: a test calls it for every model.
 #[must_use]
-pub fn begin(model: &Model) -> Fitter {
+pub fn fit(model: &Model) -> Fit {
     let points = cloud(model.id).unwrap_or_default();
-    let given = points.position.clone();
-    Fitter::new(&points, given, info(model)).unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
+    complete(interpolate(&points, &points.position, info(model), |_| {}))
+        .unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
 }
 
 /// Report of a built-in model before it is solved.

@@ -16,6 +16,7 @@
 use super::thin::{corners, covariance};
 use super::{Cloud, CloudError, NormalSource, eigen};
 use crate::math::unkey;
+use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
 use glam::DVec3;
@@ -30,98 +31,87 @@ const NEIGHBOURS: usize = 12;
 /// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has the wrong sign.
 const OPPOSITE_COS: f64 = -0.5;
 
+/// Planes fitted in a slice of work.
+const PLANES: usize = 20;
+
 /// Share of such pairs above which the user is warned.
 const WARN_SHARE: f64 = 0.01;
 
-/// Estimates normals in slices of bounded work.
+/// Estimates the normals of a cloud, outward, and returns warnings for the user. The points must be distinct and not in one plane.
+/// `tell` gets the fraction of the points to which a plane is fitted.
+///
+/// # Errors
+///
+/// If there is not enough memory.
+pub async fn estimate(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Vec<String>, CloudError> {
+    let mut graph = Graph::new(&cloud.position, tell).await;
+    let edges = graph.edges()?;
+    let components = graph.orient(&edges);
+    let mut warnings = vec![
+        "The file has no normals: they were estimated from each point's neighbours, and where the surface is thin or \
+         sparsely sampled they can be wrong."
+            .to_owned(),
+    ];
+    if components > 1 {
+        warnings.push(format!(
+            "The points fall into {components} components without a connection; the normals of each were turned outward by itself."
+        ));
+    }
+    let opposite =
+        graph.pairs().filter(|&(i, j)| graph.normal[i].dot(graph.normal[j]) < OPPOSITE_COS).count();
+    let share = opposite as f64 / graph.neighbours.len().max(1) as f64;
+    if share > WARN_SHARE {
+        warnings.push(format!(
+            "{:.0} % of neighbouring points have opposite estimated normals: give a file with normals, or more points.",
+            100.0 * share
+        ));
+    }
+    cloud.normal = graph.normal;
+    cloud.source = NormalSource::Estimated;
+    Ok(warnings)
+}
+
+/// Points with normals, each joined to its nearest neighbours.
 #[derive(Debug)]
-pub struct Estimator {
+struct Graph {
     /// Points relative to the centre of their box, in units of its diagonal.
     local: Vec<DVec3>,
-    tree: Tree,
     /// Number of neighbours of each point.
     per_point: usize,
     /// Nearest neighbours of each point in turn, without the point itself.
     neighbours: Vec<u32>,
+    /// Normals of the planes through the neighbours.
     normal: Vec<DVec3>,
-    /// Scratch space of a search.
-    nearest: Vec<u64>,
 }
 
-impl Estimator {
-    /// Begins the estimation for `points`, which must be distinct and not in one plane.
-    #[must_use]
-    pub fn new(points: &[DVec3]) -> Self {
+impl Graph {
+    /// Fits a plane to the neighbours of each point.
+    async fn new(points: &[DVec3], tell: impl Fn(f64)) -> Self {
         let (lo, hi) = corners(points);
         let (middle, unit) = ((lo + hi) / 2.0, (hi - lo).length());
         let local: Vec<DVec3> = points.iter().map(|p| (*p - middle) / unit).collect();
         let single: Vec<_> = local.iter().map(|p| p.as_vec3()).collect();
-        Self {
-            tree: Tree::new(&single),
-            per_point: NEIGHBOURS.min(points.len().saturating_sub(1)),
-            local,
-            neighbours: Vec::new(),
-            normal: Vec::new(),
-            nearest: Vec::new(),
+        let tree = Tree::new(&single);
+        let per_point = NEIGHBOURS.min(points.len().saturating_sub(1));
+        let (mut neighbours, mut normal, mut nearest) = (Vec::new(), Vec::new(), Vec::new());
+        for range in ranges(points.len(), PLANES) {
+            tell(range.start as f64 / points.len() as f64);
+            for i in range {
+                let p = local[i];
+                tree.nearest_many(p.as_vec3(), per_point + 1, |_| true, &mut nearest);
+                let near = nearest.iter().map(|&key| tree.origin[unkey(key).1 as usize]);
+                let from = neighbours.len();
+                // If points coincide in single precision, the point itself may be missing among its nearest ones.
+                neighbours.extend(near.filter(|&j| j as usize != i).take(per_point));
+                let near =
+                    || core::iter::once(p).chain(neighbours[from..].iter().map(|&j| local[j as usize]));
+                let mean = near().sum::<DVec3>() / (per_point + 1) as f64;
+                let (_, axes) = eigen::symmetric(&covariance(near(), mean));
+                normal.push(axes[0].normalize_or(DVec3::Z));
+            }
+            pause().await;
         }
-    }
-
-    /// Fits planes to the neighbours of up to `budget` more points. Returns whether all points are done.
-    pub fn step(&mut self, budget: u32) -> bool {
-        let end = self.local.len().min(self.normal.len() + budget as usize);
-        for i in self.normal.len()..end {
-            let p = self.local[i];
-            self.tree.nearest_many(p.as_vec3(), self.per_point + 1, |_| true, &mut self.nearest);
-            let near = self.nearest.iter().map(|&key| self.tree.origin[unkey(key).1 as usize]);
-            let from = self.neighbours.len();
-            // If points coincide in single precision, the point itself may be missing among its nearest ones.
-            self.neighbours.extend(near.filter(|&j| j as usize != i).take(self.per_point));
-            let near =
-                || core::iter::once(p).chain(self.neighbours[from..].iter().map(|&j| self.local[j as usize]));
-            let mean = near().sum::<DVec3>() / (self.per_point + 1) as f64;
-            let (_, axes) = eigen::symmetric(&covariance(near(), mean));
-            self.normal.push(axes[0].normalize_or(DVec3::Z));
-        }
-        end == self.local.len()
-    }
-
-    /// Fraction of the points that are done.
-    #[must_use]
-    pub fn fraction(&self) -> f64 {
-        self.normal.len() as f64 / self.local.len().max(1) as f64
-    }
-
-    /// Orients the normals outward and stores them in `cloud`, whose points must be those of [`Estimator::new`].
-    /// Returns warnings for the user.
-    ///
-    /// # Errors
-    ///
-    /// If there is not enough memory.
-    pub fn finish(mut self, cloud: &mut Cloud) -> Result<Vec<String>, CloudError> {
-        let edges = self.edges()?;
-        let components = self.orient(&edges);
-        let mut warnings = vec![
-            "The file has no normals: they were estimated from each point's neighbours, and where the surface is thin or \
-             sparsely sampled they can be wrong."
-                .to_owned(),
-        ];
-        if components > 1 {
-            warnings.push(format!(
-                "The points fall into {components} components without a connection; the normals of each were turned outward by itself."
-            ));
-        }
-        let opposite =
-            self.pairs().filter(|&(i, j)| self.normal[i].dot(self.normal[j]) < OPPOSITE_COS).count();
-        let share = opposite as f64 / self.neighbours.len().max(1) as f64;
-        if share > WARN_SHARE {
-            warnings.push(format!(
-                "{:.0} % of neighbouring points have opposite estimated normals: give a file with normals, or more points.",
-                100.0 * share
-            ));
-        }
-        cloud.normal = self.normal;
-        cloud.source = NormalSource::Estimated;
-        Ok(warnings)
+        Self { local, per_point, neighbours, normal }
     }
 
     /// Pairs of each point and each of its neighbours.

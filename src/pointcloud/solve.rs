@@ -1,9 +1,11 @@
-//! Solver of a large symmetric system: blocked LU decomposition with partial pivoting, in steps.
+//! Solver of a large symmetric system: blocked LU decomposition with partial pivoting, in slices.
 //!
 //! nalgebra factorises the panels and solves the triangular systems. The update of the columns to the right of a panel,
 //! which takes nearly all of the time, is written out here. Neither uses a fused multiply-add, so the solution has the
 //! same bits natively and in WebAssembly.
 
+use crate::slices::{pause, ranges};
+use core::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 /// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache.
@@ -13,65 +15,47 @@ const ROWS: usize = 256;
 /// Maximum number of steps of Hager's estimator, which nearly always ends after two or three.
 const ESTIMATOR_STEPS: usize = 5;
 
-/// LU decomposition in progress.
+/// LU decomposition of a symmetric matrix.
 #[derive(Clone, Debug)]
-pub(super) struct Elimination {
-    /// Remaining matrix, in which the factors L and U replace the eliminated part.
+pub(super) struct Decomposition {
+    /// The factors L and U, once they are complete; before that they replace the eliminated part of the matrix.
     matrix: DMatrix<f64>,
     /// Rows exchanged in each step.
     exchanges: Vec<(usize, usize)>,
     /// ‖A‖₁.
     norm: f64,
-    /// First column of the current panel.
-    panel: usize,
-    /// First column that the panel has not yet updated, or `panel` until the panel is factorised.
-    next: usize,
 }
 
 /// Error: a pivot is zero or not finite, so the matrix is singular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Singular;
 
-impl Elimination {
-    /// Begins the decomposition of a symmetric matrix.
-    pub(super) fn new(matrix: DMatrix<f64>) -> Self {
+impl Decomposition {
+    /// Decomposes a symmetric matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either takes at most 32²
+    /// multiplications per row. `tell` gets the fraction of the work done.
+    pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, Singular> {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
-        Self { matrix, exchanges: Vec::new(), norm, panel: 0, next: 0 }
-    }
-
-    /// Fraction of the work done, from 0 to 1.
-    pub(super) fn fraction(&self) -> f64 {
-        let n = self.matrix.nrows().max(1) as f64;
-        let left = |done: usize| (n - done as f64).max(0.0) / n;
-        let open = |done: usize| left(done).powi(3);
-        let share = (left(self.panel) - left(self.next)) / left(self.panel).max(f64::MIN_POSITIVE);
-        1.0 - open(self.panel) + share * (open(self.panel) - open(self.panel + PANEL))
-    }
-
-    /// Factorises the next panel, or updates the next [`PANEL`] columns by the current one; either takes at most 32²
-    /// multiplications per row. Returns whether the decomposition is complete.
-    pub(super) fn step(&mut self) -> Result<bool, Singular> {
-        let n = self.matrix.nrows();
-        if self.panel < n {
-            if self.next == self.panel {
-                self.factorise()?;
-            } else {
-                self.update();
-            }
-            self.next = (self.next + PANEL).min(n);
-            if self.next == n {
-                self.panel = (self.panel + PANEL).min(n);
-                self.next = self.panel;
+        let n = matrix.nrows();
+        let mut this = Self { matrix, exchanges: Vec::new(), norm };
+        // The work left is about the cube of the columns left.
+        let left = |column: usize| (n.saturating_sub(column) as f64 / n as f64).powi(3);
+        for Range { start: panel, end } in ranges(n, PANEL) {
+            this.factorise(panel..end)?;
+            pause().await;
+            for open in (end..n).step_by(PANEL) {
+                let share = (open - end) as f64 / (n - end) as f64;
+                tell(1.0 - left(panel) + share * (left(panel) - left(end)));
+                this.update(panel, open);
+                pause().await;
             }
         }
-        Ok(self.panel == n)
+        Ok(this)
     }
 
     /// Factorises the panel and exchanges whole rows to bring the pivots to the diagonal.
-    fn factorise(&mut self) -> Result<(), Singular> {
-        let (n, first) = (self.matrix.nrows(), self.panel);
-        let end = (first + PANEL).min(n);
-        for k in first..end {
+    fn factorise(&mut self, panel: Range<usize>) -> Result<(), Singular> {
+        let end = panel.end;
+        for k in panel {
             let pivot = k + self.matrix.column(k).rows_range(k..).icamax();
             self.matrix.swap_rows(k, pivot);
             self.exchanges.push((k, pivot));
@@ -90,9 +74,9 @@ impl Elimination {
         Ok(())
     }
 
-    /// Updates the next columns by the panel: to L⁻¹ A in its rows, to A − L U below.
-    fn update(&mut self) {
-        let (n, first, next) = (self.matrix.nrows(), self.panel, self.next);
+    /// Updates the columns from `next` on by the panel from `first` on: to L⁻¹ A in its rows, to A − L U below.
+    fn update(&mut self, first: usize, next: usize) {
+        let n = self.matrix.nrows();
         let (below, width) = (first + PANEL, PANEL.min(n - next));
         let (panel, mut open) = self.matrix.columns_range_pair_mut(first..below, next..next + width);
         let mut top = open.view_mut((first, 0), (PANEL, width));
@@ -111,7 +95,7 @@ impl Elimination {
         }
     }
 
-    /// Solves A x = `right` in place, once the decomposition is complete.
+    /// Solves A x = `right` in place.
     pub(super) fn solve(&self, right: &mut DVector<f64>) -> Result<(), Singular> {
         for &(k, pivot) in &self.exchanges {
             right.swap_rows(k, pivot);
@@ -155,7 +139,8 @@ fn subtract(target: &mut [f64], [a, b, c, d]: [&[f64]; 4], [p, q, r, s]: &[f64; 
 
 #[cfg(test)]
 mod tests {
-    use super::{Elimination, PANEL, Singular};
+    use super::{Decomposition, PANEL, Singular};
+    use crate::slices::complete;
     use nalgebra::{DMatrix, DVector};
     use rand_core::Rng;
     use rand_pcg::Pcg64Mcg;
@@ -166,10 +151,8 @@ mod tests {
         &entries + entries.transpose()
     }
 
-    fn eliminated(matrix: &DMatrix<f64>) -> Result<Elimination, Singular> {
-        let mut elimination = Elimination::new(matrix.clone());
-        while !elimination.step()? {}
-        Ok(elimination)
+    fn decomposed(matrix: &DMatrix<f64>) -> Result<Decomposition, Singular> {
+        complete(Decomposition::new(matrix.clone(), |_| {}))
     }
 
     #[test]
@@ -178,14 +161,14 @@ mod tests {
             let matrix = symmetric(n, n as u128);
             let wanted = DVector::from_fn(n, |i, _| 1.0 + i as f64);
             let mut x = &matrix * &wanted;
-            let elimination = eliminated(&matrix).expect("a random matrix is not singular");
-            elimination.solve(&mut x).expect("a solution");
+            let decomposition = decomposed(&matrix).expect("a random matrix is not singular");
+            decomposition.solve(&mut x).expect("a solution");
             let inverse = matrix.clone().try_inverse().expect("an inverse");
             let norm = |m: &DMatrix<f64>| m.column_iter().map(|c| c.lp_norm(1)).fold(0.0, f64::max);
             let condition = norm(&matrix) * norm(&inverse);
             let off = (&x - &wanted).amax() / wanted.amax();
             assert!(off < 1e-13 * condition, "{n}: {off} at condition {condition}");
-            let estimate = elimination.condition().expect("an estimate");
+            let estimate = decomposition.condition().expect("an estimate");
             assert!(
                 estimate <= condition * 1.000_001 && estimate > condition / 3.0,
                 "{n}: {estimate} {condition}"
@@ -198,8 +181,8 @@ mod tests {
         let mut matrix = symmetric(50, 3);
         matrix.row_mut(40).fill(0.0);
         matrix.column_mut(40).fill(0.0);
-        assert!(eliminated(&matrix).is_err());
+        assert!(decomposed(&matrix).is_err());
         matrix[(40, 40)] = f64::NAN;
-        assert!(eliminated(&matrix).is_err());
+        assert!(decomposed(&matrix).is_err());
     }
 }

@@ -3,6 +3,7 @@
 
 use super::{Cloud, CloudError};
 use crate::math::{IndexTable, Sym3, hash};
+use crate::slices::{pause, ranges};
 use glam::DVec3;
 
 /// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen
@@ -20,9 +21,13 @@ const FLAT_SHARE: f64 = 1e-5;
 /// Points that a column has room for at first; it grows by half.
 const FIRST_POINTS: usize = 1024;
 
-/// Smallest and largest corner of the bounding box of `points`, which must not be empty.
-pub(super) fn corners(points: &[DVec3]) -> (DVec3, DVec3) {
-    points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
+/// Points merged or put into cells in a slice of work.
+const POINTS: usize = 1000;
+
+/// Smallest and largest corner of the bounding box of `points`; of none infinity and its negative.
+pub(super) fn corners<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> (DVec3, DVec3) {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    points.into_iter().fold(none, |(lo, hi), p| (lo.min(*p), hi.max(*p)))
 }
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
@@ -47,38 +52,24 @@ pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVe
 }
 
 /// Merges coincident points and adds their normals. A file has a point several times where faces with different
-/// attributes meet.
-#[derive(Debug)]
-pub struct Merger {
-    /// The distinct points in `0..kept`, and those still to be looked at from `next` on.
-    cloud: Cloud,
-    kept: usize,
-    next: usize,
-    table: IndexTable,
-}
-
-impl Merger {
-    /// Begins to merge the points of `cloud`.
-    #[must_use]
-    pub fn new(cloud: Cloud) -> Self {
-        Self { cloud, kept: 0, next: 0, table: IndexTable::default() }
-    }
-
-    /// Looks at up to `budget` more points. Returns whether all points are done.
-    ///
-    /// # Errors
-    ///
-    /// If there is not enough memory.
-    pub fn step(&mut self, budget: u32) -> Result<bool, CloudError> {
-        let Cloud { position, normal, .. } = &mut self.cloud;
-        let end = position.len().min(self.next + budget as usize);
-        for i in self.next..end {
+/// attributes meet. Points whose normals cancel are left out. `tell` gets the fraction of the points that are done.
+///
+/// # Errors
+///
+/// If there is not enough memory.
+pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudError> {
+    let Cloud { position, normal, .. } = &mut cloud;
+    let (count, mut kept) = (position.len(), 0);
+    let mut table = IndexTable::default();
+    for range in ranges(count, POINTS) {
+        tell(range.start as f64 / count as f64);
+        for i in range {
             let p = position[i];
-            let at = index_of(&mut self.table, p, self.kept, position).ok_or(CloudError::Memory)? as usize;
-            let fresh = at == self.kept;
+            let at = index_of(&mut table, p, kept, position).ok_or(CloudError::Memory)? as usize;
+            let fresh = at == kept;
             if fresh {
                 position[at] = p;
-                self.kept += 1;
+                kept += 1;
             }
             match normal.get(i).copied() {
                 Some(n) if fresh => normal[at] = n,
@@ -86,54 +77,19 @@ impl Merger {
                 None => {}
             }
         }
-        self.next = end;
-        Ok(end == position.len())
+        pause().await;
     }
-
-    /// Fraction of the points that are done.
-    #[must_use]
-    pub fn fraction(&self) -> f64 {
-        self.next as f64 / self.cloud.len().max(1) as f64
-    }
-
-    /// Distinct points, and the number of points that merging removed. Points whose normals cancel are left out.
-    #[must_use]
-    pub fn finish(mut self) -> (Cloud, usize) {
-        let joined = self.cloud.len() - self.kept;
-        let Cloud { position, normal, .. } = &mut self.cloud;
-        position.truncate(self.kept);
-        normal.truncate(self.kept);
-        if joined > 0 && !normal.is_empty() {
-            for normal in normal.iter_mut() {
-                *normal = normal.normalize_or_zero();
-            }
-            let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
-            position.retain(|_| stays.next().unwrap_or(false));
-            normal.retain(|normal| *normal != DVec3::ZERO);
+    position.truncate(kept);
+    normal.truncate(kept);
+    if kept < count && !normal.is_empty() {
+        for normal in normal.iter_mut() {
+            *normal = normal.normalize_or_zero();
         }
-        (self.cloud, joined)
+        let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
+        position.retain(|_| stays.next().unwrap_or(false));
+        normal.retain(|normal| *normal != DVec3::ZERO);
     }
-}
-
-/// Keeps at most [`KEPT`] points: the first one in each cell of a grid. The grid is the finest one, up to a factor,
-/// that keeps no more.
-#[derive(Debug)]
-pub struct Thinner {
-    cloud: Cloud,
-    lo: DVec3,
-    side: f64,
-    next: usize,
-    table: IndexTable,
-    /// Cells of the current grid that hold a point.
-    cells: Vec<DVec3>,
-    /// First point in each of these cells.
-    kept: Vec<u32>,
-    /// Points kept by the finest grid so far that was coarse enough.
-    best: Vec<u32>,
-    /// Whether a grid was too fine.
-    met_limit: bool,
-    /// Number of grids tried.
-    passes: u32,
+    Ok(cloud)
 }
 
 /// Ratio of the cell sizes of a grid and the previous one, if that was too coarse.
@@ -151,77 +107,55 @@ const MAX_PASSES: u32 = 24;
 /// area of a surface to the squared diagonal of its box (1.05 for a sphere).
 const CELLS_PER_SQUARE: f64 = 1.35;
 
-impl Thinner {
-    /// Begins to thin out `cloud`.
-    #[must_use]
-    pub fn new(cloud: Cloud) -> Self {
-        let (lo, hi) = corners(&cloud.position);
-        let side = (hi - lo).length() * (CELLS_PER_SQUARE / KEPT as f64).sqrt();
-        let few = cloud.len() <= KEPT;
-        Self {
-            best: if few { (0..cloud.len() as u32).collect() } else { Vec::new() },
-            cloud,
-            lo,
-            side,
-            next: 0,
-            table: IndexTable::default(),
-            cells: Vec::new(),
-            kept: Vec::new(),
-            met_limit: false,
-            passes: if few { MAX_PASSES } else { 0 },
-        }
+/// Keeps at most [`KEPT`] points, in the order of the file: the first one in each cell of a grid. The grid is the finest one, up to
+/// a factor, that keeps no more.
+///
+/// # Errors
+///
+/// If there is not enough memory.
+pub async fn thin(cloud: Cloud) -> Result<Cloud, CloudError> {
+    if cloud.len() <= KEPT {
+        return Ok(cloud);
     }
-
-    /// Looks at up to `budget` more points. Returns whether the grid is found.
-    ///
-    /// # Errors
-    ///
-    /// If there is not enough memory.
-    pub fn step(&mut self, budget: u32) -> Result<bool, CloudError> {
-        for _ in 0..budget {
-            if self.passes >= MAX_PASSES {
-                return Ok(true);
+    let (lo, hi) = corners(&cloud.position);
+    let mut side = (hi - lo).length() * (CELLS_PER_SQUARE / KEPT as f64).sqrt();
+    let mut best = Vec::new();
+    let mut was_too_fine = false;
+    for _ in 0..MAX_PASSES {
+        let kept = first_in_cells(&cloud.position, lo, side).await?;
+        if kept.len() <= KEPT {
+            best = kept;
+            if was_too_fine || best.len() as f64 >= ENOUGH * KEPT as f64 {
+                break;
             }
-            match self.cloud.position.get(self.next) {
-                Some(&p) if self.cells.len() <= KEPT => {
-                    let cell = ((p - self.lo) / self.side).floor();
-                    let known = self.cells.len();
-                    find_or_add(&mut self.table, cell, &mut self.cells).ok_or(CloudError::Memory)?;
-                    if self.cells.len() > known {
-                        self.kept.push(self.next as u32);
-                    }
-                    self.next += 1;
-                }
-                _ => self.end_pass(),
+            side *= FINER;
+        } else if best.is_empty() {
+            was_too_fine = true;
+            side *= COARSER;
+        } else {
+            break;
+        }
+    }
+    Ok(cloud.only(&best))
+}
+
+/// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. It ends at more than [`KEPT`] of them.
+async fn first_in_cells(points: &[DVec3], lo: DVec3, side: f64) -> Result<Vec<u32>, CloudError> {
+    let (mut table, mut cells, mut first) = (IndexTable::default(), Vec::new(), Vec::new());
+    for range in ranges(points.len(), POINTS) {
+        for i in range {
+            if first.len() > KEPT {
+                return Ok(first);
+            }
+            let cell = ((points[i] - lo) / side).floor();
+            find_or_add(&mut table, cell, &mut cells).ok_or(CloudError::Memory)?;
+            if cells.len() > first.len() {
+                first.push(i as u32);
             }
         }
-        Ok(self.passes >= MAX_PASSES)
+        pause().await;
     }
-
-    /// Evaluates the current grid and begins the next one.
-    fn end_pass(&mut self) {
-        self.passes += 1;
-        let fits = self.cells.len() <= KEPT;
-        if fits {
-            core::mem::swap(&mut self.best, &mut self.kept);
-        }
-        let enough = self.best.len() as f64 >= ENOUGH * KEPT as f64;
-        self.met_limit |= !fits;
-        if fits && (enough || self.met_limit) || !fits && !self.best.is_empty() {
-            self.passes = MAX_PASSES;
-        }
-        self.side *= if fits { FINER } else { COARSER };
-        self.next = 0;
-        self.cells.clear();
-        self.kept.clear();
-        self.table = IndexTable::default();
-    }
-
-    /// The kept points, in the order of the file.
-    #[must_use]
-    pub fn finish(self) -> Cloud {
-        self.cloud.only(&self.best)
-    }
+    Ok(first)
 }
 
 /// Checks that points are not degenerate.
@@ -274,71 +208,39 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
     }
 }
 
-/// Farthest-point sampling: each chosen point is the one farthest from all those chosen before (T. F. Gonzalez,
-/// "Clustering to Minimize the Maximum Intercluster Distance", 1985).
+/// Farthest-point sampling: the indices of up to `wanted` of `points`, each the one farthest from all those chosen before
+/// (T. F. Gonzalez, "Clustering to Minimize the Maximum Intercluster Distance", 1985).
 ///
 /// The largest distance of a point from the chosen ones is at most twice that of any other choice of as many. The first
-/// choice is the point farthest from the mean. Ties go to the smaller index.
-#[derive(Debug)]
-pub struct Spreader {
-    /// Squared distance of each point from the nearest chosen one.
-    distance_sq: Vec<f64>,
-    chosen: Vec<u32>,
-    wanted: usize,
-    /// Squared minimum distance of two chosen points.
-    min_distance_sq: f64,
-}
-
-impl Spreader {
-    /// Begins to choose `wanted` of `points`, which must not be empty.
-    #[must_use]
-    pub fn new(points: &[DVec3], wanted: usize) -> Self {
-        let (lo, hi) = corners(points);
-        // The sum is relative to a corner, so that it keeps its digits far from the origin.
-        let mean = lo + points.iter().map(|p| *p - lo).sum::<DVec3>() / points.len() as f64;
-        Self {
-            distance_sq: points.iter().map(|p| p.distance_squared(mean)).collect(),
-            chosen: Vec::new(),
-            wanted,
-            min_distance_sq: MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * hi.distance_squared(lo),
-        }
-    }
-
-    /// Chooses one more of `points`, the same in every call. Returns whether the choice is complete: enough points are
-    /// chosen, or no other point is at a sufficient distance.
-    pub fn step(&mut self, points: &[DVec3]) -> bool {
-        if self.chosen.len() >= self.wanted.min(points.len()) {
-            return true;
-        }
+/// choice is the point farthest from the mean. Ties go to the smaller index. There are fewer than wanted where no other point is at
+/// a sufficient distance. `tell` gets the fraction of the points that are chosen.
+pub async fn spread(points: &[DVec3], wanted: usize, tell: impl Fn(f64)) -> Vec<u32> {
+    let (lo, hi) = corners(points);
+    // The sum is relative to a corner, so that it keeps its digits far from the origin.
+    let mean = lo + points.iter().map(|p| *p - lo).sum::<DVec3>() / points.len() as f64;
+    let min_distance_sq = MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * hi.distance_squared(lo);
+    // Squared distance of each point from the nearest chosen one, or at first from the mean.
+    let mut distance_sq: Vec<f64> = points.iter().map(|p| p.distance_squared(mean)).collect();
+    let wanted = wanted.min(points.len());
+    let mut chosen: Vec<u32> = Vec::new();
+    while chosen.len() < wanted {
         let mut farthest = 0;
-        for (i, distance_sq) in self.distance_sq.iter().enumerate() {
-            if *distance_sq > self.distance_sq[farthest] {
+        for (i, distance) in distance_sq.iter().enumerate() {
+            if *distance > distance_sq[farthest] {
                 farthest = i;
             }
         }
-        if !self.chosen.is_empty() && self.distance_sq[farthest] <= self.min_distance_sq {
-            return true;
+        if chosen.is_empty() {
+            distance_sq.fill(f64::INFINITY);
+        } else if distance_sq[farthest] <= min_distance_sq {
+            break;
         }
-        let centre = points[farthest];
-        if self.chosen.is_empty() {
-            self.distance_sq.fill(f64::INFINITY);
+        chosen.push(farthest as u32);
+        for (distance_sq, p) in distance_sq.iter_mut().zip(points) {
+            *distance_sq = distance_sq.min(p.distance_squared(points[farthest]));
         }
-        self.chosen.push(farthest as u32);
-        for (distance_sq, p) in self.distance_sq.iter_mut().zip(points) {
-            *distance_sq = distance_sq.min(p.distance_squared(centre));
-        }
-        self.chosen.len() >= self.wanted.min(points.len())
+        tell(chosen.len() as f64 / wanted as f64);
+        pause().await;
     }
-
-    /// Fraction of the points that are chosen.
-    #[must_use]
-    pub fn fraction(&self) -> f64 {
-        self.chosen.len() as f64 / self.wanted.min(self.distance_sq.len()).max(1) as f64
-    }
-
-    /// Indices of the chosen points, in order of choice.
-    #[must_use]
-    pub fn chosen(&self) -> &[u32] {
-        &self.chosen
-    }
+    chosen
 }

@@ -152,7 +152,7 @@ fn the_bunny_is_even_after_ten_steps() {
     use marching_particles::field::{model, rbf::RbfField};
     use marching_particles::pointcloud::models;
     let bunny = model::find("bunny").expect("a built-in model");
-    let fit = models::begin(bunny).finish().expect("the bunny is solved for");
+    let fit = models::fit(bunny);
     let mut field = RbfField::new(fit.data).expect("the data is whole");
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
     let mut sampler = Sampler::new();

@@ -44,7 +44,7 @@ fn run(case: &Run) -> (usize, String) {
     }
     if let Some(model) = &case.model {
         let model = model::find(model).unwrap_or_else(|| panic!("{}: no such model", case.name));
-        let fit = models::begin(model).finish().unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        let fit = models::fit(model);
         session
             .set_points(fit.data, fit.info, fit.bounds)
             .unwrap_or_else(|error| panic!("{}: {error}", case.name));

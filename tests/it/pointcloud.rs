@@ -2,26 +2,21 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::DVec3;
-use marching_particles::pointcloud::normals::Estimator;
-use marching_particles::pointcloud::thin::{KEPT, Merger, Spreader, Thinner, check_spread};
+use marching_particles::pointcloud::normals::estimate;
+use marching_particles::pointcloud::thin::{KEPT, check_spread, merge, spread, thin};
 use marching_particles::pointcloud::{Cloud, CloudError, NormalSource};
+use marching_particles::slices::complete;
 
-fn merged(cloud: Cloud) -> (Cloud, usize) {
-    let mut merger = Merger::new(cloud);
-    while !merger.step(7).expect("memory enough") {}
-    merger.finish()
+fn merged(cloud: Cloud) -> Cloud {
+    complete(merge(cloud, |_| {})).expect("memory enough")
 }
 
 fn thinned(cloud: Cloud) -> Cloud {
-    let mut thinner = Thinner::new(cloud);
-    while !thinner.step(1000).expect("memory enough") {}
-    thinner.finish()
+    complete(thin(cloud)).expect("memory enough")
 }
 
-fn estimate(cloud: &mut Cloud) -> Vec<String> {
-    let mut estimator = Estimator::new(&cloud.position);
-    while !estimator.step(100) {}
-    estimator.finish(cloud).expect("memory enough")
+fn estimated(cloud: &mut Cloud) -> Vec<String> {
+    complete(estimate(cloud, |_| {})).expect("memory enough")
 }
 
 /// Points of a Fibonacci spiral on the unit sphere.
@@ -74,7 +69,7 @@ fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
                 let placed: Vec<DVec3> = position.iter().map(|p| *p * scale + offset).collect();
                 let mut cloud =
                     Cloud { position: placed, normal: Vec::new(), source: NormalSource::Estimated };
-                let warnings = estimate(&mut cloud);
+                let warnings = estimated(&mut cloud);
                 assert_eq!(warnings.len(), 1, "{name}: {warnings:?}");
                 let angles = cloud
                     .normal
@@ -101,7 +96,7 @@ fn estimated_normals_of_thin_shapes_point_outward() {
     for axes in [DVec3::new(1.0, 0.7, 0.05), DVec3::new(1.0, 0.05, 0.05)] {
         let position: Vec<DVec3> = sphere(5000).iter().map(|p| *p * axes).collect();
         let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
-        estimate(&mut cloud);
+        estimated(&mut cloud);
         let inward = cloud
             .normal
             .iter()
@@ -119,7 +114,7 @@ fn separate_components_are_each_oriented_outward_with_a_warning() {
     let mut position: Vec<DVec3> = ball.clone();
     position.extend(ball.iter().map(|p| *p + DVec3::new(5.0, 0.0, 0.0)));
     let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
-    let warnings = estimate(&mut cloud);
+    let warnings = estimated(&mut cloud);
     assert!(warnings.iter().any(|w| w.to_string().contains("2 components")), "{warnings:?}");
     assert!(cloud.normal.iter().zip(ball.iter().chain(&ball)).all(|(n, p)| n.dot(*p) > 0.9));
 }
@@ -146,8 +141,7 @@ fn degenerate_points_are_refused() {
 fn equal_points_become_one_with_the_mean_of_their_normals() {
     let position = vec![DVec3::ZERO, DVec3::X, DVec3::NEG_X * 0.0, DVec3::Y, DVec3::Y];
     let normal = vec![DVec3::X, DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X];
-    let (cloud, joined) = merged(Cloud { position, normal, source: NormalSource::Given });
-    assert_eq!(joined, 2);
+    let cloud = merged(Cloud { position, normal, source: NormalSource::Given });
     // The normals of the two points at Y cancel.
     assert_eq!(cloud.position, [DVec3::ZERO, DVec3::X]);
     assert!((cloud.normal[0] - DVec3::new(0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0)).length() < 1e-15);
@@ -176,17 +170,13 @@ fn a_million_points_are_thinned_evenly_despite_an_outlier() {
 #[test]
 fn centres_are_spread_evenly_and_reproducibly() {
     let points = sphere(20_000);
-    let spread = |wanted: usize| {
-        let mut spreader = Spreader::new(&points, wanted);
-        while !spreader.step(&points) {}
-        spreader.chosen().to_vec()
-    };
+    let spread_of = |wanted: usize| complete(spread(&points, wanted, |_| {}));
     for wanted in [100, 200, 800] {
-        let chosen = spread(wanted);
+        let chosen = spread_of(wanted);
         assert_eq!(chosen.len(), wanted);
-        assert_eq!(chosen, spread(wanted));
+        assert_eq!(chosen, spread_of(wanted));
         // A smaller choice is the beginning of a larger one.
-        assert_eq!(chosen[..100], spread(100));
+        assert_eq!(chosen[..100], spread_of(100));
         let distance = |i: u32, j: u32| points[i as usize].distance(points[j as usize]);
         let nearest_pair = (0..wanted)
             .flat_map(|i| (0..i).map(move |j| (i, j)))
@@ -208,7 +198,5 @@ fn centres_are_spread_evenly_and_reproducibly() {
     // There are fewer points than wanted, and some occur twice.
     let mut few = sphere(30);
     few.extend(sphere(30).iter().map(|p| *p * (1.0 + 1e-6)));
-    let mut spreader = Spreader::new(&few, 200);
-    while !spreader.step(&few) {}
-    assert_eq!(spreader.chosen().len(), 30);
+    assert_eq!(complete(spread(&few, 200, |_| {})).len(), 30);
 }

@@ -1,49 +1,49 @@
 //! Tests of the readers of point and mesh files: every format and every kind of error.
 
+use core::cell::Cell;
 use glam::{DVec3, Vec3};
 use marching_particles::export;
 use marching_particles::particles::{Particles, Slots};
 use marching_particles::pointcloud::read::{FileMesh, Format, MAX_BYTES, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
 use marching_particles::quality;
+use marching_particles::slices::complete;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
-/// Reads a file in steps of `rows` rows.
-fn read_by(rows: u32, name: &str, bytes: &[u8]) -> Result<(Format, FileMesh), ReadError> {
-    let mut reader = Reader::new(name, bytes.to_vec())?;
-    let mut before = 0.0;
-    while !reader.step(rows)? {
-        assert!((before..=1.0).contains(&reader.fraction()), "{} after {before}", reader.fraction());
-        before = reader.fraction();
-    }
-    assert_eq!(reader.fraction(), 1.0);
-    Ok((reader.format(), reader.into_mesh()))
+/// Reads a file to its end.
+fn read_all(name: &str, bytes: &[u8]) -> Result<(Format, FileMesh), ReadError> {
+    let reader = Reader::new(name, bytes.to_vec())?;
+    let format = reader.format();
+    let before = Cell::new(0.0);
+    let mesh = complete(reader.read(|fraction| {
+        assert!((before.get()..=1.0).contains(&fraction), "{fraction} after {}", before.get());
+        before.set(fraction);
+    }))?;
+    Ok((format, mesh))
 }
 
 fn read(name: &str, bytes: impl AsRef<[u8]>) -> (Format, FileMesh) {
-    let result = read_by(3, name, bytes.as_ref());
+    let result = read_all(name, bytes.as_ref());
     result.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Cloud of a file, with the warnings.
 fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
-    let (_, mut mesh) = read(name, bytes);
-    while !mesh.sum_areas(2).expect("memory enough") {}
-    mesh.into_cloud()
+    let (_, mesh) = read(name, bytes);
+    complete(mesh.into_cloud(|_| {})).expect("memory enough")
 }
 
 /// Makes a cloud of what was read from damaged bytes.
-fn made((_, mut mesh): (Format, FileMesh)) {
-    while !mesh.sum_areas(3).expect("memory enough") {}
-    let (cloud, _) = mesh.into_cloud();
+fn made((_, mesh): (Format, FileMesh)) {
+    let (cloud, _) = complete(mesh.into_cloud(|_| {})).expect("memory enough");
     assert!(cloud.position.iter().all(|p| p.is_finite()));
     assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-9), "{:?}", cloud.normal);
 }
 
 #[track_caller]
 fn refused(name: &str, bytes: impl AsRef<[u8]>) -> String {
-    read_by(3, name, bytes.as_ref())
+    read_all(name, bytes.as_ref())
         .map(|(format, _)| panic!("{name} was read as {format}"))
         .unwrap_err()
         .to_string()
@@ -552,7 +552,7 @@ proptest! {
         name in prop_oneof!["a.stl", "a.obj", "a.xyz", "a"],
     ) {
         let bytes = [BEGINNINGS[beginning].as_bytes(), &rest].concat();
-        let _ = read_by(5, &name, &bytes).map(made);
+        let _ = read_all(&name, &bytes).map(made);
     }
 
     #[test]
@@ -565,21 +565,18 @@ proptest! {
         ),
     ) {
         let bytes = [BEGINNINGS[beginning], &words.join(" ")].concat().into_bytes();
-        let _ = read_by(5, "a", &bytes).map(made);
+        let _ = read_all("a", &bytes).map(made);
     }
 
     #[test]
-    fn a_damaged_byte_makes_no_reader_panic_and_any_number_of_rows_per_step_reads_alike(
-        big in any::<bool>(), at in any::<prop::sample::Index>(), value in any::<u8>(), rows in 1_u32..9,
+    fn a_damaged_byte_makes_no_reader_panic_and_a_file_that_is_cut_off_is_refused(
+        big in any::<bool>(), at in any::<prop::sample::Index>(), value in any::<u8>(),
     ) {
         let mut bytes = tetrahedron_ply(big, "float", "int", "uchar");
         let at = at.index(bytes.len());
         bytes[at] = value;
-        let _ = read_by(5, "a", &bytes).map(made);
-        let by = |rows| read_by(rows, "a", &bytes).map(|(_, mesh)| (mesh.position, mesh.faces));
-        prop_assert_eq!(by(rows), by(100));
-        // A file that is cut off is refused, wherever the cut is.
+        let _ = read_all("a", &bytes).map(made);
         let cut = tetrahedron_ply(big, "float", "int", "uchar");
-        prop_assert!(read_by(5, "a", &cut[..at]).is_err());
+        prop_assert!(read_all("a", &cut[..at]).is_err());
     }
 }

@@ -6,17 +6,18 @@ use marching_particles::field::Field;
 use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, RbfData, RbfField};
 use marching_particles::math::Sym3;
-use marching_particles::pointcloud::fit::{Fit, FitError, Fitter};
+use marching_particles::pointcloud::fit::{Fit, FitError, interpolate};
 use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::sampler::{Settings, StopReason};
 use marching_particles::session::Session;
+use marching_particles::slices::complete;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
 fn of_model(id: &str) -> Fit {
     let model = model::find(id).expect("a built-in model");
-    models::begin(model).finish().unwrap_or_else(|error| panic!("{id}: {error}"))
+    models::fit(model)
 }
 
 /// Points of an ellipsoid along a spiral, evenly spread.
@@ -35,7 +36,7 @@ fn ellipsoid(count: usize) -> Cloud {
 }
 
 fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
-    Fitter::new(cloud, cloud.position.clone(), ModelInfo::default())?.finish()
+    complete(interpolate(cloud, &cloud.position, ModelInfo::default(), |_| {}))
 }
 
 fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
@@ -85,8 +86,8 @@ fn the_field_vanishes_at_the_points_and_has_their_normals_as_gradients() {
 #[test]
 fn points_between_the_centres_are_within_a_few_thousandths_of_the_surface() {
     let (few, many) = (ellipsoid(100), ellipsoid(4000));
-    let fitter = Fitter::new(&few, many.position, ModelInfo::default()).expect("good points");
-    let info = fitter.finish().expect("a field").info;
+    let fit = complete(interpolate(&few, &many.position, ModelInfo::default(), |_| {}));
+    let info = fit.expect("a field").info;
     assert_eq!((info.points, info.centres), (4000, 100));
     assert!(info.residual_mean > 1e-6 && info.residual_mean < 1e-3, "{info:?}");
     assert!(info.residual_max < 5e-3, "{info:?}");
@@ -318,24 +319,6 @@ fn the_models_have_nothing_outside_of_their_box() {
         }
         assert!(outside > 200_000);
     }
-}
-
-#[test]
-fn the_fit_does_not_depend_on_the_budget_per_step() {
-    let cloud = ellipsoid(60);
-    let whole = fitted(&cloud).expect("a field");
-    let mut fitter = Fitter::new(&cloud, cloud.position.clone(), ModelInfo::default()).expect("good points");
-    let (mut before, mut steps) = (0.0, 0);
-    let fit = loop {
-        let fraction = fitter.fraction();
-        assert!((before..=1.0).contains(&fraction), "{fraction} after {before}");
-        (before, steps) = (fraction, steps + 1);
-        if let Some(fit) = fitter.step(1).expect("a field") {
-            break fit;
-        }
-    };
-    assert!(steps > 20 && before > 0.8, "{steps} steps, the last at {before}");
-    assert_eq!((fit.data, fit.bounds, fit.info), (whole.data, whole.bounds, whole.info));
 }
 
 #[test]

@@ -2,7 +2,11 @@
 
 use super::{ReadError, push};
 use crate::pointcloud::{Cloud, NormalSource};
+use crate::slices::{pause, ranges};
 use glam::DVec3;
+
+/// Faces summed in a slice of work.
+const FACES: usize = 2000;
 
 /// Points and faces as they are in a file.
 #[derive(Clone, Debug, Default)]
@@ -17,10 +21,6 @@ pub struct FileMesh {
     pub faces: Vec<u32>,
     /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// Twice the sum of the area vectors of the faces around each point.
-    area: Vec<DVec3>,
-    /// Number of faces included in `area`.
-    summed: usize,
 }
 
 impl FileMesh {
@@ -36,55 +36,24 @@ impl FileMesh {
         push(&mut self.faces, end)
     }
 
-    /// Adds the area vectors of up to `budget` more faces to those of their corners. Returns whether all faces are
-    /// done.
+    /// The points with unit normals, and the warnings for the user. `tell` gets the fraction of the work done.
     ///
-    /// A polygon need not be planar: each of its corners gets the area vector of the whole.
+    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its faces. If only some
+    /// points have neither, these are left out; if none has any, all points are kept and the cloud has no normals.
     ///
     /// # Errors
     ///
     /// If there is not enough memory.
-    pub fn sum_areas(&mut self, budget: u32) -> Result<bool, ReadError> {
-        if self.area.len() < self.position.len() && !self.faces.is_empty() {
-            self.area.try_reserve_exact(self.position.len()).map_err(|_| ReadError::Memory)?;
-            self.area.resize(self.position.len(), DVec3::ZERO);
-        }
-        let end = self.faces.len().min(self.summed + budget as usize);
-        let mut from = self.summed.checked_sub(1).map_or(0, |before| self.faces[before] as usize);
-        for &to in &self.faces[self.summed..end] {
-            let corners = &self.corners[from..to as usize];
-            from = to as usize;
-            let at = |k: usize| self.position[corners[k] as usize];
-            let origin = at(0);
-            let area: DVec3 = (2..corners.len()).map(|k| (at(k - 1) - origin).cross(at(k) - origin)).sum();
-            for &corner in corners {
-                self.area[corner as usize] += area;
-            }
-        }
-        self.summed = end;
-        Ok(end == self.faces.len())
-    }
-
-    /// Fraction of the faces whose areas are summed.
-    #[must_use]
-    pub fn fraction_summed(&self) -> f64 {
-        self.summed as f64 / self.faces.len().max(1) as f64
-    }
-
-    /// The points with unit normals, and the warnings for the user. All areas must be summed before.
-    ///
-    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its faces. If only some
-    /// points have neither, these are left out; if none has any, all points are kept and the cloud has no normals.
-    #[must_use]
-    pub fn into_cloud(mut self) -> (Cloud, Vec<String>) {
+    pub async fn into_cloud(mut self, tell: impl Fn(f64)) -> Result<(Cloud, Vec<String>), ReadError> {
+        let mut area = self.areas(tell).await?;
         let has_given = !self.normal.is_empty();
-        let mut normal = core::mem::take(if has_given { &mut self.normal } else { &mut self.area });
+        let mut normal = core::mem::take(if has_given { &mut self.normal } else { &mut area });
         let (mut kept, mut given) = (0, false);
         for (i, normal) in normal.iter_mut().enumerate() {
             *normal = normal.normalize_or_zero();
             if *normal != DVec3::ZERO {
                 given |= has_given;
-            } else if let Some(area) = self.area.get(i) {
+            } else if let Some(area) = area.get(i) {
                 *normal = area.normalize_or_zero();
             }
             kept += usize::from(*normal != DVec3::ZERO);
@@ -92,7 +61,7 @@ impl FileMesh {
         if kept == 0 {
             let cloud =
                 Cloud { position: self.position, normal: Vec::new(), source: NormalSource::Estimated };
-            return (cloud, self.warnings);
+            return Ok((cloud, self.warnings));
         }
         let left_out = normal.len() - kept;
         if left_out > 0 {
@@ -105,6 +74,34 @@ impl FileMesh {
         self.position.retain(|_| stays.next().unwrap_or(false));
         normal.retain(|normal| *normal != DVec3::ZERO);
         let source = if given { NormalSource::Given } else { NormalSource::FromMesh };
-        (Cloud { position: self.position, normal, source }, self.warnings)
+        Ok((Cloud { position: self.position, normal, source }, self.warnings))
+    }
+
+    /// Twice the sum of the area vectors of the faces around each point; nothing where there are no faces.
+    ///
+    /// A polygon need not be planar: each of its corners gets the area vector of the whole.
+    async fn areas(&self, tell: impl Fn(f64)) -> Result<Vec<DVec3>, ReadError> {
+        let mut area = Vec::new();
+        if self.faces.is_empty() {
+            return Ok(area);
+        }
+        area.try_reserve_exact(self.position.len()).map_err(|_| ReadError::Memory)?;
+        area.resize(self.position.len(), DVec3::ZERO);
+        let mut from = 0;
+        for faces in ranges(self.faces.len(), FACES) {
+            tell(faces.start as f64 / self.faces.len() as f64);
+            for &to in &self.faces[faces] {
+                let corners = &self.corners[from..to as usize];
+                from = to as usize;
+                let at = |k: usize| self.position[corners[k] as usize];
+                let origin = at(0);
+                let sum: DVec3 = (2..corners.len()).map(|k| (at(k - 1) - origin).cross(at(k) - origin)).sum();
+                for &corner in corners {
+                    area[corner as usize] += sum;
+                }
+            }
+            pause().await;
+        }
+        Ok(area)
     }
 }

@@ -1,6 +1,6 @@
 //! Reader of files of points and meshes: PLY, OBJ, STL and XYZ, detected by content.
 //!
-//! A file is read row by row under a budget, so that the caller can show progress. Its content is not trusted: the
+//! A file is read in slices of work, and the caller can show progress. Its content is not trusted: the
 //! counts in a header are compared with the size of the file before memory is allocated, and an error states its
 //! location.
 
@@ -16,11 +16,15 @@ mod xyz;
 pub use format::Format;
 pub use mesh::FileMesh;
 
+use crate::slices::pause;
 use input::Input;
 
 /// Maximum size of a file in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
 /// interpolant can have centres.
 pub const MAX_BYTES: u64 = 50_000_000;
+
+/// Rows read in a slice of work, which so takes about a tenth of a millisecond natively.
+const ROWS: usize = 500;
 
 /// Why a file cannot be read. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -138,13 +142,12 @@ trait RowReader {
     fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError>;
 }
 
-/// Reads a file to a [`FileMesh`], in slices of bounded work.
+/// Reader of a file whose header has been read.
 pub struct Reader {
     format: Format,
     input: Input,
     rows: Box<dyn RowReader>,
     mesh: FileMesh,
-    done: bool,
 }
 
 impl Reader {
@@ -171,7 +174,7 @@ impl Reader {
                 "The name ends in .{extension}, the content is {format}; it was read as {format}."
             ));
         }
-        Ok(Self { format, input, rows, mesh, done: false })
+        Ok(Self { format, input, rows, mesh })
     }
 
     /// Detected format.
@@ -180,33 +183,23 @@ impl Reader {
         self.format
     }
 
-    /// Reads up to `rows` rows, which are lines or records. Returns whether all are read.
+    /// Reads all rows, which are lines or records: the points and faces. `tell` gets the fraction of the file that is read.
     ///
     /// # Errors
     ///
-    /// What is wrong with a row, and its number. The reader must not be used after an error.
-    pub fn step(&mut self, rows: u32) -> Result<bool, ReadError> {
-        for _ in 0..rows {
-            if self.done {
-                break;
+    /// What is wrong with a row, and its number.
+    pub async fn read(mut self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
+        let mut read: usize = 0;
+        while self.rows.row(&mut self.input, &mut self.mesh)? {
+            read += 1;
+            if read.is_multiple_of(ROWS) {
+                tell(self.input.fraction());
+                pause().await;
             }
-            self.done = !self.rows.row(&mut self.input, &mut self.mesh)?;
         }
-        if self.done && self.mesh.position.is_empty() {
+        if self.mesh.position.is_empty() {
             return Err(ReadError::NoPoints { format: self.format });
         }
-        Ok(self.done)
-    }
-
-    /// Fraction of the file that is read.
-    #[must_use]
-    pub fn fraction(&self) -> f64 {
-        if self.done { 1.0 } else { self.input.fraction() }
-    }
-
-    /// Points and faces that were read.
-    #[must_use]
-    pub fn into_mesh(self) -> FileMesh {
-        self.mesh
+        Ok(self.mesh)
     }
 }

@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
         for model in MODELS {
-            let fit = models::begin(model).finish().expect("a model is solved for");
+            let fit = models::fit(model);
             let mut field = RbfField::new(fit.data).expect("a field");
             let n = [65, 49, 57];
             let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
