@@ -88,17 +88,15 @@ fn processor_seconds(start: Instant) -> f64 {
 }
 
 /// The worse of two in each figure of the table.
-fn worse(a: Figures, b: Figures) -> Figures {
-    Figures {
-        six: a.six.min(b.six),
-        ang_min_mean: a.ang_min_mean.min(b.ang_min_mean),
-        ang_min: a.ang_min.min(b.ang_min),
-        gt90: a.gt90.max(b.gt90),
-        rho: a.rho.min(b.rho),
-        cover: a.cover.max(b.cover),
-        size_cv: a.size_cv.max(b.size_cv),
-        ..a
-    }
+fn worse(mut a: Figures, b: Figures) -> Figures {
+    a.order.six = a.order.six.min(b.order.six);
+    a.angles.ang_min_mean = a.angles.ang_min_mean.min(b.angles.ang_min_mean);
+    a.angles.ang_min = a.angles.ang_min.min(b.angles.ang_min);
+    a.angles.gt90 = a.angles.gt90.max(b.angles.gt90);
+    a.spacing.rho = a.spacing.rho.min(b.spacing.rho);
+    a.coverage.cover = a.coverage.cover.max(b.coverage.cover);
+    a.edges.size_cv = a.edges.size_cv.max(b.edges.size_cv);
+    a
 }
 
 /// Runs with all seeds, on a field of which a new one is made for each run.
@@ -142,18 +140,18 @@ fn row(make: &dyn Fn() -> Box<dyn Field>, bounds: &Bounds, settings: Settings, s
 fn write_row(out: &mut dyn Write, name: &str, method: &str, row: &Row, is_adaptive: bool) -> io::Result<()> {
     let f = &row.figures;
     let evenness = if is_adaptive {
-        format!("{:.2} %", 100.0 * f.size_cv)
+        format!("{:.2} %", 100.0 * f.edges.size_cv)
     } else {
-        format!("{:.3} | {:.3}", f.cover, f.rho)
+        format!("{:.3} | {:.3}", f.coverage.cover, f.spacing.rho)
     };
     writeln!(
         out,
         "| {name} | {method} | {} | {:.2} % | {:.2} | {:.1} | {:.4} % | {evenness} | {:.2} |",
         row.particles,
-        100.0 * f.six,
-        f.ang_min_mean,
-        f.ang_min,
-        100.0 * f.gt90,
+        100.0 * f.order.six,
+        f.angles.ang_min_mean,
+        f.angles.ang_min,
+        100.0 * f.angles.gt90,
         1e6 * row.seconds / row.particles as f64
     )
 }

@@ -152,7 +152,7 @@ pub use pointcloud::fit::Fit;
 pub use pointcloud::fit_points;
 #[cfg(feature = "points")]
 pub use pointcloud::job::JobError;
-pub use quality::{Figures, Histogram, Hole, Pair, Places};
+pub use quality::{Figures, Histogram, Hole, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Run, Sample, Start,
     Warning, sample,

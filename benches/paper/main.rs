@@ -241,16 +241,18 @@ fn write_line(out: &mut dyn Write, line: &Line, runs: &Runs) -> io::Result<()> {
     };
     row("Total time", [&total, &total], &|outcome| seconds(outcome.total()))?;
     row("Evaluations", [&none, &none], &|outcome| grouped(outcome.evaluations as usize))?;
-    row("Six neighbours", [&none, &none], &|outcome| format!("{:.1} %", 100.0 * outcome.figures.six))?;
-    row("Mean smallest angle", [&none, &none], &|outcome| format!("{:.1}°", outcome.figures.ang_min_mean))?;
+    row("Six neighbours", [&none, &none], &|outcome| format!("{:.1} %", 100.0 * outcome.figures.order.six))?;
+    row("Mean smallest angle", [&none, &none], &|outcome| {
+        format!("{:.1}°", outcome.figures.angles.ang_min_mean)
+    })?;
     let is_uniform = line.sampling == Sampling::Uniform;
     row("Largest hole", [&none, &none], &|outcome| {
         let figures = &outcome.figures;
-        format!("{:.2}", if is_uniform { figures.cover } else { figures.cover_local })
+        format!("{:.2}", if is_uniform { figures.coverage.cover } else { figures.coverage.cover_local })
     })?;
     row("Closest pair", [&none, &none], &|outcome| {
         let figures = &outcome.figures;
-        format!("{:.2}", if is_uniform { figures.rho } else { figures.overlap_min })
+        format!("{:.2}", if is_uniform { figures.spacing.rho } else { figures.edges.overlap_min })
     })?;
     write!(
         out,

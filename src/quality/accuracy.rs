@@ -1,6 +1,6 @@
 //! Figures of accuracy: how far the points are from the surface, and how far their normals are from its normals.
 
-use super::figures::Figures;
+use super::figures::Accuracy;
 use super::moments::Moments;
 use glam::{DVec3, Vec3};
 
@@ -9,20 +9,20 @@ pub(super) fn first_order_height(value: f64, slope: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / slope }
 }
 
-/// Measures the first-order distances of all points.
-pub(super) fn residuals(residual: &[f64], figures: &mut Figures) {
+/// Accuracy of points with these first-order distances and of their normals, whose angles are `normals`.
+pub(super) fn measure(residual: &[f64], normals: &NormalAngles, d_hex: f64) -> Accuracy {
     let mut err = Moments::default();
-    let mut largest = f64::NAN;
+    let (mut largest, mut undefined) = (f64::NAN, 0);
     for &distance in residual {
         if distance.is_finite() {
             err.add(distance);
             largest = largest.max(distance);
         } else {
-            figures.undefined += 1;
+            undefined += 1;
         }
     }
-    figures.err_mean = err.mean() / figures.d_hex;
-    figures.err_max = largest / figures.d_hex;
+    let (nrm_mean, nrm_max) = normals.figures();
+    Accuracy { err_max: largest / d_hex, err_mean: err.mean() / d_hex, undefined, nrm_mean, nrm_max }
 }
 
 /// Angles between the given normals and the gradient.
@@ -45,7 +45,7 @@ impl NormalAngles {
     }
 
     /// Returns the mean and the largest angle in degrees; NaN of no angles.
-    pub(super) fn figures(&self) -> (f64, f64) {
+    fn figures(&self) -> (f64, f64) {
         let mean = self.angle.mean();
         (mean, if mean.is_nan() { mean } else { self.largest })
     }

@@ -3,7 +3,11 @@
 use crate::math::SQRT_3;
 use serde::Serialize;
 
-/// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise.
+/// A figure that is not defined, or not yet measured.
+const NONE: f64 = f64::NAN;
+
+/// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
+/// side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figures {
@@ -11,12 +15,80 @@ pub struct Figures {
     pub d_hex: f64,
     /// Area, as given or of the triangles found, in the field's units.
     pub area: f64,
+    /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
+    pub dup: usize,
+    /// Points with a non-finite coordinate; left out of everything.
+    pub not_finite: usize,
+    /// Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures.
+    pub boundary_excluded: usize,
+    /// How near the points and their normals are to the surface and its normals.
+    #[serde(flatten)]
+    pub accuracy: Accuracy,
+    /// Distances of the points from their nearest ones.
+    #[serde(flatten)]
+    pub spacing: Spacing,
+    /// Holes between the points.
+    #[serde(flatten)]
+    pub coverage: Coverage,
+    /// Natural neighbours of the points, and how nearly they stand in a hexagon.
+    #[serde(flatten)]
+    pub order: Order,
+    /// Lengths of the edges between natural neighbours.
+    #[serde(flatten)]
+    pub edges: Edges,
+    /// Triangles of natural neighbours, and the topology that they show.
+    #[serde(flatten)]
+    pub connectivity: Connectivity,
+    /// Angles of the triangles.
+    #[serde(flatten)]
+    pub angles: Angles,
+}
+
+impl Default for Figures {
+    fn default() -> Self {
+        Self {
+            d_hex: NONE,
+            area: NONE,
+            dup: 0,
+            not_finite: 0,
+            boundary_excluded: 0,
+            accuracy: Accuracy::default(),
+            spacing: Spacing::default(),
+            coverage: Coverage::default(),
+            order: Order::default(),
+            edges: Edges::default(),
+            connectivity: Connectivity::default(),
+            angles: Angles::default(),
+        }
+    }
+}
+
+/// How near the points and their normals are to the surface and its normals.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Accuracy {
     /// Largest first-order distance |f|/|∇f| to the surface.
     pub err_max: f64,
     /// Mean first-order distance to the surface.
     pub err_mean: f64,
     /// Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`.
     pub undefined: usize,
+    /// Mean angle between the given normals (either sign) and ∇f, in degrees.
+    pub nrm_mean: f64,
+    /// Largest angle between the given normals (either sign) and ∇f, in degrees.
+    pub nrm_max: f64,
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self { err_max: NONE, err_mean: NONE, undefined: 0, nrm_mean: NONE, nrm_max: NONE }
+    }
+}
+
+/// Distances of the points from their nearest ones.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Spacing {
     /// Smallest nearest-neighbour distance.
     pub nn_min: f64,
     /// Mean nearest-neighbour distance.
@@ -29,10 +101,53 @@ pub struct Figures {
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub rho_1: f64,
+    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+    /// their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
+    /// there are no distances.
+    pub crowded: Option<usize>,
+}
+
+impl Default for Spacing {
+    fn default() -> Self {
+        Self {
+            nn_min: NONE,
+            nn_mean: NONE,
+            nn_cv: NONE,
+            nn_ratio: NONE,
+            rho: NONE,
+            rho_1: NONE,
+            crowded: None,
+        }
+    }
+}
+
+/// Holes between the points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Coverage {
     /// Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal.
     pub cover: f64,
+    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
+    /// wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
+    /// 1 is ideal. With equal radii this is `cover`.
+    pub cover_local: f64,
     /// Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal.
     pub quant: f64,
+    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+    /// none has its middle in a wider one. None where `cover` is undefined.
+    pub wide_holes: Option<usize>,
+}
+
+impl Default for Coverage {
+    fn default() -> Self {
+        Self { cover: NONE, cover_local: NONE, quant: NONE, wide_holes: None }
+    }
+}
+
+/// Natural neighbours of the points, and how nearly they stand in a hexagon.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Order {
     /// Fraction of the points with exactly six natural neighbours.
     pub six: f64,
     /// Fraction of the points with five or seven natural neighbours.
@@ -43,6 +158,37 @@ pub struct Figures {
     pub open: usize,
     /// Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice.
     pub psi6: f64,
+}
+
+impl Default for Order {
+    fn default() -> Self {
+        Self { six: NONE, five_seven: NONE, val_sd: NONE, open: 0, psi6: NONE }
+    }
+}
+
+/// Lengths of the edges between natural neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Edges {
+    /// Standard deviation over mean of the length of mutual natural-neighbour edges.
+    pub edge_cv: f64,
+    /// Standard deviation over mean of edge length over the sum of the wanted radii.
+    pub size_cv: f64,
+    /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
+    /// duplicates.
+    pub overlap_min: f64,
+}
+
+impl Default for Edges {
+    fn default() -> Self {
+        Self { edge_cv: NONE, size_cv: NONE, overlap_min: NONE }
+    }
+}
+
+/// Triangles of natural neighbours, and the topology that they show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Connectivity {
     /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
     /// points away from the border that a kept triangle fills.
     pub tri_ok: f64,
@@ -53,6 +199,18 @@ pub struct Figures {
     /// Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
     /// all of them.
     pub components: usize,
+}
+
+impl Default for Connectivity {
+    fn default() -> Self {
+        Self { tri_ok: NONE, agree: NONE, euler: 0, components: 0 }
+    }
+}
+
+/// Angles of the triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Angles {
     /// Smallest angle of any triangle, in degrees.
     pub ang_min: f64,
     /// Mean over the triangles of their smallest angle, in degrees.
@@ -65,81 +223,11 @@ pub struct Figures {
     pub a_lt30: f64,
     /// Fraction of all angles above 90°.
     pub a_gt90: f64,
-    /// Standard deviation over mean of the length of mutual natural-neighbour edges.
-    pub edge_cv: f64,
-    /// Standard deviation over mean of edge length over the sum of the wanted radii.
-    pub size_cv: f64,
-    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
-    /// wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
-    /// 1 is ideal. With equal radii this is `cover`.
-    pub cover_local: f64,
-    /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
-    /// duplicates.
-    pub overlap_min: f64,
-    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
-    /// their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
-    /// there are no distances.
-    pub crowded: Option<usize>,
-    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
-    /// none has its middle in a wider one. None where `cover` is undefined.
-    pub wide_holes: Option<usize>,
-    /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
-    pub dup: usize,
-    /// Points with a non-finite coordinate; left out of everything.
-    pub not_finite: usize,
-    /// Mean angle between the given normals (either sign) and ∇f, in degrees.
-    pub nrm_mean: f64,
-    /// Largest angle between the given normals (either sign) and ∇f, in degrees.
-    pub nrm_max: f64,
-    /// Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures.
-    pub boundary_excluded: usize,
 }
 
-impl Default for Figures {
-    /// Nothing measured.
+impl Default for Angles {
     fn default() -> Self {
-        let undefined = f64::NAN;
-        Self {
-            d_hex: undefined,
-            area: undefined,
-            err_max: undefined,
-            err_mean: undefined,
-            undefined: 0,
-            nn_min: undefined,
-            nn_mean: undefined,
-            nn_cv: undefined,
-            nn_ratio: undefined,
-            rho: undefined,
-            rho_1: undefined,
-            cover: undefined,
-            quant: undefined,
-            six: undefined,
-            five_seven: undefined,
-            val_sd: undefined,
-            open: 0,
-            psi6: undefined,
-            tri_ok: undefined,
-            agree: undefined,
-            euler: 0,
-            components: 0,
-            ang_min: undefined,
-            ang_min_mean: undefined,
-            lt30: undefined,
-            gt90: undefined,
-            a_lt30: undefined,
-            a_gt90: undefined,
-            edge_cv: undefined,
-            size_cv: undefined,
-            cover_local: undefined,
-            overlap_min: undefined,
-            crowded: None,
-            wide_holes: None,
-            dup: 0,
-            not_finite: 0,
-            nrm_mean: undefined,
-            nrm_max: undefined,
-            boundary_excluded: 0,
-        }
+        Self { ang_min: NONE, ang_min_mean: NONE, lt30: NONE, gt90: NONE, a_lt30: NONE, a_gt90: NONE }
     }
 }
 

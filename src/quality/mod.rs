@@ -19,7 +19,7 @@ mod border;
 mod cell;
 mod components;
 mod energy;
-mod figures;
+pub mod figures;
 mod gaps;
 mod holes;
 mod moments;
@@ -47,13 +47,13 @@ use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, SQRT_3};
 use crate::slices::{self, pause, ranges};
 use crate::topology::Topology;
-use accuracy::{first_order_height, residuals};
+use accuracy::first_order_height;
 use border::Border;
 use figures::hexagonal_spacing;
 use glam::Vec3;
 use holes::{Cover, HoleSearch, Uncovered, uncovered};
 use moments::{Moments, share};
-use order::Order;
+use order::Tally;
 use places::Pairs;
 use prepared::Prepared;
 use scene::Scene;
@@ -170,7 +170,7 @@ pub(crate) async fn in_slices(
             pairs.add(0.0, twin, i as u32);
         }
     }
-    figures.crowded = (!scene.tree.position.is_empty()).then_some(pairs.crowded);
+    figures.spacing.crowded = (!scene.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
     report.places = Places { pairs: pairs.told(), holes };
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);
@@ -221,8 +221,7 @@ async fn figures_of(
     figures.area = options.area.unwrap_or_else(|| triangles::area(&scene.tree.position, mesh));
     figures.d_hex = hexagonal_spacing(figures.area, n + duplicates);
     pause().await;
-    residuals(&scene.residual, &mut figures);
-    (figures.nrm_mean, figures.nrm_max) = scene.normal_angles.figures();
+    figures.accuracy = accuracy::measure(&scene.residual, &scene.normal_angles, figures.d_hex);
 
     let border = match bounds {
         Some(bounds) => Some(Border::new(field, bounds, &scene.tree, figures.d_hex).await),
@@ -231,7 +230,7 @@ async fn figures_of(
     let inner = points_away_from(border.as_ref(), scene).await;
     figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
     pause().await;
-    spacing::measure(scene, &inner, &mut figures);
+    figures.spacing = spacing::measure(scene, &inner, *duplicates, figures.d_hex);
     pause().await;
     let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
     measured.pairs = measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
@@ -267,7 +266,7 @@ async fn measure_neighbourhoods(
     wanted: Option<&Wanted>,
     figures: &mut Figures,
 ) -> Pairs {
-    let mut order = Order::default();
+    let mut order = Tally::default();
     let mut edge = Moments::default();
     let mut ratios = EdgeRatios::default();
     for range in ranges(scene.tree.len(), SLICE) {
@@ -278,11 +277,11 @@ async fn measure_neighbourhoods(
         }
         pause().await;
     }
-    order.figures(figures);
-    figures.edge_cv = edge.variation();
+    figures.order = order.figures();
+    figures.edges.edge_cv = edge.variation();
     if wanted.is_some() {
-        figures.size_cv = ratios.edge.variation();
-        figures.overlap_min = if figures.dup > 0 { 0.0 } else { ratios.least };
+        figures.edges.size_cv = ratios.edge.variation();
+        figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { ratios.least };
     } else {
         spacing::add_pairs(scene, inner, figures.d_hex, &mut ratios.pairs).await;
     }
@@ -309,17 +308,19 @@ async fn measure_triangles(
             pause().await;
         }
     }
-    angles.figures(figures);
+    figures.angles = angles.figures();
     let topology = Topology::in_slices(mesh, n).await;
-    figures.euler = topology.euler();
+    figures.connectivity.euler = topology.euler();
     let opening = opening(&topology, mesh, inner, &scene.tree.position);
     pause().await;
     let (component, count) = components::label(scene, spacing, mesh).await;
-    figures.components = count;
+    figures.connectivity.components = count;
     let unanimous = triangles.unanimous.iter().filter(away).count();
-    figures.agree = share(unanimous, angles.count + triangles.single.iter().filter(away).count());
-    figures.tri_ok = if figures.boundary_excluded == 0 {
-        triangles.kept().count() as f64 / (2 * n as i64 - 2 * euler.unwrap_or(figures.euler)) as f64
+    figures.connectivity.agree =
+        share(unanimous, angles.count + triangles.single.iter().filter(away).count());
+    figures.connectivity.tri_ok = if figures.boundary_excluded == 0 {
+        triangles.kept().count() as f64
+            / (2 * n as i64 - 2 * euler.unwrap_or(figures.connectivity.euler)) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
         share(corners, (0..n).filter(|&i| inner[i]).map(|i| scene.rings.valence(i)).sum())
@@ -356,14 +357,14 @@ async fn measure_holes(
         None => Uncovered::default(),
     };
     let holes = search.largest().or(uncovered.largest);
-    figures.cover = holes.widest / (figures.d_hex / SQRT_3);
+    figures.coverage.cover = holes.widest / (figures.d_hex / SQRT_3);
     if cover.wanted.is_some() {
-        figures.cover_local = holes.relative;
+        figures.coverage.cover_local = holes.relative;
     }
     let mean_sq = search.mean_sq() * (1.0 - uncovered.share) + uncovered.sum_sq;
-    figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
+    figures.coverage.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
     search.found.extend(uncovered.found);
     let (wide, told) = places::distinct(search.found).await;
-    figures.wide_holes = Some(wide);
+    figures.coverage.wide_holes = Some(wide);
     told
 }

@@ -1,6 +1,6 @@
 //! Figures of the neighbourhoods: valence and six-fold order.
 
-use super::figures::Figures;
+use super::figures::Order;
 use super::moments::{Moments, share};
 use super::one_rings::unroll;
 use super::scene::Scene;
@@ -9,7 +9,7 @@ use glam::DVec2;
 
 /// Counts of the valences, and the bond order, of the points seen so far.
 #[derive(Default)]
-pub(super) struct Order {
+pub(super) struct Tally {
     count: usize,
     open: usize,
     six: usize,
@@ -18,7 +18,7 @@ pub(super) struct Order {
     psi6: Moments,
 }
 
-impl Order {
+impl Tally {
     /// Takes in point `i`.
     pub(super) fn add(&mut self, scene: &Scene, i: usize) {
         self.count += 1;
@@ -45,11 +45,13 @@ impl Order {
         self.psi6.add(sum.length() / neighbours as f64);
     }
 
-    pub(super) fn figures(&self, figures: &mut Figures) {
-        figures.open = self.open;
-        figures.six = share(self.six, self.count);
-        figures.five_seven = share(self.five_seven, self.count);
-        figures.val_sd = self.valence.deviation();
-        figures.psi6 = self.psi6.mean();
+    pub(super) fn figures(&self) -> Order {
+        Order {
+            six: share(self.six, self.count),
+            five_seven: share(self.five_seven, self.count),
+            val_sd: self.valence.deviation(),
+            open: self.open,
+            psi6: self.psi6.mean(),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Figures of the nearest-neighbour distances.
 
-use super::figures::Figures;
+use super::figures::Spacing;
 use super::moments::Moments;
 use super::places::{CROWDED, Pairs};
 use super::scene::Scene;
@@ -73,30 +73,33 @@ pub(super) async fn add_pairs(scene: &Scene, inner: &[bool], d_hex: f64, pairs: 
     }
 }
 
-/// Measures the nearest-neighbour distances of the points that are `inner`.
-pub(super) fn measure(scene: &Scene, inner: &[bool], figures: &mut Figures) {
+/// Nearest-neighbour distances of the points that are `inner`, without those that are too near, and of `duplicates`.
+pub(super) fn measure(scene: &Scene, inner: &[bool], duplicates: usize, d_hex: f64) -> Spacing {
     // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one it equals.
     let mut sorted: Vec<u64> = (0..inner.len())
         .filter(|&i| inner[i])
         .map(|i| scene.nearest(i))
         .filter(|d| d.is_finite())
-        .chain(core::iter::repeat_n(0.0, figures.dup))
+        .chain(core::iter::repeat_n(0.0, duplicates))
         .map(|d| key(d, 0))
         .collect();
     if sorted.is_empty() {
-        return;
+        return Spacing::default();
     }
     sorted.sort_unstable();
     let distance = |k: usize| f64::from(unkey(sorted[k]).0);
     let mut moments = Moments::default();
     (0..sorted.len()).for_each(|k| moments.add(distance(k)));
-    figures.nn_min = distance(0) / figures.d_hex;
-    figures.rho = figures.nn_min;
-    figures.nn_mean = moments.mean() / figures.d_hex;
-    figures.nn_cv = moments.variation();
-    figures.nn_ratio = distance(0) / moments.mean();
     // The first percentile is interpolated linearly between two distances.
     let place = 0.01 * (sorted.len() - 1) as f64;
     let (below, above) = (distance(place as usize), distance((place as usize + 1).min(sorted.len() - 1)));
-    figures.rho_1 = (below + (above - below) * place.fract()) / figures.d_hex;
+    Spacing {
+        nn_min: distance(0) / d_hex,
+        rho: distance(0) / d_hex,
+        nn_mean: moments.mean() / d_hex,
+        nn_cv: moments.variation(),
+        nn_ratio: distance(0) / moments.mean(),
+        rho_1: (below + (above - below) * place.fract()) / d_hex,
+        crowded: None,
+    }
 }

@@ -4,7 +4,7 @@
 //! places in. The sampler refines on those, and what measures particles must not depend on what made them: so the two find triangles
 //! each in its own way.
 
-use super::figures::Figures;
+use super::figures::Angles;
 use super::moments::{Moments, share};
 use super::one_rings::OneRings;
 use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
@@ -177,12 +177,14 @@ impl TriangleAngles {
         self.least = Some(self.least.unwrap_or(angle).min(angle));
     }
 
-    pub(super) fn figures(&self, figures: &mut Figures) {
-        figures.ang_min = self.least.unwrap_or(f64::NAN);
-        figures.ang_min_mean = self.smallest.mean();
-        figures.lt30 = share(self.lt30, self.count);
-        figures.gt90 = share(self.gt90, self.count);
-        figures.a_lt30 = share(self.a_lt30, 3 * self.count);
-        figures.a_gt90 = share(self.a_gt90, 3 * self.count);
+    pub(super) fn figures(&self) -> Angles {
+        Angles {
+            ang_min: self.least.unwrap_or(f64::NAN),
+            ang_min_mean: self.smallest.mean(),
+            lt30: share(self.lt30, self.count),
+            gt90: share(self.gt90, self.count),
+            a_lt30: share(self.a_lt30, 3 * self.count),
+            a_gt90: share(self.a_gt90, 3 * self.count),
+        }
     }
 }

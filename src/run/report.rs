@@ -172,7 +172,7 @@ impl<F: Field> Run<F> {
         let particles = self.sampler.particles();
         let count = particles.len();
         let measured = &self.measuring.measured;
-        let proof = self.proof(measured.figures.components);
+        let proof = self.proof(measured.figures.connectivity.components);
         let mut places = measured.places.clone();
         for hole in &mut places.holes {
             hole.position =

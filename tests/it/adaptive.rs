@@ -53,8 +53,12 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
         let Particles { position, normal, radius, .. } = sampler.particles();
         let options = quality::Options { sizes: Sizes::Given(radius), ..Default::default() };
         let figures = quality::measure(position, normal, &mut field, Some(&bounds), &options).figures;
-        assert!(figures.overlap_min > 0.6, "{ripple}: {}", figures.overlap_min);
-        assert!(figures.crowded.is_some_and(|crowded| crowded <= most), "{ripple}: {:?}", figures.crowded);
+        assert!(figures.edges.overlap_min > 0.6, "{ripple}: {}", figures.edges.overlap_min);
+        assert!(
+            figures.spacing.crowded.is_some_and(|crowded| crowded <= most),
+            "{ripple}: {:?}",
+            figures.spacing.crowded
+        );
     }
 }
 
@@ -123,13 +127,13 @@ fn particles_cover_and_crowd_nothing() {
         let particles = sampler.particles();
         let figures = figures(surface, particles);
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
-        assert_eq!((figures.open, figures.components), (0, 1), "{context}");
-        assert!((figures.euler - euler).abs() <= 1, "{context}");
+        assert_eq!((figures.order.open, figures.connectivity.components), (0, 1), "{context}");
+        assert!((figures.connectivity.euler - euler).abs() <= 1, "{context}");
         let hole = largest_hole(surface, particles);
         assert!(hole <= 1.6, "{context}: a hole of {hole}");
         // The bound is the match tolerance plus rounding.
         assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
-        assert!(figures.err_max <= 3e-4, "{context}");
+        assert!(figures.accuracy.err_max <= 3e-4, "{context}");
     }
 }
 
@@ -140,7 +144,7 @@ fn ten_steps_even_the_sizes_out() {
         let particles = sampler.particles();
         let figures = figures(surface, particles);
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
-        assert!(figures.size_cv <= 0.12, "{context}");
+        assert!(figures.edges.size_cv <= 0.12, "{context}");
         assert!(largest_hole(surface, particles) <= 1.6, "{context}: {}", largest_hole(surface, particles));
         assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
     }
@@ -164,9 +168,9 @@ fn the_bunny_is_even_after_ten_steps() {
         quality::measure(&particles.position, &particles.normal, &mut field, Some(&fit.bounds), &options);
     let figures = report.figures;
     let context = format!("{} particles: {figures:?}", particles.len());
-    assert!(figures.size_cv <= 0.12, "{context}");
-    assert!(figures.cover_local <= 1.6, "{context}");
-    assert!(figures.overlap_min >= 0.6, "{context}");
+    assert!(figures.edges.size_cv <= 0.12, "{context}");
+    assert!(figures.coverage.cover_local <= 1.6, "{context}");
+    assert!(figures.edges.overlap_min >= 0.6, "{context}");
 }
 
 #[test]
@@ -206,8 +210,8 @@ fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
         let uniform = sampled(surface, &settings!(sampling: Sampling::Uniform; ..equal));
         let [adaptive, uniform] = [&sampler, &uniform].map(|s| figures(surface, s.particles()));
         let context = format!("{surface}: {adaptive:?} {uniform:?}");
-        assert!(adaptive.six >= 0.85 && adaptive.size_cv <= 0.11, "{context}");
-        assert!(adaptive.size_cv <= uniform.size_cv, "{context}");
+        assert!(adaptive.order.six >= 0.85 && adaptive.edges.size_cv <= 0.11, "{context}");
+        assert!(adaptive.edges.size_cv <= uniform.edges.size_cv, "{context}");
     }
 }
 

@@ -71,11 +71,21 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
         let report =
             quality::measure(&particles.position, &particles.normal, &mut field, Some(bounds), &options);
         let f = report.figures;
-        assert!(f.six >= 0.96, "{id}: six {}", f.six);
-        assert!(f.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.ang_min_mean);
-        assert!(f.ang_min >= 36.0 && f.gt90 <= 5e-4, "{id}: angles {} {}", f.ang_min, f.gt90);
-        assert!(f.rho >= 0.72 && f.cover <= 1.4, "{id}: rho {}, cover {}", f.rho, f.cover);
-        assert!(f.err_max <= 1e-5, "{id}: residual {}", f.err_max);
+        assert!(f.order.six >= 0.96, "{id}: six {}", f.order.six);
+        assert!(f.angles.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
+        assert!(
+            f.angles.ang_min >= 36.0 && f.angles.gt90 <= 5e-4,
+            "{id}: angles {} {}",
+            f.angles.ang_min,
+            f.angles.gt90
+        );
+        assert!(
+            f.spacing.rho >= 0.72 && f.coverage.cover <= 1.4,
+            "{id}: rho {}, cover {}",
+            f.spacing.rho,
+            f.coverage.cover
+        );
+        assert!(f.accuracy.err_max <= 1e-5, "{id}: residual {}", f.accuracy.err_max);
     }
 }
 

@@ -38,7 +38,7 @@ fn coarse() -> Settings {
 }
 
 fn euler(report: &Report) -> i64 {
-    report.measures.quality.as_ref().map_or(i64::MIN, |figures: &Figures| figures.euler)
+    report.measures.quality.as_ref().map_or(i64::MIN, |figures: &Figures| figures.connectivity.euler)
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn two_spheres_a_thousandth_apart_are_two_components() {
         let (session, report) = sampled(&formula, 1.0, 0.01);
         is_proven(&report, &formula);
         assert_eq!(report.proof.components, 2, "{formula}");
-        assert_eq!(report.measures.quality.map(|q| q.euler), Some(4), "{formula}");
+        assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(4), "{formula}");
         // The component labels distinguish the two.
         let component = &session.run.measured().component;
         for (p, &label) in session.run.particles().position.iter().zip(component) {
@@ -110,10 +110,16 @@ fn metaballs(level: f64) -> String {
 fn ten_metaballs_are_ten_components_or_two() {
     let (_, apart) = sampled(&metaballs(0.7), 1.5, 0.006);
     is_proven(&apart, "apart");
-    assert_eq!((apart.proof.components, apart.measures.quality.map(|q| q.euler)), (10, Some(20)));
+    assert_eq!(
+        (apart.proof.components, apart.measures.quality.map(|q| q.connectivity.euler)),
+        (10, Some(20))
+    );
     let (_, merged) = sampled(&metaballs(0.3), 1.5, 0.002);
     is_proven(&merged, "merged");
-    assert_eq!((merged.proof.components, merged.measures.quality.map(|q| q.euler)), (1, Some(0)));
+    assert_eq!(
+        (merged.proof.components, merged.measures.quality.map(|q| q.connectivity.euler)),
+        (1, Some(0))
+    );
 }
 
 #[test]
@@ -124,7 +130,10 @@ fn each_link_of_a_chain_of_tori_is_a_component() {
     };
     let chain: Vec<String> = (0..4).map(|k| torus(-0.9 + 0.6 * f64::from(k), k % 2 == 0)).collect();
     let (_, report) = sampled(&least(&chain), 1.5, 0.0013);
-    assert_eq!((report.proof.components, report.measures.quality.map(|q| q.euler)), (4, Some(0)));
+    assert_eq!(
+        (report.proof.components, report.measures.quality.map(|q| q.connectivity.euler)),
+        (4, Some(0))
+    );
     is_proven(&report, "chain");
 }
 
@@ -472,7 +481,7 @@ fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
         let context = format!("gap {gap}: {:?}", report.warnings);
         is_proven(&report, &context);
         assert_eq!(
-            (report.proof.components, report.measures.quality.map(|q| q.euler)),
+            (report.proof.components, report.measures.quality.map(|q| q.connectivity.euler)),
             (3, Some(6)),
             "{context}"
         );

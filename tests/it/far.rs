@@ -55,10 +55,10 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 |report: &Report| report.measures.quality.unwrap_or_else(|| panic!("{name}: no particles"));
             let (here, there) = (figures(&near), figures(&far));
             assert!(
-                there.err_max < 1.2 * here.err_max,
+                there.accuracy.err_max < 1.2 * here.accuracy.err_max,
                 "{name}: residual {} at the origin, {}",
-                here.err_max,
-                there.err_max
+                here.accuracy.err_max,
+                there.accuracy.err_max
             );
             assert!(
                 near.count.abs_diff(far.count) * 500 <= near.count,
@@ -66,9 +66,18 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 near.count,
                 far.count
             );
-            assert_eq!((here.components, here.euler), (there.components, there.euler), "{name}");
+            assert_eq!(
+                (here.connectivity.components, here.connectivity.euler),
+                (there.connectivity.components, there.connectivity.euler),
+                "{name}"
+            );
             assert_eq!((near.proof.search, far.proof.search), (Search::Proven, Search::Proven), "{name}");
-            assert!((here.six - there.six).abs() < 0.01, "{name}: six {} {}", here.six, there.six);
+            assert!(
+                (here.order.six - there.order.six).abs() < 0.01,
+                "{name}: six {} {}",
+                here.order.six,
+                there.order.six
+            );
             let bounds = session.run.bounds();
             let is_inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
             let particles = session.run.particles();
@@ -237,7 +246,7 @@ fn a_session_leaves_a_far_box_as_it_came() {
     finish(&mut fitted);
     assert!(
         fitted.run.particles().origin != DVec3::ZERO
-            && fitted.report().measures.quality.expect("figures").err_max < 1e-4
+            && fitted.report().measures.quality.expect("figures").accuracy.err_max < 1e-4
     );
     // Back at the origin, and far away again.
     let surface = FieldRequest { surface: Some("ellipsoid".into()), ..FieldRequest::default() };

@@ -64,7 +64,7 @@ fn poles_are_not_taken_for_zeros() {
     let share = report.count as f64 / expected(12.0, &report);
     assert!((0.9..1.2).contains(&share), "{} particles are {share} of a cover", report.count);
     // Holes are measured on the zeros; the poles are no uncovered surface.
-    assert!(report.measures.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.measures.quality);
+    assert!(report.measures.quality.is_some_and(|q| q.coverage.cover < 1.6), "{:?}", report.measures.quality);
 }
 
 #[test]
@@ -365,8 +365,8 @@ fn every_component_has_a_front_and_they_are_counted() {
     let (_, progress, report) = sampled(formula, 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert_eq!((report.growth.components_seeded, report.proof.components), (8, 8));
-    assert_eq!(report.measures.quality.map(|q| q.components), Some(8));
-    assert_eq!(report.measures.quality.map(|q| q.euler), Some(16));
+    assert_eq!(report.measures.quality.map(|q| q.connectivity.components), Some(8));
+    assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(16));
 }
 
 #[test]
@@ -432,14 +432,14 @@ fn a_formula_may_be_in_any_units() {
         // A power of two changes no digits.
         let (session, _, report) = sampled(&format!("{factor} * ({ellipsoid})"), 1.0, &coarse());
         assert_eq!(session.run.particles().digest(), plain.run.particles().digest(), "{factor}");
-        assert_eq!(report.measures.quality.expect("there are particles").euler, 2, "{factor}");
+        assert_eq!(report.measures.quality.expect("there are particles").connectivity.euler, 2, "{factor}");
     }
     for factor in ["1e30", "1e-30"] {
         let formula = format!("{factor} x^2 + 2 * {factor} y^2 + 3 * {factor} z^2 = 0.7 * {factor}");
         let (_, progress, report) = sampled(&formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
         let figures = report.measures.quality.expect("there are particles");
-        assert!(figures.cover < 1.4 && figures.euler == 2, "{formula}: {figures:?}");
+        assert!(figures.coverage.cover < 1.4 && figures.connectivity.euler == 2, "{formula}: {figures:?}");
     }
 }
 
@@ -476,7 +476,7 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
             report.count
         );
         let figures = report.measures.quality.expect("there are particles");
-        assert!(figures.cover < 1.6 && figures.err_max < 1e-3, "{formula}: {figures:?}");
+        assert!(figures.coverage.cover < 1.6 && figures.accuracy.err_max < 1e-3, "{formula}: {figures:?}");
     }
     // Beyond double precision too.
     let (_, progress, _) = sampled("exp(1000*(x^2+y^2+z^2)+1000)-2", 1.5, &coarse());

@@ -171,14 +171,14 @@ fn a_front_covers_smooth_surfaces_regularly() {
         assert!(sampler.counts().gaps_filled > 0, "{surface}");
         let figures = figures(surface, sampler.particles());
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
-        assert!(figures.cover <= 1.5, "{context}");
-        assert_eq!(figures.open, 0, "{context}");
-        assert_eq!(figures.components, 1, "{context}");
-        assert_eq!(figures.euler, euler, "{context}");
+        assert!(figures.coverage.cover <= 1.5, "{context}");
+        assert_eq!(figures.order.open, 0, "{context}");
+        assert_eq!(figures.connectivity.components, 1, "{context}");
+        assert_eq!(figures.connectivity.euler, euler, "{context}");
         // A residual of 10⁻⁴ r is half of that in units of the spacing. Single precision adds its rounding.
-        assert!(figures.err_max <= 2.5e-4, "{context}");
+        assert!(figures.accuracy.err_max <= 2.5e-4, "{context}");
         // No two particles are closer than the match tolerance.
-        let closest = figures.nn_min * figures.d_hex / (2.0 * sampler.radius());
+        let closest = figures.spacing.nn_min * figures.d_hex / (2.0 * sampler.radius());
         assert!(closest >= 0.7 * (1.0 - 1e-5), "{context}: closest pair {closest}");
     }
 }
@@ -191,8 +191,8 @@ fn most_particles_of_a_front_have_six_neighbours() {
         let sampler = sampled(surface, &settings);
         let figures = figures(surface, sampler.particles());
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
-        assert!(figures.six >= six, "{context}");
-        assert!(figures.ang_min_mean >= angle, "{context}");
+        assert!(figures.order.six >= six, "{context}");
+        assert!(figures.angles.ang_min_mean >= angle, "{context}");
     }
 }
 
@@ -208,7 +208,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         assert_eq!(particles.position[..left.len()], left.position, "{surface}");
         let (was, is) = (figures(surface, left), figures(surface, particles));
         // The unit is 2r, because the hexagonal spacing changes with the count.
-        let hole = |f: &Figures| f.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
+        let hole = |f: &Figures| f.coverage.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
         assert!(hole(&is) < hole(&was), "{surface}: {} to {}", hole(&was), hole(&is));
         assert!(hole(&is) < 0.83, "{surface}: {}", hole(&is));
         for i in left.len()..particles.len() {

@@ -42,11 +42,11 @@ fn sizes_that_differ_come_out_in_order() {
         assert_eq!(counts.refusal, None, "{id}");
         assert!(counts.refined_levels.is_some_and(|levels| levels > 0), "{id}");
         assert_rings(sampler.particles());
-        assert!(f.six >= six, "{id}: six {}", f.six);
-        assert!(f.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.ang_min_mean);
-        assert!(f.ang_min >= smallest, "{id}: smallest angle {}", f.ang_min);
-        assert!(f.size_cv <= spread, "{id}: size_cv {}", f.size_cv);
-        assert!(f.err_max <= 1e-4, "{id}: residual {}", f.err_max);
+        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
+        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
+        assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
+        assert!(f.edges.size_cv <= spread, "{id}: size_cv {}", f.edges.size_cv);
+        assert!(f.accuracy.err_max <= 1e-4, "{id}: residual {}", f.accuracy.err_max);
     }
 }
 

@@ -78,9 +78,9 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
         }
     }
     // The random points miss the middle of the largest hole by a little.
-    let context = format!("{formula}: {} for {inner} to {largest}", figures.cover);
-    assert!(figures.cover <= 1.3 * largest + 0.2, "{context}");
-    assert!(figures.cover >= 0.98 * inner, "{context}");
+    let context = format!("{formula}: {} for {inner} to {largest}", figures.coverage.cover);
+    assert!(figures.coverage.cover <= 1.3 * largest + 0.2, "{context}");
+    assert!(figures.coverage.cover >= 0.98 * inner, "{context}");
     true
 }
 
@@ -119,9 +119,9 @@ fn triangles_across_a_gap_do_not_count() {
         let figures = report.measures.quality.expect("figures");
         let context = format!("{method:?} with {} particles: {figures:?}", report.count);
         // A sphere and two discs.
-        assert_eq!((report.proof.components, figures.euler), (3, 4), "{context}");
+        assert_eq!((report.proof.components, figures.connectivity.euler), (3, 4), "{context}");
         // With 32,000 particles it is 8.93.
         assert!((8.7..9.0).contains(&figures.area), "{context}");
-        assert!((1.0..1.6).contains(&figures.cover), "{context}");
+        assert!((1.0..1.6).contains(&figures.coverage.cover), "{context}");
     }
 }

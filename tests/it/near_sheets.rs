@@ -66,7 +66,7 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
             let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
             assert_eq!(report.proof.search, Search::Proven, "{context}");
             assert_eq!(report.proof.components, components, "{context}");
-            assert_eq!(report.measures.quality.map(|q| q.euler), Some(euler), "{context}");
+            assert_eq!(report.measures.quality.map(|q| q.connectivity.euler), Some(euler), "{context}");
             assert!(!says(&report, "without changing its sign"), "{context}");
         }
     }
@@ -174,7 +174,7 @@ fn where_the_triangles_leave_a_surface_open_the_report_says_so() {
         let (_, report) = complete(session(formula, half, &of_radius(radius, half)));
         assert!(!says(&report, "need not be those of the surface"), "{formula}: {:?}", report.warnings);
         assert!(
-            half < 1.2 || report.measures.quality.map(|q| q.euler) == Some(euler),
+            half < 1.2 || report.measures.quality.map(|q| q.connectivity.euler) == Some(euler),
             "{formula}: {:?}",
             report.measures.quality
         );

@@ -126,28 +126,28 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     println!("{f:#?}");
     close("d_hex", f.d_hex, scale, 1e-9);
     close("area", f.area, cell * points.len() as f64, 1e-9);
-    close("err_max", f.err_max, 0.0, 0.0);
-    close("nn_min", f.nn_min, 1.0, 1e-4);
-    close("rho", f.rho, f.nn_min, 0.0);
-    close("rho_1", f.rho_1, 1.0, 1e-4);
-    close("nn_mean", f.nn_mean, 1.0, 1e-4);
-    close("nn_cv", f.nn_cv, 0.0, 1e-4);
-    close("nn_ratio", f.nn_ratio, 1.0, 1e-4);
-    close("cover", f.cover, 1.0, 1e-4);
-    close("quant", f.quant, 1.0, 3e-3);
-    close("six", f.six, 1.0, 0.0);
-    close("five_seven", f.five_seven, 0.0, 0.0);
-    close("val_sd", f.val_sd, 0.0, 0.0);
-    close("psi6", f.psi6, 1.0, 1e-4);
-    close("tri_ok", f.tri_ok, 1.0, 0.0);
-    close("ang_min", f.ang_min, 60.0, 1e-2);
-    close("ang_min_mean", f.ang_min_mean, 60.0, 1e-2);
-    close("lt30", f.lt30, 0.0, 0.0);
-    close("gt90", f.gt90, 0.0, 0.0);
-    close("edge_cv", f.edge_cv, 0.0, 1e-4);
-    close("nrm_max", f.nrm_max, 0.0, 0.0);
-    assert_eq!((f.open, f.dup, f.undefined, f.not_finite), (0, 0, 0, 0));
-    assert_eq!((f.euler, f.components), (1, 1), "a disc");
+    close("err_max", f.accuracy.err_max, 0.0, 0.0);
+    close("nn_min", f.spacing.nn_min, 1.0, 1e-4);
+    close("rho", f.spacing.rho, f.spacing.nn_min, 0.0);
+    close("rho_1", f.spacing.rho_1, 1.0, 1e-4);
+    close("nn_mean", f.spacing.nn_mean, 1.0, 1e-4);
+    close("nn_cv", f.spacing.nn_cv, 0.0, 1e-4);
+    close("nn_ratio", f.spacing.nn_ratio, 1.0, 1e-4);
+    close("cover", f.coverage.cover, 1.0, 1e-4);
+    close("quant", f.coverage.quant, 1.0, 3e-3);
+    close("six", f.order.six, 1.0, 0.0);
+    close("five_seven", f.order.five_seven, 0.0, 0.0);
+    close("val_sd", f.order.val_sd, 0.0, 0.0);
+    close("psi6", f.order.psi6, 1.0, 1e-4);
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
+    close("ang_min", f.angles.ang_min, 60.0, 1e-2);
+    close("ang_min_mean", f.angles.ang_min_mean, 60.0, 1e-2);
+    close("lt30", f.angles.lt30, 0.0, 0.0);
+    close("gt90", f.angles.gt90, 0.0, 0.0);
+    close("edge_cv", f.edges.edge_cv, 0.0, 1e-4);
+    close("nrm_max", f.accuracy.nrm_max, 0.0, 0.0);
+    assert_eq!((f.order.open, f.dup, f.accuracy.undefined, f.not_finite), (0, 0, 0, 0));
+    assert_eq!((f.connectivity.euler, f.connectivity.components), (1, 1), "a disc");
     let inside = |p: &Vec3| f64::from(p.x.abs().max(p.y.abs())) < half - 4.0 * scale;
     let excluded = points.iter().filter(|p| !inside(p)).count() as f64;
     close("boundary_excluded", f.boundary_excluded as f64, excluded, 0.01 * excluded);
@@ -166,16 +166,16 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     let f = report.figures;
     println!("{f:#?}");
     let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
-    close("nn_min", f.nn_min, 1.0 / d_hex, 1e-9);
-    close("six", f.six, 0.0, 0.0);
-    close("val_sd", f.val_sd, 0.0, 0.0);
+    close("nn_min", f.spacing.nn_min, 1.0 / d_hex, 1e-9);
+    close("six", f.order.six, 0.0, 0.0);
+    close("val_sd", f.order.val_sd, 0.0, 0.0);
     let centre = points.iter().position(|&p| p == Vec3::ZERO).expect("the origin is a lattice point");
     assert_eq!(report.valence[centre], 4);
     // exp(6iθ) of the four neighbours is 1, −1, 1, −1.
-    close("psi6", f.psi6, 0.0, 1e-9);
+    close("psi6", f.order.psi6, 0.0, 1e-9);
     // The four corners of a square see different triangulations of it, on none of which two corners agree.
-    close("agree", f.agree, 0.0, 0.0);
-    assert!(f.ang_min.is_nan());
+    close("agree", f.connectivity.agree, 0.0, 0.0);
+    assert!(f.angles.ang_min.is_nan());
 }
 
 #[test]
@@ -187,15 +187,15 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
     println!("{f:#?}");
     let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
-    close("six", f.six, 1.0, 0.0);
-    close("ang_min", f.ang_min, 45.0, 1.0);
-    close("gt90", f.gt90, 0.0, 0.0);
-    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    close("six", f.order.six, 1.0, 0.0);
+    close("ang_min", f.angles.ang_min, 45.0, 1.0);
+    close("gt90", f.angles.gt90, 0.0, 0.0);
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
     // The circumradius of a triangle of area 1/2 is half the product of its sides.
     let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
-    close("cover", f.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
+    close("cover", f.coverage.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
     // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts through a row of cells.
-    close("quant", f.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
+    close("quant", f.coverage.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
 }
 
 #[test]
@@ -214,9 +214,9 @@ fn jittered_lattice_has_the_known_mean_angle() {
         let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
         let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
         println!("jitter {jitter}: {f:#?}");
-        close("ang_min_mean", f.ang_min_mean, angle, 0.15);
+        close("ang_min_mean", f.angles.ang_min_mean, angle, 0.15);
         // The length of an edge varies by √2 times the jitter.
-        close("edge_cv", f.edge_cv, jitter * 2.0_f64.sqrt(), 0.12 * jitter);
+        close("edge_cv", f.edges.edge_cv, jitter * 2.0_f64.sqrt(), 0.12 * jitter);
     }
 }
 
@@ -228,24 +228,28 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     let report = measure(&points, &points, &mut sphere(), None, &options);
     let f = report.figures;
     println!("{f:#?}");
-    assert_eq!((f.euler, f.components), (2, 1));
-    close("tri_ok", f.tri_ok, 1.0, 2e-3);
-    close("agree", f.agree, 1.0, 3e-3);
-    assert_eq!((f.open, f.boundary_excluded), (0, 0));
+    assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 2e-3);
+    close("agree", f.connectivity.agree, 1.0, 3e-3);
+    assert_eq!((f.order.open, f.boundary_excluded), (0, 0));
     // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost cocircular; where both
     // diagonals are accepted, there are two neighbours and two triangles too many.
     let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
-    let surplus = (f.tri_ok - 1.0) * (2 * n - 4) as f64;
+    let surplus = (f.connectivity.tri_ok - 1.0) * (2 * n - 4) as f64;
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
     // Rounding to single precision moves the points off the sphere.
-    assert!(f.err_max * f.d_hex < 2e-7 && f.err_max > 0.0, "err_max = {}", f.err_max);
-    assert!(f.nrm_max < 1e-4, "nrm_max = {}", f.nrm_max);
+    assert!(
+        f.accuracy.err_max * f.d_hex < 2e-7 && f.accuracy.err_max > 0.0,
+        "err_max = {}",
+        f.accuracy.err_max
+    );
+    assert!(f.accuracy.nrm_max < 1e-4, "nrm_max = {}", f.accuracy.nrm_max);
     // The flat triangles have a little less area than the sphere.
     let flat = measure(&points, &points, &mut sphere(), None, &Options::default()).figures;
     let missing = 1.0 - flat.area / SPHERE_AREA;
     assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
-    assert!(f.cover > 1.0 && f.cover < 1.4, "cover = {}", f.cover);
-    assert!(f.quant > 1.0 && f.quant < 1.1, "quant = {}", f.quant);
+    assert!(f.coverage.cover > 1.0 && f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
+    assert!(f.coverage.quant > 1.0 && f.coverage.quant < 1.1, "quant = {}", f.coverage.quant);
 }
 
 #[test]
@@ -277,10 +281,10 @@ fn torus_lattice_has_euler_number_zero() {
     }
     let f = measure(&points, &[], &mut torus(), None, &Options::default()).figures;
     println!("{f:#?}");
-    assert_eq!((f.euler, f.components, f.open), (0, 1, 0));
-    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (0, 1, 0));
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
     close("area", f.area, 2.0 * core::f64::consts::PI.powi(2), 0.05);
-    assert!(f.nrm_mean.is_nan(), "no normals were given");
+    assert!(f.accuracy.nrm_mean.is_nan(), "no normals were given");
 }
 
 #[test]
@@ -291,17 +295,17 @@ fn white_noise_has_its_known_figures() {
     let options = Options { area: Some(SPHERE_AREA), euler: Some(2), ..Options::default() };
     let f = measure(&points, &points, &mut sphere(), None, &options).figures;
     println!("{f:#?}");
-    close("six", f.six, 0.295, 0.008);
-    close("quant", f.quant, 1.985, 0.03);
-    close("nn_mean", f.nn_mean, 0.465, 0.005);
+    close("six", f.order.six, 0.295, 0.008);
+    close("quant", f.coverage.quant, 1.985, 0.03);
+    close("nn_mean", f.spacing.nn_mean, 0.465, 0.005);
     // The nearest-neighbour distance of a Poisson process is Rayleigh distributed.
-    close("nn_cv", f.nn_cv, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
-    assert!(f.rho < 0.02, "rho = {}", f.rho);
+    close("nn_cv", f.spacing.nn_cv, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
+    assert!(f.spacing.rho < 0.02, "rho = {}", f.spacing.rho);
     // The cumulative distribution of the distances is 1 − exp(−π N x²/A).
     let first = (-(1.0_f64 - 0.01).ln() * 3.0_f64.sqrt() / 2.0 / core::f64::consts::PI).sqrt();
-    close("rho_1", f.rho_1, first, 0.1 * first);
-    close("tri_ok", f.tri_ok, 1.0, 0.01);
-    assert_eq!(f.open, 0);
+    close("rho_1", f.spacing.rho_1, first, 0.1 * first);
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.01);
+    assert_eq!(f.order.open, 0);
 }
 
 #[test]
@@ -313,11 +317,11 @@ fn hole_is_measured_as_a_hole() {
     points.retain(|p| p.distance(centre) > radius);
     let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
     // The largest empty disc is at least as large as the hole, and at most one spacing larger.
-    let gap = f.cover * f.d_hex / 3.0_f64.sqrt();
+    let gap = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
     // The triangulation bridges the hole, so the sphere stays closed.
-    assert_eq!((f.euler, f.open), (2, 0));
-    assert!(f.gt90 > whole.gt90);
+    assert_eq!((f.connectivity.euler, f.order.open), (2, 0));
+    assert!(f.angles.gt90 > whole.angles.gt90);
 }
 
 #[test]
@@ -332,16 +336,16 @@ fn missed_component_and_missed_half_are_holes_too() {
     let bounds = Bounds { min: [-1.5, -1.5, -1.5], max: [5.5, 1.5, 1.5] };
     let options = Options { area: Some(2.0 * SPHERE_AREA), ..Options::default() };
     let f = measure(&points, &[], &mut pair, Some(&bounds), &options).figures;
-    let hole = f.cover * f.d_hex / 3.0_f64.sqrt();
+    let hole = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
     // Half of the area has the mean squared distance to the first sphere.
-    let mean_sq = f.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
+    let mean_sq = f.coverage.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
     assert!(mean_sq > 0.5 * 4.0 && mean_sq < 0.5 * 16.0, "mean square {mean_sq}");
     // On half a sphere, the far pole is at the distance √2 from the equator.
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
     let bounds = Bounds::cube(1.25);
     let f = measure(&half, &[], &mut sphere(), Some(&bounds), &Options::default()).figures;
-    close("hole", f.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
+    close("hole", f.coverage.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
 }
 
 #[test]
@@ -360,9 +364,9 @@ fn two_sheets_are_triangulated_apart_but_spaced_together() {
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
     let f = measure(&points, &[], &mut slab, Some(&bounds), &options).figures;
     println!("{f:#?}");
-    close("six", f.six, 1.0, 0.0);
-    close("nn_mean", f.nn_mean, 0.5, 1e-4);
-    assert_eq!((f.components, f.euler), (2, 2));
+    close("six", f.order.six, 1.0, 0.0);
+    close("nn_mean", f.spacing.nn_mean, 0.5, 1e-4);
+    assert_eq!((f.connectivity.components, f.connectivity.euler), (2, 2));
 }
 
 #[test]
@@ -377,12 +381,12 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
     let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
     let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
     let f = report.figures;
-    close("err_max", f.err_max, 0.01, 1e-8);
-    close("err_mean", f.err_mean, 0.005, 1e-5);
+    close("err_max", f.accuracy.err_max, 0.01, 1e-8);
+    close("err_mean", f.accuracy.err_mean, 0.005, 1e-5);
     close("residual", f64::from(report.residual[1]), 0.01 * scale, 1e-9);
     // The sign of the normal does not matter.
-    close("nrm_mean", f.nrm_mean, 5.0, 1e-4);
-    close("nrm_max", f.nrm_max, 5.0, 1e-4);
+    close("nrm_mean", f.accuracy.nrm_mean, 5.0, 1e-4);
+    close("nrm_max", f.accuracy.nrm_max, 5.0, 1e-4);
 }
 
 #[test]
@@ -404,10 +408,10 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let zone = core::f64::consts::TAU * (0.5 - (60.0_f64.to_radians() + arc).cos());
     let wanted = zone / area * points.len() as f64;
     close("boundary_excluded", f.boundary_excluded as f64, wanted, 0.03 * wanted);
-    close("tri_ok", f.tri_ok, 1.0, 1e-3);
-    assert_eq!((f.open, f.euler), (0, 1));
-    assert!(f.cover < 1.4, "cover = {}", f.cover);
-    assert!(f.ang_min > 25.0, "ang_min = {}", f.ang_min);
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 1e-3);
+    assert_eq!((f.order.open, f.connectivity.euler), (0, 1));
+    assert!(f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
+    assert!(f.angles.ang_min > 25.0, "ang_min = {}", f.angles.ang_min);
 }
 
 #[test]
@@ -416,7 +420,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
     let measured = |sizes: Sizes| {
         let options = Options { sizes, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
-        measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.size_cv
+        measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.edges.size_cv
     };
     let equal = vec![0.5 * scale as f32; points.len()];
     close("equal radii", measured(Sizes::Given(&equal)), 0.0, 1e-4);
@@ -430,7 +434,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let curvature = Sizes::Curvature { lowest: 0.1, highest: 10.0 };
     let options = Options { sizes: curvature, ..Options::default() };
     let f = measure(&points, &[], &mut sphere(), None, &options).figures;
-    close("size_cv", f.size_cv, f.edge_cv, 1e-6);
+    close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
 }
 
 /// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance from the origin, and
@@ -470,12 +474,17 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     });
     let mean = ratios.iter().sum::<f64>() / 3.0;
     let variation = (ratios.iter().map(|r| (r - mean) * (r - mean)).sum::<f64>() / 3.0).sqrt() / mean;
-    close("size_cv", f.size_cv, variation, 1e-5);
-    close("overlap_min", f.overlap_min, ratios.into_iter().fold(1.0, f64::min), 1e-4);
+    close("size_cv", f.edges.size_cv, variation, 1e-5);
+    close("overlap_min", f.edges.overlap_min, ratios.into_iter().fold(1.0, f64::min), 1e-4);
     // The cells fill the square, except for those that its edge cuts.
-    close("cover_local", f.cover_local, 1.0, 0.03);
-    assert!(f.edge_cv > 0.1 && f.cover > 1.2, "the sizes differ: {} {}", f.edge_cv, f.cover);
-    assert_eq!(f.six, 1.0);
+    close("cover_local", f.coverage.cover_local, 1.0, 0.03);
+    assert!(
+        f.edges.edge_cv > 0.1 && f.coverage.cover > 1.2,
+        "the sizes differ: {} {}",
+        f.edges.edge_cv,
+        f.coverage.cover
+    );
+    assert_eq!(f.order.six, 1.0);
 }
 
 #[test]
@@ -499,10 +508,15 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
     // an ideal triangle.
     let root_3 = 3.0_f64.sqrt();
     let small = hole_at(Vec3::new(0.72, 0.72, 0.0));
-    close("cover_local, small", small.cover_local, root_3, 0.05);
+    close("cover_local, small", small.coverage.cover_local, root_3, 0.05);
     let large = hole_at(Vec3::new(1.15, 1.15, 0.0));
-    close("cover_local, large", large.cover_local, root_3, 0.05);
-    assert!(large.cover > 1.4 * small.cover, "{} {}", large.cover, small.cover);
+    close("cover_local, large", large.coverage.cover_local, root_3, 0.05);
+    assert!(
+        large.coverage.cover > 1.4 * small.coverage.cover,
+        "{} {}",
+        large.coverage.cover,
+        small.coverage.cover
+    );
 }
 
 #[test]
@@ -511,10 +525,10 @@ fn equal_radii_make_the_local_hole_the_hole() {
     let radii = vec![0.7; points.len()];
     let options = Options { sizes: Sizes::Given(&radii), ..Options::default() };
     let f = measure(&points, &[], &mut sphere(), Some(&Bounds::cube(1.5)), &options).figures;
-    close("cover_local", f.cover_local, f.cover, 1e-5);
-    close("overlap_min", f.overlap_min, f.nn_min * f.d_hex / 1.4, 1e-5);
+    close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
+    close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.d_hex / 1.4, 1e-5);
     let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
-    assert!(f.cover_local.is_nan() && f.overlap_min.is_nan());
+    assert!(f.coverage.cover_local.is_nan() && f.edges.overlap_min.is_nan());
 }
 
 #[test]
@@ -525,13 +539,13 @@ fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     doubled.extend([points[17], points[17], points[3]]);
     let report = measure(&doubled, &doubled, &mut sphere(), None, &Options::default());
     let f = report.figures;
-    assert_eq!((f.dup, f.euler), (3, 2));
-    close("rho", f.rho, 0.0, 0.0);
+    assert_eq!((f.dup, f.connectivity.euler), (3, 2));
+    close("rho", f.spacing.rho, 0.0, 0.0);
     assert_eq!((report.nearest[17], report.nearest[500]), (0.0, 0.0));
     assert_eq!(report.valence[500], 0);
     assert_eq!(report.valence[..500], clean.valence[..]);
     // A duplicate is a crowded pair with the particle that it equals.
-    assert_eq!(f.crowded, clean.figures.crowded.map(|crowded| crowded + 3));
+    assert_eq!(f.spacing.crowded, clean.figures.spacing.crowded.map(|crowded| crowded + 3));
     let [a, b, c] = [0, 1, 2].map(|k| report.places.pairs[k]);
     assert_eq!([a.ratio, b.ratio, c.ratio], [0.0; 3]);
     assert_eq!([a.particles, b.particles, c.particles], [[3, 502], [17, 500], [17, 501]]);
@@ -554,7 +568,7 @@ fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert!(pairs.len() > 64, "{} pairs", pairs.len());
-    assert_eq!(report.figures.crowded, Some(pairs.len()));
+    assert_eq!(report.figures.spacing.crowded, Some(pairs.len()));
     assert_eq!(report.places.pairs.len(), 64);
     for (told, (distance, particles)) in report.places.pairs.iter().zip(&pairs) {
         assert_eq!(told.particles, *particles);
@@ -599,7 +613,7 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
         measure(points, &[], &mut plane(), Some(&bounds), &options)
     };
     let perfect = of(&whole, Sizes::None);
-    assert_eq!((perfect.figures.crowded, perfect.figures.wide_holes), (Some(0), Some(0)));
+    assert_eq!((perfect.figures.spacing.crowded, perfect.figures.coverage.wide_holes), (Some(0), Some(0)));
     // Of a perfect lattice one place of each kind is told.
     assert_eq!((perfect.places.pairs.len(), perfect.places.holes.len()), (1, 1));
 
@@ -618,7 +632,11 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let radii = vec![1.0 / 64.0; position.len()];
     for sizes in [Sizes::None, Sizes::Given(&radii)] {
         let report = of(&position, sizes);
-        assert_eq!((report.figures.crowded, report.figures.wide_holes), (Some(1), Some(2)), "{sizes:?}");
+        assert_eq!(
+            (report.figures.spacing.crowded, report.figures.coverage.wide_holes),
+            (Some(1), Some(2)),
+            "{sizes:?}"
+        );
         let [pair] = report.places.pairs[..] else { panic!("{:?}", report.places.pairs) };
         let mut particles = pair.particles.map(|i| kept[i as usize]);
         particles.sort_unstable();
@@ -645,10 +663,10 @@ fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Report {
 fn degenerate_input_gives_undefined_figures_and_no_panic() {
     assert!(degenerate(&[], &[]).figures.d_hex.is_nan());
     let one = degenerate(&[Vec3::X], &[]);
-    assert!(one.figures.nn_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0);
+    assert!(one.figures.spacing.nn_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0);
     let two = degenerate(&[Vec3::X, Vec3::Y], &[Vec3::NAN, Vec3::ZERO]);
     assert_eq!(two.nearest, [2.0_f32.sqrt(); 2]);
-    assert!(two.figures.ang_min.is_nan());
+    assert!(two.figures.angles.ang_min.is_nan());
     degenerate(&[Vec3::ZERO, Vec3::ZERO], &[Vec3::NAN]);
     let same = degenerate(&vec![Vec3::X; 5000], &[]);
     assert_eq!(same.figures.dup, 4999);
@@ -673,9 +691,9 @@ fn undefined_field_is_counted_and_given_normals_take_its_place() {
     let points = fibonacci(400);
     let mut nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
     let f = measure(&points, &points, &mut nowhere, None, &Options::default()).figures;
-    assert_eq!(f.undefined, 400);
-    assert!(f.err_max.is_nan());
-    assert_eq!((f.euler, f.components), (2, 1));
+    assert_eq!(f.accuracy.undefined, 400);
+    assert!(f.accuracy.err_max.is_nan());
+    assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
 }
 
 #[test]
@@ -688,8 +706,8 @@ fn order_of_the_points_does_not_matter() {
     other.nearest.reverse();
     assert_eq!(one.valence, other.valence);
     assert_eq!(one.nearest, other.nearest);
-    close("six", one.figures.six, other.figures.six, 0.0);
-    close("cover", one.figures.cover, other.figures.cover, 1e-4);
+    close("six", one.figures.order.six, other.figures.order.six, 0.0);
+    close("cover", one.figures.coverage.cover, other.figures.coverage.cover, 1e-4);
 }
 
 #[test]
@@ -698,7 +716,7 @@ fn histogram_counts_every_particle_once() {
     let report = measure(&points, &[], &mut sphere(), None, &Options::default());
     let h = &report.histogram;
     assert_eq!(h.bins.iter().sum::<u32>(), 1000);
-    let bin = (report.figures.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
+    let bin = (report.figures.spacing.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
     let near: u32 = h.bins[bin as usize - 8..bin as usize + 9].iter().sum();
     assert!(near > 900, "{near} of 1000 near the mean");
 }
@@ -715,11 +733,11 @@ fn icosahedron_has_five_neighbours_everywhere() {
     let report = measure(&points, &points, &mut sphere(), None, &Options::default());
     let f = report.figures;
     assert_eq!(report.valence, [5; 12]);
-    assert_eq!((f.euler, f.components, f.open), (2, 1, 0));
-    close("tri_ok", f.tri_ok, 1.0, 0.0);
-    close("ang_min", f.ang_min, 60.0, 1e-4);
-    close("five_seven", f.five_seven, 1.0, 0.0);
-    close("edge_cv", f.edge_cv, 0.0, 1e-6);
+    assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (2, 1, 0));
+    close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
+    close("ang_min", f.angles.ang_min, 60.0, 1e-4);
+    close("five_seven", f.order.five_seven, 1.0, 0.0);
+    close("edge_cv", f.edges.edge_cv, 0.0, 1e-6);
     // |mean of exp(6i·72°k)| over five directions is 0.
-    close("psi6", f.psi6, 0.0, 1e-5);
+    close("psi6", f.order.psi6, 0.0, 1e-5);
 }

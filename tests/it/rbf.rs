@@ -287,9 +287,9 @@ fn the_models_have_one_closed_component_and_the_joined_ears_a_handle() {
         let (_, report) = sampled(of_model(id), &settings!(radius_share: 0.003; ..Settings::default()));
         let quality = report.measures.quality.expect("there are particles");
         assert_eq!(report.stop_reason, Some(StopReason::Complete), "{id}");
-        assert_eq!((quality.euler, quality.components), (euler, 1), "{id}");
+        assert_eq!((quality.connectivity.euler, quality.connectivity.components), (euler, 1), "{id}");
         assert_eq!(quality.boundary_excluded, 0, "{id}: the surface leaves its box");
-        assert!(quality.six > 0.75 && quality.cover < 1.45, "{id}: {quality:?}");
+        assert!(quality.order.six > 0.75 && quality.coverage.cover < 1.45, "{id}: {quality:?}");
     }
 }
 

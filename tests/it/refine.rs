@@ -57,14 +57,14 @@ fn closed_surfaces_come_out_in_order() {
         assert!((share - 1.0).abs() <= 0.01, "{id}: {} particles of {count}", particles.len());
         assert_rings(particles);
         let f = figures(&mut field, &surface.bounds, particles);
-        assert!(f.six >= six, "{id}: six {}", f.six);
-        assert!(f.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.ang_min_mean);
-        assert!(f.ang_min >= smallest, "{id}: smallest angle {}", f.ang_min);
-        assert!(f.rho >= rho, "{id}: closest pair {}", f.rho);
-        assert!(f.cover <= 1.3, "{id}: cover {}", f.cover);
-        assert!(f.err_max <= 1e-4, "{id}: residual {}", f.err_max);
+        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
+        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
+        assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
+        assert!(f.spacing.rho >= rho, "{id}: closest pair {}", f.spacing.rho);
+        assert!(f.coverage.cover <= 1.3, "{id}: cover {}", f.coverage.cover);
+        assert!(f.accuracy.err_max <= 1e-4, "{id}: residual {}", f.accuracy.err_max);
         let genus = i64::from(surface.genus.expect("a closed surface has a genus"));
-        assert_eq!(f.euler, 2 - 2 * genus, "{id}");
+        assert_eq!(f.connectivity.euler, 2 - 2 * genus, "{id}");
     }
 }
 
@@ -111,14 +111,18 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
         let particles = sampler.particles();
         assert_rings(particles);
         let f = figures(&mut field, &surface.bounds, particles);
-        assert!(particles.len() > 100 && f.euler == 2, "{} particles after {steps} steps", particles.len());
+        assert!(
+            particles.len() > 100 && f.connectivity.euler == 2,
+            "{} particles after {steps} steps",
+            particles.len()
+        );
         // The coarse front and the first level are too coarse for the triangles of the report to agree everywhere.
         let close = if particles.len() > 300 { 0.0 } else { 0.03 };
         assert!(
-            (f.tri_ok - 1.0).abs() <= close,
+            (f.connectivity.tri_ok - 1.0).abs() <= close,
             "{} particles after {steps} steps: {}",
             particles.len(),
-            f.tri_ok
+            f.connectivity.tri_ok
         );
         seen.push(particles.len());
     }
@@ -178,8 +182,8 @@ fn each_component_is_refined_as_often_as_it_allows() {
         let all = particles.len() as f64;
         assert!((all / f64::from(count) - 1.0).abs() <= 0.01, "{} of {count}", particles.len());
         let f = figures(&mut field, &bounds, particles);
-        assert_eq!(f.euler, 4, "{count}: {counts:?}");
-        assert!(f.six >= six, "{count}: six {}", f.six);
+        assert_eq!(f.connectivity.euler, 4, "{count}: {counts:?}");
+        assert!(f.order.six >= six, "{count}: six {}", f.order.six);
         let share = on_small_sphere(particles) as f64 / all;
         assert!((0.0135..0.0150).contains(&share), "{count}: a share of {share} on the small sphere");
     }
@@ -268,7 +272,7 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     sampler.step(&mut field, 0);
     assert_eq!(sampler.particles().len(), first);
     let f = figures(&mut field, &surface.bounds, sampler.particles());
-    assert!(f.ang_min > 20.0, "the coarse level is in order: {}°", f.ang_min);
+    assert!(f.angles.ang_min > 20.0, "the coarse level is in order: {}°", f.angles.ang_min);
 }
 
 #[test]
@@ -324,12 +328,12 @@ fn surfaces_that_bend_more_are_refined_once() {
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(1), None), "{id}");
         let f = figures(&mut field, &surface.bounds, sampler.particles());
-        assert!(f.six >= six, "{id}: six {}", f.six);
-        assert!(f.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.ang_min_mean);
-        assert!(f.ang_min >= 35.0 && f.gt90 <= 1.5e-4, "{id}: {f:?}");
-        assert!(f.rho >= 0.7 && f.cover <= 1.3, "{id}: {f:?}");
+        assert!(f.order.six >= six, "{id}: six {}", f.order.six);
+        assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
+        assert!(f.angles.ang_min >= 35.0 && f.angles.gt90 <= 1.5e-4, "{id}: {f:?}");
+        assert!(f.spacing.rho >= 0.7 && f.coverage.cover <= 1.3, "{id}: {f:?}");
         if let Some(genus) = surface.genus {
-            assert_eq!(f.euler, 2 - 2 * i64::from(genus), "{id}");
+            assert_eq!(f.connectivity.euler, 2 - 2 * i64::from(genus), "{id}");
         }
     }
 }

@@ -159,12 +159,12 @@ fn holes_and_crowded_pairs_shrink() {
         let (before, sampler) = before_and_after(surface, &settings);
         let (was, is) = (figures(surface, &before), figures(surface, sampler.particles()));
         let context = format!("{id}, seed 0\nbefore {was:?}\nafter  {is:?}");
-        assert!(is.cover < was.cover, "{context}");
-        assert!(is.cover <= 1.45, "{context}");
-        assert!(is.rho_1 > was.rho_1, "{context}");
-        assert!(is.gt90 < was.gt90, "{context}");
-        assert!(is.edge_cv < was.edge_cv, "{context}");
-        assert_eq!((is.euler, is.open), (euler, 0), "{context}");
+        assert!(is.coverage.cover < was.coverage.cover, "{context}");
+        assert!(is.coverage.cover <= 1.45, "{context}");
+        assert!(is.spacing.rho_1 > was.spacing.rho_1, "{context}");
+        assert!(is.angles.gt90 < was.angles.gt90, "{context}");
+        assert!(is.edges.edge_cv < was.edges.edge_cv, "{context}");
+        assert_eq!((is.connectivity.euler, is.order.open), (euler, 0), "{context}");
         assert_eq!(before.len(), sampler.particles().len());
     }
 }

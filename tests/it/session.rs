@@ -94,7 +94,7 @@ fn the_figures_of_the_front_do_not_depend_on_the_steps() {
         session.report().measures.quality_before.expect("figures of the front")
     };
     let whole = before(u32::MAX);
-    assert!(whole.six > 0.5);
+    assert!(whole.order.six > 0.5);
     // Compared as text, because an undefined figure is not equal to itself.
     assert_eq!(format!("{:?}", before(1)), format!("{whole:?}"));
     assert_eq!(format!("{:?}", before(1_234)), format!("{whole:?}"));
@@ -145,7 +145,7 @@ fn a_report_is_begun_anew_after_a_change() {
     let ball = request(r#"{"formula":"x^2+y^2+z^2-1"}"#);
     assert!(session.measure(300).is_none());
     session.set_field(&ball).unwrap();
-    assert!(session.report().measures.quality.expect("particles").err_max > 1.0);
+    assert!(session.report().measures.quality.expect("particles").accuracy.err_max > 1.0);
 }
 
 #[test]
@@ -272,7 +272,10 @@ fn cancelling_keeps_the_particles() {
         assert!(particles.position.iter().all(|p| p.is_finite()));
         let report = session.report();
         assert_eq!(report.count, progress.particles);
-        assert!(report.measures.quality.is_none_or(|q| q.err_max < 1e-2), "cancelled after {budget}");
+        assert!(
+            report.measures.quality.is_none_or(|q| q.accuracy.err_max < 1e-2),
+            "cancelled after {budget}"
+        );
     }
 }
 
@@ -465,7 +468,7 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     while session.run.step(1000).stop_reason.is_none() {}
     let report = session.report();
     assert_eq!(report.stop_reason, Some(StopReason::Complete));
-    assert_eq!(report.measures.quality.expect("particles").euler, 2);
+    assert_eq!(report.measures.quality.expect("particles").connectivity.euler, 2);
     assert!(session.run.particles().position.iter().all(|p| (p.length() - 1.0).abs() < 1e-2));
 
     // Only the box of such a field can be changed. An invalid box changes nothing.

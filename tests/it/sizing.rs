@@ -152,13 +152,18 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
         let relaxed = figures(surface, sampled(surface, &adaptive(14_000, 10)).particles());
         println!("{id}: {front:#?} {relaxed:#?}");
         for f in [&front, &relaxed] {
-            assert!(f.size_cv <= 0.12, "{id}: size_cv {}", f.size_cv);
-            assert!(f.cover_local <= 1.6, "{id}: hole {}", f.cover_local);
-            assert!(f.overlap_min >= 0.6, "{id}: pair {}", f.overlap_min);
+            assert!(f.edges.size_cv <= 0.12, "{id}: size_cv {}", f.edges.size_cv);
+            assert!(f.coverage.cover_local <= 1.6, "{id}: hole {}", f.coverage.cover_local);
+            assert!(f.edges.overlap_min >= 0.6, "{id}: pair {}", f.edges.overlap_min);
         }
-        assert!(relaxed.size_cv <= 0.08, "{id}: size_cv {}", relaxed.size_cv);
-        assert!(relaxed.size_cv < 0.85 * front.size_cv, "{id}: {} from {}", relaxed.size_cv, front.size_cv);
-        assert!(relaxed.cover_local < front.cover_local, "{id}");
+        assert!(relaxed.edges.size_cv <= 0.08, "{id}: size_cv {}", relaxed.edges.size_cv);
+        assert!(
+            relaxed.edges.size_cv < 0.85 * front.edges.size_cv,
+            "{id}: {} from {}",
+            relaxed.edges.size_cv,
+            front.edges.size_cv
+        );
+        assert!(relaxed.coverage.cover_local < front.coverage.cover_local, "{id}");
     }
 }
 

@@ -175,18 +175,29 @@ export type FieldRequest = {
   bounds: Bounds | null,
 };
 
-/** One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. */
+/** One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
+* side by side. */
 export type Figures = {
   /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units. */
   d_hex: number,
   /** Area, as given or of the triangles found, in the field's units. */
   area: number,
+  /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
+  dup: number,
+  /** Points with a non-finite coordinate; left out of everything. */
+  not_finite: number,
+  /** Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures. */
+  boundary_excluded: number,
   /** Largest first-order distance |f|/|∇f| to the surface. */
   err_max: number,
   /** Mean first-order distance to the surface. */
   err_mean: number,
   /** Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`. */
   undefined: number,
+  /** Mean angle between the given normals (either sign) and ∇f, in degrees. */
+  nrm_mean: number,
+  /** Largest angle between the given normals (either sign) and ∇f, in degrees. */
+  nrm_max: number,
   /** Smallest nearest-neighbour distance. */
   nn_min: number,
   /** Mean nearest-neighbour distance. */
@@ -199,10 +210,21 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   rho_1: number,
+  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+  * their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
+  * there are no distances. */
+  crowded: number | null,
   /** Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal. */
   cover: number,
+  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
+  * wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
+  * 1 is ideal. With equal radii this is `cover`. */
+  cover_local: number,
   /** Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal. */
   quant: number,
+  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+  * none has its middle in a wider one. None where `cover` is undefined. */
+  wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
   six: number,
   /** Fraction of the points with five or seven natural neighbours. */
@@ -213,6 +235,13 @@ export type Figures = {
   open: number,
   /** Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice. */
   psi6: number,
+  /** Standard deviation over mean of the length of mutual natural-neighbour edges. */
+  edge_cv: number,
+  /** Standard deviation over mean of edge length over the sum of the wanted radii. */
+  size_cv: number,
+  /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
+  * duplicates. */
+  overlap_min: number,
   /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
   * points away from the border that a kept triangle fills. */
   tri_ok: number,
@@ -235,34 +264,6 @@ export type Figures = {
   a_lt30: number,
   /** Fraction of all angles above 90°. */
   a_gt90: number,
-  /** Standard deviation over mean of the length of mutual natural-neighbour edges. */
-  edge_cv: number,
-  /** Standard deviation over mean of edge length over the sum of the wanted radii. */
-  size_cv: number,
-  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
-  * wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
-  * 1 is ideal. With equal radii this is `cover`. */
-  cover_local: number,
-  /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
-  * duplicates. */
-  overlap_min: number,
-  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
-  * their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
-  * there are no distances. */
-  crowded: number | null,
-  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
-  * none has its middle in a wider one. None where `cover` is undefined. */
-  wide_holes: number | null,
-  /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
-  dup: number,
-  /** Points with a non-finite coordinate; left out of everything. */
-  not_finite: number,
-  /** Mean angle between the given normals (either sign) and ∇f, in degrees. */
-  nrm_mean: number,
-  /** Largest angle between the given normals (either sign) and ∇f, in degrees. */
-  nrm_max: number,
-  /** Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures. */
-  boundary_excluded: number,
 };
 
 /** The class of a [`FormulaError`]; its name in JSON is the snake-case form. */
