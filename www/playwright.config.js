@@ -67,13 +67,14 @@ export default defineConfig({
     reuseExistingServer: false,
   },
   projects: [
-    { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d,large-type}.spec.js' },
+    { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d,contexts,large-type}.spec.js' },
     { name: 'webgpu', use: chromium(webgpu), testMatch: '**/*.webgpu.spec.js' },
     {
       name: 'large-type',
       use: chromium(['--blink-settings=defaultFontSize=32']),
       testMatch: '**/*.large-type.spec.js',
     },
+    { name: 'contexts', use: chromium(['--max-active-webgl-contexts=4']), testMatch: '**/*.contexts.spec.js' },
     { name: 'canvas2d', use: chromium(['--disable-3d-apis']), testMatch: '**/*.canvas2d.spec.js' },
   ],
 });

@@ -37,7 +37,7 @@ pub(crate) enum Part {
     Parity,
     /// Mesh files against Khronos' glTF validator.
     Gltf,
-    /// The page: format, lint, types and unit tests.
+    /// The page: format, lint, types, unit tests and those of its engine with the core, in Node.
     Page,
     /// The built site in Chromium, at / and in a sub-path.
     Browser,

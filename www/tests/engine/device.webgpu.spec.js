@@ -2,29 +2,33 @@
 import { expect, test } from '@playwright/test';
 import { counts, expectSurface, open, picture, spots, status } from './browser.js';
 
-test('WebGPU draws the surface', async ({ page }) => {
+test('WebGPU draws the surface and the points of a model; a lost device is rebuilt, and at the fourth loss WebGL2 takes over', async ({
+  page,
+}) => {
   const { errors } = await open(page);
+  const set = (/** @type {object} */ patch) =>
+    page.evaluate((p) => /** @type {any} */ (window).marchingParticles.set(p), patch);
   expect((await status(page)).backend).toBe('webgpu');
   await expectSurface(page);
-  expect(errors).toEqual([]);
-});
+  const { state } = await page.evaluate(() => ({ state: /** @type {any} */ (window).marchingParticles.state }));
 
-test('a lost device is rebuilt from the columns, with the same picture', async ({ page }) => {
-  await open(page);
+  await set({ surface: 'bunny', settings: { radius_share: 0.015 }, view: { colour: 'plain' } });
+  const dotted = await spots(page);
+  await set({ view: { points: false } });
+  expect(dotted.black).toBeGreaterThan((await spots(page)).black + 100);
+  await set(state);
+  expect(errors).toEqual([]);
+
   const before = await picture(page);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.loseDevice());
-  await expect.poll(async () => (await counts(page)).opened).toBe(2);
+  const lose = async (/** @type {number} */ opened) => {
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.loseDevice());
+    await expect.poll(async () => (await counts(page)).opened).toBe(opened);
+  };
+  await lose(2);
   await expect.poll(async () => (await status(page)).notice?.text).toContain('is back');
   expect((await status(page)).backend).toBe('webgpu');
   expect(await picture(page)).toEqual(before);
-});
-
-test('after three losses in a row WebGL2 takes over, on a new canvas', async ({ page }) => {
-  await open(page);
-  for (let k = 2; k <= 5; k += 1) {
-    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.loseDevice());
-    await expect.poll(async () => (await counts(page)).opened).toBe(k);
-  }
+  for (let k = 3; k <= 5; k += 1) await lose(k);
   expect((await status(page)).backend).toBe('webgl2');
   await expectSurface(page);
   await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
@@ -75,18 +79,4 @@ test('a call that the device refuses while it draws is no panic either', async (
   await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
   expect((await status(page)).notice).toMatchObject({ id: 'fallback' });
   await expectSurface(page);
-});
-
-test('WebGPU draws the points of a model', async ({ page }) => {
-  await open(page);
-  await page.evaluate(() =>
-    /** @type {any} */ (window).marchingParticles.set({
-      surface: 'bunny',
-      settings: { radius_share: 0.015 },
-      view: { colour: 'plain' },
-    }),
-  );
-  const dotted = await spots(page);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ points: false }));
-  expect(dotted.black).toBeGreaterThan((await spots(page)).black + 100);
 });

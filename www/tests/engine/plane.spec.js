@@ -1,4 +1,4 @@
 /** The cutting plane as WebGL2 draws it. */
 import { suite } from './plane-suite.js';
 
-suite({ mesh: true });
+suite();

@@ -1,4 +1,4 @@
 /** The cutting plane as WebGPU draws it. */
 import { suite } from './plane-suite.js';
 
-suite({ mesh: true });
+suite();

@@ -1,0 +1,149 @@
+/** Runs: what starts, stops and replaces them, and what the page has of the surface meanwhile. */
+import { readFile } from 'node:fs/promises';
+import { describe, expect, test } from 'vitest';
+import { eventually, expectSurface, open, pause, picture, until } from './engine.js';
+
+const golden = new URL('../../../tests/golden/digests.json', import.meta.url);
+
+test('the same state gives the same particles as the native core', async () => {
+  const { runs } = JSON.parse(await readFile(golden, 'utf8'));
+  expect(runs.length).toBeGreaterThan(0);
+  const p = await open();
+  for (const { name, field, settings, digest, count } of runs) {
+    const report = await p.set({ parameters: {}, bounds: null, ...field, declared: field.declare ?? [], settings });
+    expect({ name, digest: report?.digest, count: report?.count }).toEqual({ name, digest, count });
+  }
+});
+
+describe('a sampler that fails', () => {
+  for (const fault of /** @type {const} */ (['panic', 'overflow', 'hang'])) {
+    test(`by ${fault} is replaced, with the state intact`, async () => {
+      const p = await open();
+      const before = p.state;
+      p.debug[fault]();
+      if (fault === 'hang') p.engine.setParameter('a', 1.25);
+      await until(p.engine.notice, (notice) => notice?.id === (fault === 'hang' ? 'hang' : 'panic'));
+      expect(p.debug.counts().restarts).toBe(1);
+      expect((await p.run())?.count).toBeGreaterThan(500);
+      expect(p.engine.notice.value?.details).toContain('Marching Particles');
+      if (fault !== 'hang') expect(p.state).toEqual(before);
+      await expectSurface(p);
+    });
+  }
+
+  test('by hanging twice on the same input settles what waits for it', async () => {
+    const p = await open();
+    const kinds = [];
+    for (const fault of [true, true, false]) {
+      if (fault) p.debug.hang();
+      await p.run();
+      kinds.push(p.engine.notice.value?.kind);
+    }
+    // The first time the run is made again; the second time it is given up, until it is asked for.
+    expect(kinds.slice(0, 2)).toEqual(['warn', 'error']);
+    await expectSurface(p);
+  });
+
+  test('four times in a minute is left alone until it is asked for again', async () => {
+    const p = await open();
+    for (let k = 1; k <= 4; k += 1) {
+      p.debug.panic();
+      await eventually(() => p.debug.counts().restarts).toBe(k);
+    }
+    await until(p.engine.notice, (notice) => notice?.id === 'safe-mode');
+    await expectSurface(p);
+    p.engine.notice.value?.action?.run();
+    await until(p.engine.progress, ({ phase }) => phase === 'done');
+    expect(p.engine.notice.value).toBe(null);
+  });
+});
+
+test('a stop keeps the partial surface, says so, and does not wait for the picture', async () => {
+  const p = await open();
+  let isDrawn = false;
+  // So many steps that it does not end before the stop.
+  const set = p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 100 } });
+  void set.then(() => {
+    isDrawn = true;
+  });
+  await until(p.engine.progress, ({ phase, particles }) => phase === 'generation' && particles > 0);
+  await p.stop();
+  expect(isDrawn).toBe(false);
+  expect(p.engine.partial.value).toBe(true);
+  expect(p.engine.progress.value.stop_reason).toBe('cancelled');
+  expect(p.particles().count).toBeGreaterThan(0);
+});
+
+test('a message of an old run changes nothing', async () => {
+  const p = await open();
+  const before = p.status();
+  p.debug.stale(0);
+  expect(p.status()).toEqual(before);
+  expect(p.debug.counts().stale).toBeGreaterThan(0);
+});
+
+test('a slider dragged at 120 Hz ends at its last value, with one surface on screen', async () => {
+  const p = await open();
+  for (let k = 0; k < 120; k += 1) {
+    p.engine.setParameter('a', 0.6 + 0.005 * k, { live: true });
+    await pause(8);
+  }
+  p.engine.setParameter('a', 1.2);
+  await until(p.engine.report, (report) => report);
+  expect(p.engine.busy.value).toBe(false);
+  const { positions, count } = p.particles();
+  let widest = 0;
+  for (let i = 0; i < count; i += 1) widest = Math.max(widest, Math.abs(positions[3 * i]));
+  expect(widest).toBeCloseTo(1.2, 1);
+  const { shown = 0, requested = 0 } = p.engine.lastDrag.value ?? {};
+  expect(shown).toBeGreaterThan(0);
+  expect(shown).toBeLessThanOrEqual(requested);
+});
+
+test('a mistake in the formula keeps the last surface, dimmed; mending it brings it back', async () => {
+  const p = await open();
+  const clear = await picture(p);
+  p.engine.setFormula('x^2 +');
+  await until(p.engine.fieldError, (error) => error?.message);
+  expect(p.particles().count).toBeGreaterThan(500);
+  p.engine.setFormula('x^2 + y^2 + z^2 = 0.5');
+  await until(p.engine.fieldError, (error) => error === null);
+  await until(p.engine.progress, ({ phase }) => phase === 'done');
+  expect((await picture(p)).drawn).not.toBe(clear.drawn);
+});
+
+test('a formula without a surface leaves the last one, dimmed, says why, and takes nothing for its own', async () => {
+  const p = await open();
+  const isDimmed = () => p.debug.counts().dimmed;
+  p.engine.setFormula('x^2 + y^2 + z^2 + 1');
+  await until(p.engine.empty, (empty) => empty);
+  expect(p.engine.progress.value.message).toBeTruthy();
+  expect(isDimmed()).toBe(true);
+  // The camera stays with the last surface.
+  expect((await picture(p)).drawn).toBeGreaterThan(0.09);
+  expect(p.particles().count).toBe(0);
+  await expect(p.engine.exportFile('csv')).rejects.toThrow();
+  // Also a mistake after that, and an editor emptied.
+  for (const text of ['x^2 +', '']) {
+    p.engine.setFormula(text);
+    await until(p.engine.fieldError, (error) => error);
+    expect(isDimmed()).toBe(true);
+  }
+  p.engine.setFormula('x^2 + y^2 + z^2 = 1');
+  await eventually(isDimmed).toBe(false);
+  expect(p.engine.empty.value).toBe(false);
+});
+
+test('PLY and CSV hold every particle', async () => {
+  const p = await open();
+  const { count } = p.particles();
+  const columns = p.engine.description.value?.columns.map(({ name }) => name) ?? [];
+  const ply = Buffer.from(await (await p.engine.exportFile('ply')).arrayBuffer()).toString('latin1');
+  const header = ply.slice(0, ply.indexOf('end_header'));
+  expect(header).toContain(`element vertex ${count}\n`);
+  expect(header).toContain('property uchar valence');
+  const [names, first, ...rows] = (await (await p.engine.exportFile('csv')).text()).trimEnd().split('\n');
+  expect(names.split(',')).toEqual(columns);
+  expect(first.split(',').filter((cell) => cell !== '' && Number.isFinite(Number(cell)))).toHaveLength(columns.length);
+  expect(rows.length + 1).toBe(count);
+});

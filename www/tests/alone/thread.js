@@ -1,0 +1,23 @@
+/** A thread of Node in the place of a web worker: gives the script what it finds in a browser, and runs it. */
+import { File } from 'node:buffer';
+import { register } from 'node:module';
+import { parentPort, workerData } from 'node:worker_threads';
+import { fileAt } from './files.js';
+
+/** @type {Record<string, any>} */
+const worker = globalThis;
+worker.self = worker;
+worker.postMessage = (/** @type {unknown} */ message, /** @type {{transfer: any}} */ { transfer }) =>
+  parentPort?.postMessage(message, transfer);
+worker.navigator ??= { userAgent: 'Node' };
+worker.fetch = (/** @type {string} */ url) => fileAt(url, workerData.answers);
+
+// A file that is imported with `?url` is its address, as Vite has it.
+const addresses = `export const load = (url, context, next) => url.endsWith('?url')
+  ? { format: 'module', shortCircuit: true, source: 'export default ' + JSON.stringify(url.slice(0, -4)) }
+  : next(url, context);`;
+register(`data:text/javascript,${encodeURIComponent(addresses)}`);
+await import(workerData.url);
+parentPort?.on('message', ({ message, name }) =>
+  worker.onmessage({ data: name ? { ...message, file: new File([message.file], name) } : message }),
+);
