@@ -138,6 +138,7 @@ const ROOMS: [Room; 4] = [
         "field",
         &[
             ("formula", &[]),
+            ("descent", &[]),
             ("function", &[]),
             ("gallery", &["formula"]),
             ("model", &[]),

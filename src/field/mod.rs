@@ -3,6 +3,7 @@
 //! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and, if it is
 //! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
 
+pub(crate) mod descent;
 pub mod formula;
 mod function;
 pub mod gallery;

@@ -3,9 +3,10 @@
 
 use super::scene::Scene;
 use crate::field::Field;
+use crate::field::descent::{BATCH, Descent, descend};
 use crate::math::{Bounds, sort_few};
 use crate::slices::{pause, ranges};
-use glam::DVec3;
+use glam::Vec3;
 
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end.
 pub(super) const LONG: f32 = 2.0;
@@ -13,12 +14,12 @@ pub(super) const LONG: f32 = 2.0;
 /// before it. A single neighbour may be far too near.
 const RANK: usize = 3;
 const FARTHEST: f32 = 3.0;
-/// Newton steps from the middle of an edge to the surface.
-const STEPS: u32 = 3;
+/// Evaluations on the way from the middle of an edge to the surface: after three Newton steps.
+const STEPS: u32 = 4;
 /// Largest distance of the surface from the middle of an edge, lifted to the circle through its ends, over the edge's length.
-const REACH: f64 = 0.125;
+const REACH: f32 = 0.125;
 /// Distance from the surface at which a place is on it, and from the box at which it is in it, over the edge's length.
-const NEAR: f64 = 0.02;
+const NEAR: f32 = 0.02;
 /// Points or triangles that are looked at in one slice of work.
 const SLICE: usize = 512;
 
@@ -51,14 +52,21 @@ pub(super) struct Gaps<'a> {
 impl Gaps<'_> {
     /// Keeps the triangles that lead across no gap.
     pub(super) async fn drop_across(&self, field: &mut dyn Field, triangles: &mut Vec<[u32; 3]>) {
+        let (mut is_across, mut long) = (Vec::new(), Vec::new());
         let mut kept = 0;
         for range in ranges(triangles.len(), SLICE) {
-            for k in range {
-                let [a, b, c] = triangles[k];
-                if ![(a, b), (b, c), (c, a)]
-                    .into_iter()
-                    .any(|(i, j)| self.is_across(field, i as usize, j as usize))
-                {
+            is_across.clear();
+            is_across.resize(range.len(), false);
+            long.clear();
+            for (triangle, &[a, b, c]) in triangles[range.clone()].iter().enumerate() {
+                let edges = [(a, b), (b, c), (c, a)].into_iter();
+                long.extend(edges.filter_map(|(i, j)| self.long_edge(triangle, i as usize, j as usize)));
+            }
+            for edges in long.chunks(BATCH) {
+                self.look_across(field, edges, &mut is_across);
+            }
+            for (k, &is_across) in range.zip(&is_across) {
+                if !is_across {
                     triangles[kept] = triangles[k];
                     kept += 1;
                 }
@@ -68,36 +76,47 @@ impl Gaps<'_> {
         triangles.truncate(kept);
     }
 
-    /// Whether an edge is long, and its middle not near the surface.
-    fn is_across(&self, field: &mut dyn Field, i: usize, j: usize) -> bool {
-        let position = &self.scene.tree.position;
-        if position[i].distance(position[j]) <= LONG * self.spacing[i].min(self.spacing[j]) {
-            return false;
-        }
-        let [p, q] = [i, j].map(|k| position[k].as_dvec3());
-        let [n, m] = [i, j].map(|k| self.scene.normal[k].as_dvec3());
+    /// The edge of a triangle, if it is long.
+    fn long_edge(&self, triangle: usize, i: usize, j: usize) -> Option<LongEdge> {
+        let [p, q] = [i, j].map(|k| self.scene.tree.position[k]);
         let length = p.distance(q);
+        if length <= LONG * self.spacing[i].min(self.spacing[j]) {
+            return None;
+        }
+        let [n, m] = [i, j].map(|k| self.scene.normal[k]);
         let up = (n + m).normalize_or(n);
         let middle = 0.5 * (p + q) + up * (0.125 * (q - p).dot(m - n));
-        let mut at = middle;
-        for _ in 0..=STEPS {
-            let jet = field.jet(at);
-            let slope_sq = jet.gradient.length_squared();
-            if jet.value.abs() <= NEAR * length * slope_sq.sqrt() && jet.gradient.dot(up) > 0.0 {
-                return !self.is_inside(at, NEAR * length);
-            }
-            at -= jet.gradient * (jet.value / slope_sq);
-            // Written so that NaN leads away.
-            let is_within = at.distance(middle) <= REACH * length;
-            if !is_within {
-                return true;
-            }
-        }
-        true
+        Some(LongEdge { triangle, middle, up, length })
     }
 
-    fn is_inside(&self, p: DVec3, slack: f64) -> bool {
-        self.bounds
-            .is_none_or(|bounds| p.cmpge(bounds.lo() - slack).all() && p.cmple(bounds.hi() + slack).all())
+    /// Notes the triangles of which an edge has its middle not near the surface in the box.
+    fn look_across(&self, field: &mut dyn Field, edges: &[LongEdge], is_across: &mut [bool]) {
+        let (mut at, mut normal, mut ok) = ([Vec3::ZERO; BATCH], [Vec3::ZERO; BATCH], [false; BATCH]);
+        let mut limits = [Descent::default(); BATCH];
+        for (k, edge) in edges.iter().enumerate() {
+            at[k] = edge.middle;
+            limits[k] = Descent { residual: NEAR * edge.length, reach: REACH * edge.length, trust: 0.0 };
+        }
+        descend(field, &mut at[..edges.len()], &mut normal, &mut ok, 0.0, &mut limits, STEPS);
+        for (k, edge) in edges.iter().enumerate() {
+            let is_surface =
+                ok[k] && normal[k].dot(edge.up) > 0.0 && self.is_inside(at[k], NEAR * edge.length);
+            is_across[edge.triangle] |= !is_surface;
+        }
     }
+
+    fn is_inside(&self, p: Vec3, slack: f32) -> bool {
+        self.bounds.is_none_or(|bounds| bounds.enlarged(f64::from(slack)).holds(p.as_dvec3()))
+    }
+}
+
+/// An edge that may lead across a gap.
+struct LongEdge {
+    /// The triangle, counted from the first of its slice.
+    triangle: usize,
+    /// Its middle, lifted to the circle through its ends.
+    middle: Vec3,
+    /// The mean of the unit normals at its ends, a unit vector.
+    up: Vec3,
+    length: f32,
 }

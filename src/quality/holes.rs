@@ -4,10 +4,11 @@ use super::border::Border;
 use super::nearby::Nearby;
 use super::places::{Hole, WIDE};
 use super::probe;
-use super::projection::{BATCH, LAST_STEP, is_reached, project_batch};
+use super::projection::{LAST_STEP, is_reached, project};
 use super::sizes::Wanted;
 use super::triangles::area_vector;
 use crate::field::Field;
+use crate::field::descent::BATCH;
 use crate::math::Bounds;
 use crate::slices::pause;
 use crate::spatial::tree::Tree;
@@ -127,7 +128,7 @@ impl HoleSearch {
 
     /// Takes in a batch of random samples.
     fn add_random(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
-        project_batch(field, &mut batch.position, &batch.leash, LAST_STEP);
+        project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
             if cover.counts(p) {
                 let bound_sq = cover.nearest_of(p, triangle);
@@ -165,7 +166,7 @@ impl HoleSearch {
     }
 
     fn add_corner_batch(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
-        project_batch(field, &mut batch.position, &batch.leash, LAST_STEP);
+        project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
             // Corners that are no wide holes and cannot exceed the largest distances so far are passed over.
             let bound_sq = cover.nearest_of(p, triangle);

@@ -1,12 +1,11 @@
 //! Projection of sample points onto the surface.
 
 use crate::field::Field;
+use crate::field::descent::{BATCH, Descent, descend};
 use glam::Vec3;
 
-/// Samples that are projected together, in one slice of work: the batch stays in the first-level cache.
-pub(super) const BATCH: usize = 128;
 /// Largest number of Newton steps of a projection.
-const STEPS: usize = 3;
+const STEPS: u32 = 3;
 /// A step shorter than this share of the leash is the last one.
 ///
 /// A step of length s is about the sagitta κℓ²/2 of a chord of the length ℓ of the leash. The error that it leaves is
@@ -18,42 +17,20 @@ pub(super) const LAST_STEP: f32 = 0.05;
 /// is.
 pub(super) fn project(field: &mut dyn Field, sample: &mut [Vec3], leash: &[f32], last: f32) {
     for (sample, leash) in sample.chunks_mut(BATCH).zip(leash.chunks(BATCH)) {
-        project_batch(field, sample, leash, last);
-    }
-}
-
-/// [`project`] for at most [`BATCH`] samples.
-pub(super) fn project_batch(field: &mut dyn Field, sample: &mut [Vec3], leash: &[f32], last: f32) {
-    let mut value = [0.0_f32; BATCH];
-    let mut gradient = [Vec3::ZERO; BATCH];
-    let mut moved = [Vec3::ZERO; BATCH];
-    moved[..sample.len()].copy_from_slice(sample);
-    // The first `count` entries of `at` are the samples under way, and `under_way` holds their indices.
-    let mut at = moved;
-    let mut under_way: [usize; BATCH] = core::array::from_fn(|k| k);
-    let mut count = sample.len();
-    for _ in 0..STEPS {
-        field.gradients(&at[..count], &mut value, &mut gradient);
-        let mut left = 0;
-        for k in 0..count {
-            let i = under_way[k];
-            let slope_sq = gradient[k].length_squared();
-            if slope_sq > 0.0 {
-                let step = gradient[k] * (value[k] / slope_sq);
-                moved[i] -= step;
-                // This is false for NaN, from which no step leads away.
-                if step.length_squared() > last * last * leash[i] * leash[i] {
-                    (under_way[left], at[left]) = (i, moved[i]);
-                    left += 1;
-                }
-            }
+        let mut moved = [Vec3::ZERO; BATCH];
+        moved[..sample.len()].copy_from_slice(sample);
+        let (mut normal, mut ok) = ([Vec3::ZERO; BATCH], [false; BATCH]);
+        // A step may lead beyond the leash, and the next one back.
+        let mut limits = [Descent::default(); BATCH];
+        for (limits, leash) in limits.iter_mut().zip(leash) {
+            limits.trust = last * leash;
         }
-        count = left;
-    }
-    for k in 0..sample.len() {
-        // This is false for NaN.
-        if (moved[k] - sample[k]).length_squared() <= leash[k] * leash[k] {
-            sample[k] = moved[k];
+        descend(field, &mut moved[..sample.len()], &mut normal, &mut ok, 0.0, &mut limits, STEPS);
+        for ((sample, moved), leash) in sample.iter_mut().zip(moved).zip(leash) {
+            // This is false for NaN.
+            if (moved - *sample).length_squared() <= leash * leash {
+                *sample = moved;
+            }
         }
     }
 }

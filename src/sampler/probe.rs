@@ -1,12 +1,10 @@
 //! The field as the sampler evaluates it: in batches, with the memory that they take, and counted.
 
+pub(crate) use crate::field::descent::BATCH;
+
 use crate::field::Field;
 use crate::math::Sym3;
 use glam::Vec3;
-
-/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the
-/// first-level cache. The result for a point does not depend on it.
-pub(crate) const BATCH: usize = 128;
 
 /// What outlasts a [`Probe`]: the memory of a batch, and the count of all evaluations.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,8 @@
 //! Projection of points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or
-//! along the gradient (for seeds and the relaxation). Points are projected in batches, so that the field is evaluated
-//! in SIMD lanes.
+//! [along the gradient](crate::field::descent) (for seeds and the relaxation). Points are projected in batches, so that the field
+//! is evaluated in SIMD lanes.
 
-use crate::field::Field;
+use crate::field::descent::{Descents, descend, unit};
 use crate::math::sort_few;
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
@@ -87,52 +87,6 @@ impl Tolerance {
     /// pole, where any value would be small against it.
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
-    }
-}
-
-/// Below this |∇f|, its square is subnormal and has lost digits.
-const FAINT: f32 = 1e-18;
-
-/// ∇f/|∇f|.
-fn unit(gradient: Vec3, slope: f32) -> Vec3 {
-    if slope < FAINT { (gradient / FAINT).normalize_or_zero() } else { gradient / slope }
-}
-
-/// Limits of the projection of a point along the gradient.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Descent {
-    /// Largest |f|/|∇f| at which the point is on the surface.
-    pub(crate) residual: f32,
-    /// Largest distance from the starting point; a point that moves farther is given up.
-    pub(crate) reach: f32,
-    /// Length of a correction below which the point is not evaluated again. Newton's method converges quadratically, so
-    /// the residual is then below the order of the tolerance. The normal is that of the point before the correction.
-    pub(crate) trust: f32,
-}
-
-/// Limits and evaluations of a batch of points that are projected along the gradient.
-pub(crate) trait Descents {
-    /// Returns the limits of point `i`.
-    fn of(&self, i: usize) -> Descent;
-
-    /// Evaluates the field at `points`, whose indices in the batch are `which`.
-    fn evaluate(
-        &mut self,
-        field: &mut dyn Field,
-        which: &[u32],
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-    ) {
-        let _ = which;
-        field.gradients(points, value, gradient);
-    }
-}
-
-/// All points have the same limits.
-impl Descents for Descent {
-    fn of(&self, _: usize) -> Descent {
-        *self
     }
 }
 
@@ -354,11 +308,7 @@ impl Probe<'_> {
         None
     }
 
-    /// Moves each of at most [`BATCH`] points onto the surface along the gradient, by Newton's method.
-    ///
-    /// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of
-    /// `descents`. A point is given up after `max_steps` evaluations, when it has moved too far, and where the field is
-    /// undefined or its gradient is not above `min_gradient`.
+    /// [`descend`], counted.
     pub(crate) fn land_along_gradient(
         &mut self,
         points: &mut [Vec3],
@@ -368,54 +318,8 @@ impl Probe<'_> {
         descents: &mut impl Descents,
         max_steps: u32,
     ) {
-        let n = points.len();
-        debug_assert!(n <= BATCH);
-        let mut start = [Vec3::ZERO; BATCH];
-        start[..n].copy_from_slice(points);
-        let mut active: [u32; BATCH] = core::array::from_fn(|i| i as u32);
-        ok[..n].fill(false);
-        let mut count = n;
-        for _ in 0..max_steps {
-            if count == 0 {
-                break;
-            }
-            let ProbeMemory { points: batch, value, gradient, evaluations } = &mut *self.memory;
-            batch.clear();
-            batch.extend(active[..count].iter().map(|&i| points[i as usize]));
-            *evaluations += count as u64;
-            let (value, gradient) = (&mut value[..count], &mut gradient[..count]);
-            descents.evaluate(self.field, &active[..count], batch, value, gradient);
-            let mut kept = 0;
-            for k in 0..count {
-                let i = active[k] as usize;
-                let Descent { residual, reach, trust } = descents.of(i);
-                let (value, gradient) = (value[k], gradient[k]);
-                let slope_sq = gradient.length_squared();
-                let inverse_slope = 1.0 / slope_sq.sqrt();
-                let slope = slope_sq * inverse_slope;
-                // The condition is false for NaN.
-                if !(slope > min_gradient && slope.is_finite() && value.is_finite()) {
-                    continue;
-                }
-                normal[i] = if slope < FAINT { unit(gradient, slope) } else { gradient * inverse_slope };
-                let distance = value.abs() * inverse_slope;
-                if distance <= residual {
-                    ok[i] = true;
-                    continue;
-                }
-                points[i] -= normal[i] * (value * inverse_slope);
-                if (points[i] - start[i]).length_squared() > reach * reach {
-                    continue;
-                }
-                if distance <= trust {
-                    ok[i] = true;
-                    continue;
-                }
-                active[kept] = i as u32;
-                kept += 1;
-            }
-            count = kept;
-        }
+        let evaluations = descend(self.field, points, normal, ok, min_gradient, descents, max_steps);
+        self.count(evaluations);
     }
 }
 

@@ -1,6 +1,7 @@
 //! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of the
 //! survey are covered, and the [audit](super::audit) at the end.
 
+use crate::field::descent::Descent;
 use crate::field::{Bounded, Field};
 use crate::math::Bounds;
 use crate::particles::Particles;
@@ -8,10 +9,10 @@ use crate::sampler::discovery::audit::{Audit, Audited, follow};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
-use crate::sampler::discovery::sheets::{Oriented, TOGETHER, are_connected, is_connected_by_segments};
+use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Descent, Tolerance};
+use crate::sampler::projection::Tolerance;
 use crate::sampler::sheet::{Pair, SheetRule};
 use glam::{DVec3, Vec3};
 
@@ -23,8 +24,6 @@ const MOST_TRIED: usize = 6;
 const MOST_TRIED_BY_SEGMENTS: usize = 2;
 /// Largest number of evaluations in the projection of a witness onto the surface as single precision computes it.
 const MAX_STEPS: u32 = 12;
-/// Largest number of steps that move a witness from the margin around the box to its component inside.
-const MOST_INWARD: u32 = 32;
 
 /// The search, its witnesses and what became of them.
 #[derive(Clone, Debug, Default)]
@@ -98,37 +97,35 @@ impl ComponentSearch {
         let left = self.octree.step(field, budget);
         if self.octree.is_done() && !self.is_projected {
             self.is_projected = true;
-            self.project(probe, bounds, tolerance);
+            let starts = self.starts(field, bounds, tolerance);
+            self.project(probe, &starts, bounds, tolerance);
             self.unresolved = nearest(probe.field, self.points.iter().map(|seed| seed.exact), least_gap).0;
         }
         if self.octree.is_done() { left } else { 0 }
     }
 
-    /// Projects the witnesses onto the surface as single precision computes it, and into the box.
-    fn project(&mut self, probe: &mut Probe, bounds: &Bounds, tolerance: Tolerance) {
-        let margin = self.octree.region.margin;
-        if let Some(field) = probe.field.bounded() {
-            self.thin_out(field, tolerance);
-        }
+    /// The witnesses in the box, of those that are connected with each other a few.
+    fn starts(&mut self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
+        let slack = f64::from(2.0 * tolerance.residual);
+        let mut prover = Prover { field, factor: 0, slack, region: self.octree.region };
+        self.octree.witnesses = thinned_out(&mut prover, &self.octree.witnesses);
         // A witness whose component lies in the margin alone is not needed.
-        let starts: Vec<(DVec3, usize)> = self
-            .octree
-            .witnesses
-            .iter()
-            .filter_map(|&Witness { position, factor }| {
-                let start = if bounds.holds(position) {
-                    Some(position)
-                } else {
-                    moved_inside(probe.field, position, bounds, margin)
-                };
-                start.map(|p| (p, factor))
-            })
-            .collect();
+        let start = |&Witness { position, factor }: &Witness| {
+            prover.factor = factor;
+            let position =
+                if bounds.holds(position) { position } else { prover.moved_inside(position, bounds)? };
+            Some(Witness { position, factor })
+        };
+        self.octree.witnesses.iter().filter_map(start).collect()
+    }
+
+    /// Projects the witnesses onto the surface as single precision computes it.
+    fn project(&mut self, probe: &mut Probe, starts: &[Witness], bounds: &Bounds, tolerance: Tolerance) {
+        let reach = self.octree.region.margin as f32 + 16.0 * tolerance.residual;
         let mut normal = [Vec3::ZERO; BATCH];
         let mut ok = [false; BATCH];
         for starts in starts.chunks(BATCH) {
-            let mut points: Vec<Vec3> = starts.iter().map(|start| start.0.as_vec3()).collect();
-            let reach = margin as f32 + 16.0 * tolerance.residual;
+            let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
             probe.land_along_gradient(
                 &mut points,
                 &mut normal,
@@ -138,53 +135,15 @@ impl ComponentSearch {
                 MAX_STEPS,
             );
             for (k, &position) in points.iter().enumerate() {
+                let Witness { position: exact, factor } = starts[k];
                 if ok[k] && bounds.contains(position) {
-                    let (exact, factor) = starts[k];
                     self.points.push(Seed { position, normal: normal[k], exact, factor });
                 } else {
-                    self.first_lost = if self.lost == 0 { starts[k].0 } else { self.first_lost };
+                    self.first_lost = if self.lost == 0 { exact } else { self.first_lost };
                     self.lost += 1;
                 }
             }
         }
-    }
-
-    /// Drops witnesses that are connected with others within the box: along a ridge of equal height there are many.
-    fn thin_out(&mut self, field: &mut dyn Bounded, tolerance: Tolerance) {
-        let slack = f64::from(2.0 * tolerance.residual);
-        let witnesses = core::mem::take(&mut self.octree.witnesses);
-        let mut kept: Vec<(Witness, DVec3)> = Vec::new();
-        for group in
-            witnesses.chunk_by(|a, b| a.factor == b.factor).flat_map(|factor| factor.chunks(TOGETHER))
-        {
-            let factor = group[0].factor;
-            let ends: Vec<Oriented> = group
-                .iter()
-                .map(|witness| {
-                    let gradient = field.jet(witness.position).gradient;
-                    (witness.position, gradient.try_normalize().unwrap_or(DVec3::Z))
-                })
-                .collect();
-            let nearest: Vec<Option<DVec3>> = ends
-                .iter()
-                .map(|end| {
-                    let distance = |p: DVec3| (p - end.0).length_squared();
-                    kept.iter()
-                        .filter(|(other, normal)| other.factor == factor && normal.dot(end.1) > 0.0)
-                        .min_by(|(a, _), (b, _)| distance(a.position).total_cmp(&distance(b.position)))
-                        .map(|(other, _)| other.position)
-                })
-                .collect();
-            let pairs: Vec<(Oriented, DVec3)> =
-                ends.iter().zip(&nearest).map(|(&end, nearest)| (end, nearest.unwrap_or(end.0))).collect();
-            let connected = are_connected(field, factor, &pairs, slack, Some(&self.octree.region.bounds));
-            for k in 0..group.len() {
-                if nearest[k].is_none() || !connected[k] {
-                    kept.push((group[k], ends[k].1));
-                }
-            }
-        }
-        self.octree.witnesses.extend(kept.into_iter().map(|(witness, _)| witness));
     }
 
     /// The next witness, if there is one, and what is left of the budget.
@@ -224,19 +183,16 @@ impl ComponentSearch {
         let Some(field) = probe.field.bounded() else { return Cover::Covered };
         let Seed { position, normal, factor, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
-        let from = (position.as_dvec3(), normal.as_dvec3());
-        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
-        let mut pairs = [(from, from.0); MOST_TRIED];
-        let tried = near.len().min(MOST_TRIED);
-        for (pair, &j) in pairs.iter_mut().zip(&near) {
-            pair.1 = place_of(j);
-        }
-        let region = self.octree.region;
-        let is_proven = are_connected(field, factor, &pairs[..tried], slack, None).contains(&true)
-            || near
+        let mut prover = Prover { field, factor, slack, region: self.octree.region };
+        let from = ExactPoint { position: position.as_dvec3(), normal: normal.as_dvec3() };
+        let tried = near.iter().take(MOST_TRIED);
+        let segments: Vec<Segment> =
+            tried.map(|&j| Segment { from, to: particles.position[j as usize].as_dvec3() }).collect();
+        let is_proven = prover.are_connected(&segments, None).contains(&true)
+            || segments
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&j| is_connected_by_segments(field, factor, from, place_of(j), slack, &region));
+                .any(|&segment| prover.is_connected_by_segments(segment));
         let is_covered = is_proven
             || near.iter().take(MOST_TRIED).any(|&j| {
                 let j = j as usize;
@@ -345,18 +301,36 @@ impl ComponentSearch {
     }
 }
 
-/// A point of the surface a margin inside the box, near `p` in the margin outside: by turns to the nearest point of the smaller
-/// box and, along the gradient, to the surface. None where the surface does not reach into the box there.
-fn moved_inside(field: &mut dyn Field, mut p: DVec3, bounds: &Bounds, margin: f64) -> Option<DVec3> {
-    let inner = bounds.enlarged(-margin);
-    for _ in 0..MOST_INWARD {
-        p = p.clamp(inner.lo(), inner.hi());
-        let jet = field.jet(p);
-        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
-        if !step.is_finite() || step.length_squared() < 1e-6 * margin * margin {
-            break;
+/// The witnesses without those that are proven to be connected with others within the region: along a ridge of equal height there
+/// are many.
+fn thinned_out(prover: &mut Prover, witnesses: &[Witness]) -> Vec<Witness> {
+    let region = prover.region.bounds;
+    let mut kept: Vec<Witness> = Vec::new();
+    for of_factor in witnesses.chunk_by(|a, b| a.factor == b.factor) {
+        prover.factor = of_factor[0].factor;
+        let mut ends: Vec<ExactPoint> = Vec::new();
+        for group in of_factor.chunks(TOGETHER) {
+            let (segments, has_other): (Vec<Segment>, Vec<bool>) = group
+                .iter()
+                .map(|witness| {
+                    let normal =
+                        prover.field.jet(witness.position).gradient.try_normalize().unwrap_or(DVec3::Z);
+                    let from = ExactPoint { position: witness.position, normal };
+                    let distance = |end: &&ExactPoint| (end.position - from.position).length_squared();
+                    let nearest = ends
+                        .iter()
+                        .filter(|end| end.normal.dot(normal) > 0.0)
+                        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                    let to = nearest.map_or(from.position, |end| end.position);
+                    (Segment { from, to }, nearest.is_some())
+                })
+                .unzip();
+            let connected = prover.are_connected(&segments, Some(&region));
+            for k in (0..group.len()).filter(|&k| !(has_other[k] && connected[k])) {
+                kept.push(group[k]);
+                ends.push(segments[k].from);
+            }
         }
-        p -= step;
     }
-    bounds.holds(p).then_some(p)
+    kept
 }

@@ -2,13 +2,14 @@
 //! and estimates the area of the surface and the precision with which single precision resolves it.
 
 use crate::field::Field;
+use crate::field::descent::Descent;
 use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Crossing, Dip, End, Look};
 use crate::sampler::discovery::grid::{Dense, Grid, Layer};
 use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Accuracy, Descent, Tolerance, tolerance};
+use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
 /// Largest number of evaluations in the Newton projection of a candidate.
@@ -394,7 +395,7 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
         if out.nearness.is_some() {
             land_anew(probe, out);
         }
-        out.crowding = crowding(probe, out, spacing).min(out.crowding);
+        out.crowding = crowding(probe, out, spacing);
     }
     out.touches = !is_facing_another && touches(probe, out, TOUCH_PROBE * spacing);
 }
@@ -409,12 +410,9 @@ fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -
     let points: Vec<DVec3> = out.position.iter().step_by(stride).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
     out.nearness = found.filter(|_| count * ONE_IN >= points.len());
-    if let Some(Nearness { gap, third, slope, .. }) = out.nearness {
+    if let Some(Nearness { slope, .. }) = out.nearness {
         // At the sheets themselves f is far less steep than beside all of them.
         out.gradient_scale = out.gradient_scale.min(slope as f32);
-        if third.is_some() && gap > out.least_gap(false) {
-            out.crowding = gap as f32;
-        }
     }
     2 * count > points.len()
 }

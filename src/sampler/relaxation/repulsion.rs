@@ -3,12 +3,13 @@
 
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
+use crate::field::descent::{Descent, Descents};
 use crate::math::{Sym3, larger};
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Accuracy, Descent, Descents, Tolerance};
+use crate::sampler::projection::{Accuracy, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
