@@ -9,9 +9,7 @@ use crate::math::{Bounds, Interval, Sym3, sort_few};
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
 use crate::sampler::discovery::octree::{Region, Seed};
-use crate::sampler::discovery::sheets::{
-    Oriented, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
-};
+use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER, value_at};
 use crate::sampler::probe::Probe;
 use crate::sampler::sheet::{Pair, SheetRule};
 use crate::spatial::tree::Tree;
@@ -36,11 +34,18 @@ const ROUNDING: f64 = 1e-12;
 /// Distance, in radii, to which a component without a particle is followed.
 const FOLLOWED: f64 = 4.0;
 
+/// A particle near a witness.
+#[derive(Clone, Copy, Debug)]
+struct NearParticle {
+    index: usize,
+    distance_sq: f32,
+}
+
 /// The state of an audit, and its findings.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Audit {
-    /// The particles nearest to each witness, with their squared distances, nearest first.
-    near: Vec<Vec<(f32, u32)>>,
+    /// The particles nearest to each witness, nearest first.
+    near: Vec<Vec<NearParticle>>,
     /// Next particle, then next witness.
     next: usize,
     /// Whether all particles have been handed out.
@@ -121,11 +126,11 @@ impl Audit {
                 for &k in &found {
                     let distance_sq = tree.position[k as usize].distance_squared(p);
                     let near = &mut self.near[tree.origin[k as usize] as usize];
-                    let is_nearer = near.len() < MOST_NEAR || distance_sq < near[MOST_NEAR - 1].0;
+                    let is_nearer = near.len() < MOST_NEAR || distance_sq < near[MOST_NEAR - 1].distance_sq;
                     if distance_sq <= reach * reach && is_nearer {
                         near.truncate(MOST_NEAR - 1);
-                        let place = near.partition_point(|&(other, _)| other <= distance_sq);
-                        near.insert(place, (distance_sq, i as u32));
+                        let place = near.partition_point(|other| other.distance_sq <= distance_sq);
+                        near.insert(place, NearParticle { index: i, distance_sq });
                     }
                 }
             }
@@ -145,91 +150,79 @@ impl Audit {
     }
 
     /// Decides whether the component of a witness holds one of the particles near it.
-    fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[(f32, u32)]) {
+    fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[NearParticle]) {
         let Audited { probe, particles, slack, radius, rule, region, .. } = audited;
         let Seed { exact, factor, .. } = seed;
         let Some(field) = probe.field.bounded() else { return };
-        let from = (exact, value_at(field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z));
-        // On the factor of the witness: the others are on other sheets.
-        let mut on_part = near.to_vec();
-        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
-        let boxes: Vec<Bounds> = near.iter().map(|&(_, j)| Bounds::point(place_of(j))).collect();
-        let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
-        field.enclose(factor, &boxes, &mut known);
-        let mut place = known.iter().zip(near).map(|(known, &(_, j))| {
-            let p = place_of(j);
-            let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
-            // As near as the particle is to its own sheet: that of another factor may be within the slack too.
-            let jet = field.jet(p);
-            let own = jet.value.abs() / jet.gradient.length() + ROUNDING * p.abs().max_element();
-            known.value.magnitude() <= 2.0 * own.min(*slack) * steepest
-        });
-        on_part.retain(|_| place.next() == Some(true));
-        let pairs: Vec<(Oriented, DVec3)> =
-            on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
-        let is_held = are_connected(field, factor, &pairs, *slack, None).contains(&true)
-            || on_part
-                .iter()
-                .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&(_, j)| is_connected(field, factor, from, place_of(j), *slack, region));
+        let normal = value_at(field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z);
+        let from = ExactPoint { position: exact, normal };
+        let near = on_factor(field, factor, particles, near, *slack);
+        let place_of = |j: usize| particles.position[j].as_dvec3();
+        let segments: Vec<Segment> =
+            near.iter().take(TOGETHER).map(|&j| Segment { from, to: place_of(j) }).collect();
+        let mut prover = Prover { field, factor, slack: *slack, region: *region };
+        let is_held = prover.are_connected(&segments, None).contains(&true)
+            || segments.iter().take(MOST_TRIED_BY_SEGMENTS).any(|&segment| prover.is_connected(segment));
         if is_held {
             return;
         }
-        let seems_held = on_part.iter().take(TOGETHER).any(|&(_, j)| {
-            let offset = particles.position[j as usize] - seed.position;
-            let pair = Pair { offset, normal: seed.normal, other: particles.normal[j as usize] };
-            pair.faces_one_way() && rule.is_one_sheet(probe, seed.position, pair)
+        let seen = &mut Probe::new(&mut *prover.field, probe.memory);
+        let seems_held = near.iter().take(TOGETHER).any(|&j| {
+            let offset = particles.position[j] - seed.position;
+            let pair = Pair { offset, normal: seed.normal, other: particles.normal[j] };
+            pair.faces_one_way() && rule.is_one_sheet(seen, seed.position, pair)
         });
         if seems_held {
             self.leave_open(exact, 1);
             return;
         }
-        let Some(field) = probe.field.bounded() else { return };
         let followed = FOLLOWED * *radius;
-        if self.is_on_named(field, factor, from, *slack, region, followed) {
+        if self.is_on_named(&mut prover, from, followed) {
             return;
         }
         if self.without.len() >= MOST_NAMED {
             self.leave_open(exact, 1);
             return;
         }
-        let Piece { reach, goes_on } = follow(field, factor, exact, followed);
+        let Piece { reach, goes_on } = follow(prover.field, factor, exact, followed);
         self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
         self.named.push(seed);
     }
 
     /// Whether a witness is proven to be on the component of a named one, of those within `reach`.
-    fn is_on_named(
-        &self,
-        field: &mut dyn Bounded,
-        factor: usize,
-        from: Oriented,
-        slack: f64,
-        region: &Region,
-        reach: f64,
-    ) -> bool {
-        let of_part = self.named.iter().filter(|named| named.factor == factor);
-        let mut near: Vec<(f64, DVec3)> = of_part
-            .map(|named| (named.exact.distance(from.0), named.exact))
+    fn is_on_named(&self, prover: &mut Prover, from: ExactPoint, reach: f64) -> bool {
+        let of_factor = self.named.iter().filter(|named| named.factor == prover.factor);
+        let mut near: Vec<(f64, DVec3)> = of_factor
+            .map(|named| (named.exact.distance(from.position), named.exact))
             .filter(|&(distance, _)| distance <= reach)
             .collect();
         sort_few(&mut near, |a, b| a.0 < b.0);
         near.truncate(MOST_TRIED_BY_SEGMENTS);
-        near.into_iter().any(|(_, place)| is_connected(field, factor, from, place, slack, region))
+        near.into_iter().any(|(_, to)| prover.is_connected(Segment { from, to }))
     }
 }
 
-/// Whether two points of the surface are connected by proof, straight or by a way around.
-fn is_connected(
+/// The particles, of those near a witness, that lie on the factor of the field which vanishes there: the others are on other sheets.
+fn on_factor(
     field: &mut dyn Bounded,
     factor: usize,
-    from: Oriented,
-    to: DVec3,
+    particles: &Particles,
+    near: &[NearParticle],
     slack: f64,
-    region: &Region,
-) -> bool {
-    is_connected_by_segments(field, factor, from, to, slack, region)
-        || is_connected_around(field, factor, from, to, slack, region)
+) -> Vec<usize> {
+    let boxes: Vec<Bounds> =
+        near.iter().map(|near| Bounds::point(particles.position[near.index].as_dvec3())).collect();
+    let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
+    field.enclose(factor, &boxes, &mut known);
+    let index_if_on = |(near, known): (&NearParticle, Enclosure)| {
+        let p = particles.position[near.index].as_dvec3();
+        let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
+        // As near as the particle is to its own sheet: that of another factor may be within the slack too.
+        let (value, gradient) = field.value_and_gradient(p);
+        let own = value.abs() / gradient.length() + ROUNDING * p.abs().max_element();
+        (known.value.magnitude() <= 2.0 * own.min(slack) * steepest).then_some(near.index)
+    };
+    near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
 /// How far the part of the surface around a point reaches.

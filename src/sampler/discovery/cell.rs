@@ -15,19 +15,27 @@ pub(super) struct Cell {
     pub(super) level: u8,
 }
 
+/// The free axes of a stratum, by the parts that they have in the search.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    /// Sides of the footprint; none where a face or an edge of the box fixes the coordinate.
+    pub(super) sides: [Option<usize>; 2],
+    pub(super) up: usize,
+}
+
 impl Cell {
     /// The point of the footprint at which a decided cell is probed along up.
     pub(super) fn probe(&self) -> DVec3 {
         self.bounds.lo() + CUT * self.bounds.size()
     }
 
-    /// The sides of the footprint, then up.
-    pub(super) fn axes(&self) -> ([Option<usize>; 2], usize) {
+    /// The axes of the stratum.
+    pub(super) fn axes(&self) -> Axes {
         let free = |axis: usize| (self.bounds.min[axis] < self.bounds.max[axis]).then_some(axis);
         match [free(0), free(1), free(2)] {
-            [x, y, Some(z)] => ([x, y], z),
-            [x, Some(y), None] => ([x, None], y),
-            [x, None, None] => ([None, None], x.unwrap_or(0)),
+            [x, y, Some(up)] => Axes { sides: [x, y], up },
+            [x, Some(up), None] => Axes { sides: [x, None], up },
+            [x, None, None] => Axes { sides: [None, None], up: x.unwrap_or(0) },
         }
     }
 }
@@ -65,19 +73,18 @@ pub(super) fn is_left_out(cell: &Cell, isolated: &[Bounds]) -> bool {
 
 /// Whether no highest point lies in a cell on which f is defined and continuous.
 pub(super) fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
-    let (sides, _) = cell.axes();
     !known.may_vanish
         || known.value.excludes_zero()
-        || sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
+        || cell.axes().sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
 }
 
-/// Returns a bound for the rise or fall of the surface over the footprint of the cell, by the bounds of the gradient; none where
-/// f is not monotone along up.
-pub(super) fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
-    let (sides, up) = cell.axes();
+/// The most by which a surface that passes through a box rises or falls over its footprint, by bounds of the gradient over the box:
+/// the mean value theorem makes it Σ max|∂f/∂side| · width / min|∂f/∂up|. None where the surface may not be a graph over the
+/// footprint: where f jumps, is not defined, or is not monotone along up. An axis along which the box has no width is no side.
+pub(super) fn rise(bounds: &Bounds, up: usize, known: &Enclosure) -> Option<f64> {
     let least = known.gradient[up].away_from_zero()?;
-    let size = cell.bounds.size();
-    let t: f64 =
-        sides.into_iter().flatten().map(|side| known.gradient[side].magnitude() / least * size[side]).sum();
-    t.is_finite().then_some(t)
+    let size = bounds.size();
+    let sides = (0..3).filter(|&axis| axis != up && size[axis] > 0.0);
+    let rise: f64 = sides.map(|side| known.gradient[side].magnitude() / least * size[side]).sum();
+    (known.defined && known.continuous && rise.is_finite()).then_some(rise)
 }

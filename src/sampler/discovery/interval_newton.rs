@@ -13,6 +13,7 @@
 
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
+use crate::sampler::discovery::cell::{Axes, Cell};
 use glam::DVec3;
 
 /// Rounds of narrowing.
@@ -32,15 +33,16 @@ fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval>
     (reached.lo <= right.hi && reached.hi >= right.lo).then_some(range)
 }
 
-/// The part of a box in which f and its derivatives along the free `sides` can vanish together; none if they cannot. `known` and
-/// `second` are bounds of f and of its second derivatives over the box; `middle` are those of f at its middle.
+/// The part of a cell in which f and its derivatives along the free sides can vanish together; none if they cannot. `known` and
+/// `second` are bounds of f and of its second derivatives over the cell; `middle` are those of f at its middle.
 pub(crate) fn narrowed(
-    cell: &Bounds,
-    (sides, up): ([Option<usize>; 2], usize),
+    cell: &Cell,
     known: &Enclosure,
     middle: &Enclosure,
     second: &Sym3<Interval>,
 ) -> Option<Bounds> {
+    let Axes { sides, up } = cell.axes();
+    let cell = &cell.bounds;
     let is_regular = known.smooth && known.defined && known.continuous;
     let mut needed = second.entries().into_iter().chain(middle.gradient).chain([middle.value]);
     if !(is_regular && needed.all(|bounds| bounds.magnitude().is_finite())) {

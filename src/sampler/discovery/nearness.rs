@@ -3,6 +3,11 @@
 //! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that its second derivative is large
 //! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field
 //! beyond decides, and bisection finds the distance.
+//!
+//! Sheets that near each other keep rules of their own ([`SheetRule`](crate::sampler::sheet::SheetRule)): precision is not what they
+//! lack. Of two and three spheres and planes 10⁻⁶ to 0.025 apart in a box of 3, at three kinds of sizes, 100 of 132 runs show all
+//! components and their Euler number by these rules and 74 without them; with f evaluated in double precision besides, 99 and 73. A
+//! child 2r away comes to whichever sheet is nearest to its circle, however precisely that is known.
 
 use crate::field::Field;
 use glam::DVec3;
@@ -13,7 +18,7 @@ use glam::DVec3;
 /// number from 8 of them on, and particles of many sizes from 55 on, but not at 33.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
 /// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of three sheets at equal distances the
-/// quadratic puts the second one at two thirds of its distance.
+/// quadratic puts the second one at two thirds of its distance, of sixty at a fifth.
 const LOOKS: [f64; 6] = [0.8, 1.2, 1.7, 2.4, 3.4, 4.8];
 /// Farthest zero of the quadratic, over the distance of interest.
 const FARTHEST: f64 = 2.0;
@@ -25,15 +30,23 @@ pub(crate) struct Nearness {
     pub(crate) position: DVec3,
     /// Distance of the other sheet along the normal.
     pub(crate) gap: f64,
-    /// Distance of a third sheet beyond it, if it is not much farther.
-    pub(crate) third: Option<f64>,
     /// |∇f| at the point.
     pub(crate) slope: f64,
 }
 
-/// The point of the surface that Newton's method finds from `p`, the unit normal there, the slope and the second derivative along
-/// it. None where another zero can be no nearer than `most`, and where there is no point.
-fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<(DVec3, DVec3, f64, f64)> {
+/// The field along the normal of a point of the surface, to second order.
+struct Profile {
+    position: DVec3,
+    /// Unit normal.
+    normal: DVec3,
+    slope: f64,
+    /// Second derivative along the normal.
+    bend: f64,
+}
+
+/// The profile of the point that Newton's method finds from `p`. None where another zero can be no nearer than `most`, and where
+/// there is no point.
+fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<Profile> {
     /// Far from several sheets at once each step goes only a part of the way.
     const STEPS: u32 = 48;
     /// Length of a last step, over the distance of the other zero.
@@ -51,7 +64,7 @@ fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<(DVec3, DVe
             return None;
         }
         if step.abs() <= LAST * other {
-            return Some((p - normal * step, normal, slope, bend));
+            return Some(Profile { position: p - normal * step, normal, slope, bend });
         }
         p -= normal * step;
     }
@@ -64,7 +77,7 @@ pub(crate) fn nearness(field: &mut dyn Field, from: DVec3, most: f64) -> Option<
     const HALVINGS: u32 = 12;
     /// Share of the size that the quadratic has between its zeros which f must have between them: rounding has less.
     const REAL: f64 = 0.1;
-    let (position, normal, slope, bend) = profile(field, from, most)?;
+    let Profile { position, normal, slope, bend } = profile(field, from, most)?;
     let second = -2.0 * slope / bend;
     let mut value = |t: f64| field.jet(position + normal * t).value;
     let sign = second.signum();
@@ -72,30 +85,13 @@ pub(crate) fn nearness(field: &mut dyn Field, from: DVec3, most: f64) -> Option<
     if between * sign < REAL * 0.25 * slope * second.abs() {
         return None;
     }
-    // The first change of sign, and the next one.
-    let mut changes = [None; 2];
-    let mut before = 0.5;
-    let mut found = 0;
-    for look in LOOKS {
-        let is_flipped = value(look * second) * sign < 0.0;
-        if is_flipped != (found == 1) && found < 2 {
-            changes[found] = Some((before, look));
-            found += 1;
-        }
-        before = look;
+    let (mut near, mut far) = (0.5, LOOKS.into_iter().find(|look| value(look * second) * sign < 0.0)?);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (near + far);
+        if value(middle * second) * sign > 0.0 { near = middle } else { far = middle }
     }
-    let mut at = |change: Option<(f64, f64)>| {
-        change.map(|(mut near, mut far)| {
-            let is_positive = value(near * second) > 0.0;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (near + far);
-                if (value(middle * second) > 0.0) == is_positive { near = middle } else { far = middle }
-            }
-            0.5 * (near + far) * second.abs()
-        })
-    };
-    let gap = at(changes[0])?;
-    (gap <= most).then(|| Nearness { position, gap, third: at(changes[1]), slope })
+    let gap = 0.5 * (near + far) * second.abs();
+    (gap <= most).then_some(Nearness { position, gap, slope })
 }
 
 /// The nearest of the sheets found from the points, and at how many of them there was one.
@@ -122,22 +118,16 @@ mod tests {
     #[test]
     fn the_distance_of_a_near_sheet_is_found_down_to_a_billionth() {
         for gap in [1e-3, 1e-5, 1e-7, 1e-9] {
-            for (formula, third) in [
-                (format!("(z-0.3)*(z-0.3-{gap})"), None),
-                (format!("(z-0.3)*(z-0.3-{gap})*(z-0.3-{})", 2.0 * gap), Some(2.0 * gap)),
-                (format!("(z-0.3)^2-{gap}*(z-0.3)"), None),
+            for formula in [
+                format!("(z-0.3)*(z-0.3-{gap})"),
+                format!("(z-0.3)*(z-0.3-{gap})*(z-0.3-{})", 2.0 * gap),
+                format!("(z-0.3)^2-{gap}*(z-0.3)"),
             ] {
                 let mut field = Formula::as_written(&formula, &[]).expect("a formula");
                 // From beside all sheets, as far as a particle may be.
                 let found = nearness(&mut field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
                     .unwrap_or_else(|| panic!("{formula}"));
-                let is = |distance: f64, wanted: f64| (distance / wanted - 1.0).abs() < 1e-2;
-                assert!(is(found.gap, gap), "{formula}: {found:?}");
-                assert_eq!(found.third.is_some(), third.is_some(), "{formula}: {found:?}");
-                assert!(
-                    third.is_none_or(|third| is(found.third.unwrap_or(0.0), third)),
-                    "{formula}: {found:?}"
-                );
+                assert!((found.gap / gap - 1.0).abs() < 1e-2, "{formula}: {found:?}");
             }
         }
     }

@@ -47,7 +47,9 @@
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3};
-use crate::sampler::discovery::cell::{CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise};
+use crate::sampler::discovery::cell::{
+    Axes, CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise,
+};
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
@@ -207,7 +209,7 @@ struct Tall {
 impl Tall {
     /// The taller cell.
     fn bounds(&self) -> Bounds {
-        let (_, up) = self.cell.axes();
+        let up = self.cell.axes().up;
         let Bounds { mut min, mut max } = self.cell.bounds;
         (min[up], max[up]) = (min[up] - self.room, max[up] + self.room);
         Bounds { min, max }
@@ -374,13 +376,13 @@ impl Octree {
             if is_discarded(&cell, &known) {
                 continue;
             }
-            let left = narrowed(&cell.bounds, cell.axes(), &known, &middle, &self.bounds.second[k]);
+            let left = narrowed(&cell, &known, &middle, &self.bounds.second[k]);
             let Some(left) = left else { continue };
-            let (_, up) = cell.axes();
+            let up = cell.axes().up;
             // The height is that of the whole cell, because the narrowed one may be flat.
             let height = cell.bounds.max[up] - cell.bounds.min[up];
             cell.bounds = left;
-            match rise(&cell, &known) {
+            match rise(&cell.bounds, up, &known) {
                 Some(t) if t <= MOST_RISE * height => {
                     let room = RISE_ROOM * t + LEAST_RISE * height;
                     self.batch.tall.push(Tall { cell, room, rise: None });
@@ -400,7 +402,7 @@ impl Octree {
         if is_left_out(cell, &self.search.isolated) {
             return true;
         }
-        let (sides, _) = cell.axes();
+        let Axes { sides, .. } = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
             && self.search.searched < MOST_TRIED
@@ -440,13 +442,12 @@ impl Octree {
         self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::bounds));
         self.bounds.refine(field, self.search.factor);
         for (tall, known) in self.batch.tall.iter_mut().zip(&self.bounds.known) {
-            let is_regular = known.defined && known.continuous;
-            tall.rise = if is_regular { rise(&tall.cell, known).filter(|t| *t <= tall.room) } else { None };
+            tall.rise = rise(&tall.cell.bounds, tall.cell.axes().up, known).filter(|t| *t <= tall.room);
         }
         // Both ends of a line through each.
         self.bounds.boxes.clear();
         for tall in &self.batch.tall {
-            let (_, up) = tall.cell.axes();
+            let up = tall.cell.axes().up;
             let Bounds { min, max } = tall.bounds();
             self.bounds.boxes.extend([min, max].map(|end| {
                 let mut p = tall.cell.probe();
@@ -462,7 +463,7 @@ impl Octree {
             if rise.is_none() || !bottom.excludes_zero() || !top.excludes_zero() {
                 self.halve(cell, DEPTH);
             } else if (bottom.lo > 0.0) != (top.lo > 0.0) {
-                let (_, up) = cell.axes();
+                let up = cell.axes().up;
                 let [lo, hi] = [2 * k, 2 * k + 1].map(|end| self.bounds.boxes[end].min[up]);
                 self.batch.lines.push(Line { tall: k, lo, hi, root: 0.5 * (lo + hi) });
             }
@@ -471,7 +472,7 @@ impl Octree {
         for line in 0..self.batch.lines.len() {
             let Line { tall, root: height, .. } = self.batch.lines[line];
             let Tall { cell, rise, .. } = self.batch.tall[tall];
-            let (sides, up) = cell.axes();
+            let Axes { sides, up } = cell.axes();
             let beside = BESIDE * rise.unwrap_or(0.0);
             let [bottom, top] = [self.region.bounds.min[up], self.region.bounds.max[up]];
             if height + beside < bottom || height > top && height - beside >= bottom {
@@ -501,7 +502,7 @@ impl Octree {
             for &Line { tall, root, .. } in &self.batch.lines {
                 let cell = self.batch.tall[tall].cell;
                 let mut p = cell.probe();
-                p[cell.axes().1] = root;
+                p[cell.axes().up] = root;
                 self.bounds.boxes.push(Bounds::point(p));
             }
             self.bounds.enclose(field, self.search.factor);
@@ -511,7 +512,7 @@ impl Octree {
                 if !known.value.excludes_zero() {
                     continue;
                 }
-                let slope = known.gradient[self.batch.tall[tall].cell.axes().1];
+                let slope = known.gradient[self.batch.tall[tall].cell.axes().up];
                 let rising = slope.lo > 0.0;
                 let (lo, hi) = if (known.value.lo > 0.0) == rising { (lo, root) } else { (root, hi) };
                 let newton = root - (known.value.lo + known.value.hi) / (slope.lo + slope.hi);
