@@ -59,7 +59,7 @@ const MAY_USE = {
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],
   'ui/field': ['ui/*', ...ENGINE_FACE],
-  'ui/lesson': ['ui/*', 'figures', ...ENGINE_FACE],
+  'ui/follow': ['ui/*', 'figures', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
   'ui/picture': ['ui/*', ...ENGINE_FACE],
   'ui/report': ['ui/*', ...ENGINE_FACE],

@@ -46,7 +46,7 @@ pub(crate) fn paper(project: &Project, options: &Options) -> Result<()> {
     }
     fs::create_dir_all(&pictures).context("could not create docs/paper")?;
     let mut convert = Command::new(node::node()?);
-    convert.current_dir(&project.www).arg("tests/ui/paper-pictures.js").args([&drawn, &pictures]);
+    convert.current_dir(&project.www).arg("pictures/paper.js").args([&drawn, &pictures]);
     step::run("pictures (WebP)", convert.env("CHROMIUM_PATH", chromium), "")?;
     let page = docs.join("paper.md");
     fs::write(&page, output.stdout).with_context(|| format!("could not write {}", page.display()))?;

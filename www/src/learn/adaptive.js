@@ -3,7 +3,7 @@ import { PARTICLES } from './lab.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/protocol.js'
- * @import { Lab, Run } from './lab.js'
+ * @import { Lab, LabRun } from './lab.js'
  */
 
 /**
@@ -21,7 +21,7 @@ const [LEAST, LARGEST] = [0.5, 2.2];
 const MOST_TRIALS = 4;
 const CLOSE = 0.15;
 
-/** @type {WeakMap<Lab, Map<string, Promise<Run>>>} */
+/** @type {WeakMap<Lab, Map<string, Promise<LabRun>>>} */
 const found = new WeakMap();
 
 /**

@@ -12,13 +12,13 @@ import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.
 import { WHAT_IFS } from './whatifs.js';
 
 /**
- * @import { Lab, Run } from './lab.js'
+ * @import { Lab, LabRun } from './lab.js'
  * @import { Stops } from './predict.js'
  * @import { Task, Work } from './task.js'
  * @import { Control, Setup } from './whatifs.js'
  */
 
-/** A run as plain numbers. @param {string} label @param {Run} run */
+/** A run as plain numbers. @param {string} label @param {LabRun} run */
 const recordOf = (label, run) => ({
   label,
   settings: run.settings,

@@ -14,7 +14,7 @@ import { RESIDUAL } from '../figures/particle.js';
 /**
  * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after the
  * last; `placing` counts the evaluations of f until then.
- * @typedef {object} Run
+ * @typedef {object} LabRun
  * @property {LessonClient} client  closed if the run was not to be kept
  * @property {Partial<LessonSettings>} settings
  * @property {number} radius
@@ -52,7 +52,7 @@ export class Lab {
   constructor(surface, open) {
     this.surface = surface;
     this.open = open;
-    /** @type {Map<string, Promise<Run>>} */
+    /** @type {Map<string, Promise<LabRun>>} */
     this.runs = new Map();
     /** @type {Map<number, Promise<number>>} */
     this.radii = new Map();
@@ -109,7 +109,7 @@ export class Lab {
    * @param {Partial<LessonSettings>} change  of the usual settings
    * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius
    *   is given; `keep`: events will be asked for
-   * @returns {Promise<Run>}
+   * @returns {Promise<LabRun>}
    */
   async run(change, { particles = PARTICLES, keep = false } = {}) {
     const radius = change.radius ?? (await this.radiusFor(particles));
@@ -126,7 +126,7 @@ export class Lab {
   /**
    * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a
    * seed: where the surface ends beside it, it has fewer.
-   * @returns {Promise<Run>}
+   * @returns {Promise<LabRun>}
    */
   async coarse() {
     let run = null;
@@ -134,10 +134,13 @@ export class Lab {
       run = await this.run({ relax_steps: 0, seed }, { particles: COARSE_PARTICLES, keep: true });
       if (run.chapters[0]?.fates.added === SLOTS) return run;
     }
-    return /** @type {Run} */ (run);
+    return /** @type {LabRun} */ (run);
   }
 
-  /** @param {Partial<LessonSettings>} settings @param {number} radius @param {boolean} keep @returns {Promise<Run>} */
+  /**
+   * @param {Partial<LessonSettings>} settings @param {number} radius @param {boolean} keep
+   * @returns {Promise<LabRun>}
+   */
   async make(settings, radius, keep) {
     const client = await this.open();
     try {

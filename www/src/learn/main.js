@@ -2,6 +2,7 @@
 import '../ui/trusted.js';
 import { LessonClient } from '../engine/lesson/client.js';
 import { byId, h } from '../ui/dom.js';
+import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
 import { createMaker, mountAssignment } from './assignment.js';
 import { createBench, mountCards, stopsOfBench } from './bench.js';
@@ -15,7 +16,7 @@ import { mountPrediction, Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
 import { mountRace } from './race.js';
 import { mountStops } from './stops.js';
-import { subjectOf, wordsOf } from './surface.js';
+import { subjectOf } from './surface.js';
 import { unpackTask } from './task.js';
 import { setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
 
@@ -58,7 +59,7 @@ async function blindPair(lab) {
 }
 
 notice.textContent = subject.notice;
-if (subject.isOwn) byId('surface-name').textContent = `your surface, ${wordsOf(subject.surface)}`;
+if (subject.isOwn) byId('surface-name').textContent = `your surface, ${surfaceWords(subject.surface)}`;
 for (const id of ['back', 'back-end']) /** @type {HTMLAnchorElement} */ (byId(id)).href = `../${subject.from}`;
 
 const lab = openLab();
@@ -125,7 +126,7 @@ if (address.parts.task) {
   if (!task) notice.textContent = 'The link holds no assignment that can be read. The lesson is complete without it.';
   else
     void lab.then((ready) =>
-      mountAssignment(byId('assignment'), task, { lab: ready, surface: wordsOf(ready.surface), stops }),
+      mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops }),
     );
 }
 keepOffline();

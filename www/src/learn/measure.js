@@ -4,7 +4,7 @@ import { between, createGrid } from '../ui/neighbours.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
- * @import { Run } from './lab.js'
+ * @import { LabRun } from './lab.js'
  */
 
 /**
@@ -39,7 +39,7 @@ export function ringsOf({ levels, fronts }) {
   return Array.from(rings, (count) => count ?? 0);
 }
 
-/** The relaxation steps of a run: energy per particle, from before the first step on. @param {Run} run */
+/** The relaxation steps of a run: energy per particle, from before the first step on. @param {LabRun} run */
 export async function energiesOf({ client, chapters }) {
   const steps = chapters.filter(({ kind }) => kind === 'relaxation');
   if (steps.length === 0) return [];

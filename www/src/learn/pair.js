@@ -8,16 +8,16 @@ import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 
-/** @import { Lab, Run } from './lab.js' */
+/** @import { Lab, LabRun } from './lab.js' */
 
 /** How the two pictures are coloured. @typedef {'level' | 'parent' | 'nearest' | 'radius'} Colouring */
-/** @typedef {{ label: string, make: (lab: Lab) => Promise<Run> }} Side */
+/** @typedef {{ label: string, make: (lab: Lab) => Promise<LabRun> }} Side */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
 
 /**
- * @param {Run} run
+ * @param {LabRun} run
  * @param {Colouring} colouring
  * @param {[number, number]} radii  the smallest and the largest of both runs
  */
@@ -55,7 +55,7 @@ function legendOf(colouring, [least, most]) {
 const around = ({ mean, deviation }) =>
   `${formatFixed(mean, 3)} ± ${formatFixed(Math.round(deviation * 1000) / 1000, 3)}`;
 
-/** What is compared. @param {Run} run @returns {[string, string][]} */
+/** What is compared. @param {LabRun} run @returns {[string, string][]} */
 export function figuresOf(run) {
   const { particles, evaluations } = run.progress;
   const nearest = spread(nearestDistances(run.end));
@@ -74,7 +74,7 @@ export function figuresOf(run) {
   ];
 }
 
-/** @param {readonly [Side, Side]} sides @param {readonly [Run, Run]} runs */
+/** @param {readonly [Side, Side]} sides @param {readonly [LabRun, LabRun]} runs */
 function comparisonOf(sides, runs) {
   const [left, right] = runs.map(figuresOf);
   // Of particles of one size more is said; where the other run has many, what both have is compared under its names.
@@ -92,7 +92,7 @@ export function createPair(lab, { bare = false } = {}) {
     (side) => new Picture(orbit, { name: `The picture on the ${side}; both turn together` }),
   );
   /** @param {number} k @param {number} particle */
-  function placeOf(k, particle) {
+  function particlePlace(k, particle) {
     const { positions = new Float32Array(0) } = pictures[k].scene.peek()?.particles ?? {};
     return [...positions.subarray(3 * particle, 3 * particle + 3)];
   }
@@ -115,12 +115,12 @@ export function createPair(lab, { bare = false } = {}) {
   let asked = 0;
   return {
     element,
-    /** @type {readonly [Run, Run] | null} */
+    /** @type {readonly [LabRun, LabRun] | null} */
     runs: null,
     /** Tells where a particle is pressed; null for no one. @param {((place: number[]) => void) | null} onPick */
     pickWith(onPick) {
       for (const [k, picture] of pictures.entries())
-        picture.pickWith(onPick && ((particle) => onPick(placeOf(k, particle))));
+        picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
     /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
     async show(sides, colouring) {

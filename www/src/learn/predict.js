@@ -27,7 +27,7 @@ import { reasonOf } from './figure.js';
  */
 /**
  * What a learner has guessed and what the run said.
- * @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Outcome
+ * @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Guessed
  */
 
 /** Which predictions are out. Figures show what would give the answer away only then. */
@@ -37,7 +37,7 @@ export class Stops {
     this.open = new Map();
     /** @type {Map<string, Signal<number | null>>} */
     this.picks = new Map();
-    /** @type {Map<string, Outcome>} */
+    /** @type {Map<string, Guessed>} */
     this.outcomes = new Map();
     /**
      * What a learner has entered so far, by the stop.
@@ -46,7 +46,7 @@ export class Stops {
     this.entries = new Map();
   }
 
-  /** What has been guessed: with the answer where it is out, and with none where it is not. @returns {Outcome[]} */
+  /** What has been guessed: with the answer where it is out, and with none where it is not. @returns {Guessed[]} */
   predictions() {
     const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
     const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));

@@ -209,7 +209,8 @@ function resultOf(names, lanes, ends) {
 }
 
 /** Where a ratio stands on the axis, 0 to 1. @param {number} ratio */
-const placeOf = (ratio) => Math.min(1, Math.max(0, Math.log(ratio / LEAST_RATIO) / Math.log(MOST_RATIO / LEAST_RATIO)));
+const axisShare = (ratio) =>
+  Math.min(1, Math.max(0, Math.log(ratio / LEAST_RATIO) / Math.log(MOST_RATIO / LEAST_RATIO)));
 
 /** This race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
 function marksOf(kind, ratio) {
@@ -219,7 +220,7 @@ function marksOf(kind, ratio) {
     ...paper.map((row) => `In the paper ${formatSignificant(row.ratio, 2)} times: ${row.words}.`),
   ];
   const svg = s('svg', { class: 'ratios', viewBox: '0 0 100 9', role: 'img', 'aria-label': told.join(' ') });
-  const x = (/** @type {number} */ value) => 2 + 96 * placeOf(value);
+  const x = (/** @type {number} */ value) => 2 + 96 * axisShare(value);
   svg.append(s('line', { x1: 2, x2: 98, y1: 5, y2: 5 }));
   for (const tick of TICKS) {
     svg.append(s('line', { x1: x(tick), x2: x(tick), y1: 4.5, y2: 5.5 }));

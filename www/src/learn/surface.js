@@ -28,7 +28,3 @@ export function subjectOf(text) {
   const notice = 'Your surface comes from points, which a link cannot hold. The figures show an ellipsoid.';
   return { surface: ELLIPSOID, isOwn: false, from, notice };
 }
-
-/** The surface in words. @param {FormulaSurface} surface */
-export const wordsOf = ({ formula, parameters }) =>
-  [formula, ...parameters.map(({ name, value }) => `${name} = ${value}`)].join(', ');

@@ -3,7 +3,7 @@ import { packed, unpacked } from '../ui/surface-link.js';
 import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 
 /**
- * @import { Outcome } from './predict.js'
+ * @import { Guessed } from './predict.js'
  * @import { Control, Setup } from './whatifs.js'
  */
 
@@ -11,7 +11,7 @@ import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 /**
  * What a learner hands in.
  * @typedef {{ assignment: string, surface: string, answers: { question: string, answer: string }[], predictions:
- *   Outcome[], runs: object[] }} Work
+ *   Guessed[], runs: object[] }} Work
  */
 
 export const LONGEST_TITLE = 120;

@@ -3,7 +3,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/protocol.js'
- * @import { Lab, Run } from './lab.js'
+ * @import { Lab, LabRun } from './lab.js'
  * @import { Colouring, Side } from './pair.js'
  */
 
@@ -20,7 +20,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
  * @property {string} look  what to look for
  * @property {Colouring} colouring
  * @property {readonly { value: string, label: string }[]} values
- * @property {(lab: Lab, value: string) => Promise<Run>} make
+ * @property {(lab: Lab, value: string) => Promise<LabRun>} make
  */
 
 /**
@@ -36,14 +36,14 @@ const AT = 'at ';
 export const seedAt = (place) => AT + place.map((v) => Number(v.toPrecision(4))).join(' ');
 
 /** @param {string} value */
-const isPlace = (value) => value.startsWith(AT) && placeOf(value).every(Number.isFinite);
+const isPlace = (value) => value.startsWith(AT) && parsePlace(value).every(Number.isFinite);
 
 /** Whether a choice has a value, which may be anything. @param {WhatIf} whatIf @param {unknown} value */
 export const hasValue = ({ id, values: all }, value) =>
   all.some((known) => known.value === value) || (id === 'seed' && typeof value === 'string' && isPlace(value));
 
 /** @param {string} value @returns {[number, number, number]} */
-function placeOf(value) {
+function parsePlace(value) {
   const [x, y, z] = value.slice(AT.length).split(' ').map(Number);
   return [x, y, z];
 }
@@ -102,7 +102,7 @@ export const WHAT_IFS = [
       ['2', 'Seed 2'],
       ['3', 'Seed 3'],
     ]),
-    make: even((seed) => (isPlace(seed) ? { seeds: [placeOf(seed)] } : { seed: Number(seed) })),
+    make: even((seed) => (isPlace(seed) ? { seeds: [parsePlace(seed)] } : { seed: Number(seed) })),
   },
   {
     id: 'steps',

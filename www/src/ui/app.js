@@ -90,8 +90,8 @@ export function mountInterface(engine) {
     void boxDrawn.value;
     untracked(layout.measure);
   });
-  linkLesson(engine);
-  const lesson = lessonOf(engine, { shell, stage }, toast);
+  linkLearn(engine);
+  const loadFollow = followLoader(engine, { shell, stage }, toast);
   mountHover(stage, engine, { view, follow: (index) => void timeline?.follow(index) });
   byId('tabs').append(goButton(engine));
 
@@ -118,7 +118,7 @@ export function mountInterface(engine) {
     import('./levels/timeline.js').then(
       ({ createTimeline }) => {
         const say = (/** @type {string} */ text) => toast({ id: 'link', kind: 'warn', text });
-        timeline = createTimeline(byId('levels-body'), engine, { told, lesson: () => lesson(say), say });
+        timeline = createTimeline(byId('levels-body'), engine, { told, loadFollow: () => loadFollow(say), say });
       },
       // If the timeline fails to load, the rest of the page still works.
       () => {
@@ -130,13 +130,13 @@ export function mountInterface(engine) {
 }
 
 /**
- * Has the link to the lesson carry the surface over. Without that it leads to the lesson all the same.
+ * Has the link to the learn page carry the surface over. Without that it leads there all the same.
  * @param {Engine} engine
  */
-function linkLesson(engine) {
-  const link = /** @type {HTMLAnchorElement} */ (byId('lesson-link'));
-  import('./lesson/link.js').then(
-    ({ bindLessonLink }) => bindLessonLink(link, engine),
+function linkLearn(engine) {
+  const link = /** @type {HTMLAnchorElement} */ (byId('learn-link'));
+  import('./learn-link.js').then(
+    ({ bindLearnLink }) => bindLearnLink(link, engine),
     () => {},
   );
 }
@@ -154,11 +154,11 @@ function nameTab(engine) {
  * Returns what loads the panel that follows particles, when it is first asked for; its promise is null if that fails.
  * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement }} parts @param {Toast} toast
  */
-function lessonOf(engine, { shell, stage }, toast) {
+function followLoader(engine, { shell, stage }, toast) {
   return async (/** @type {(text: string) => void} */ say) => {
     try {
       const [{ mountFollow }, { mountMarks }] = await Promise.all([
-        import('./lesson/panel.js'),
+        import('./follow/panel.js'),
         import('./view/marks/layer.js'),
       ]);
       return await mountFollow(shell, engine, { say, mount: (mark) => void mountMarks(stage, engine, [mark]) });

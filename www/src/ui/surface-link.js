@@ -1,5 +1,5 @@
 /**
- * A surface in the address of the lesson's page: its formula, its parameters and its box, and the way back to the page
+ * A surface in the address of the learn page: its formula, its parameters and its box, and the way back to the page
  * from which it comes. What is read from an address may be anything, so every part of it is checked.
  */
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
@@ -12,6 +12,10 @@ import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
  * the page's own address.
  * @typedef {{ surface: FormulaSurface | null, from: string }} Carried
  */
+
+/** A surface in words. @param {Pick<FormulaSurface, 'formula' | 'parameters'>} surface */
+export const surfaceWords = ({ formula, parameters }) =>
+  [formula, ...parameters.map(({ name, value }) => `${name} = ${value}`)].join(', ');
 
 /** Longest text that is read: more than a formula of the greatest length with all parameters. */
 const LONGEST = 65_536;

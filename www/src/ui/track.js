@@ -23,13 +23,13 @@
  * @property {ReadonlySignal<Bars>} bars
  * @property {ReadonlySignal<boolean>} whole  whether all is shown, no place in particular
  * @property {(at: number) => void} show
- * @property {(by: 1 | -1) => boolean} step  to the next place or the one before; false if there is none
+ * @property {(by: 1 | -1) => boolean} go  to the next place or the one before; false if there is none
  * @property {number} perSecond  places per second of playback, at its usual speed
  */
 
 /**
- * The lesson, as the timeline knows it: its two tracks, and where it stands among the levels.
- * @typedef {object} Lesson
+ * The panel that follows a particle, as the timeline knows it: its two tracks, and where it stands among the levels.
+ * @typedef {object} FollowPanel
  * @property {ReadonlySignal<boolean>} open
  * @property {ReadonlySignal<number | null>} level  that of the particle that is open
  * @property {ReadonlySignal<[number, number] | null>} place  the particle that is open, and its event

@@ -4,7 +4,7 @@ import { facing } from '../../src/engine/view/facing.js';
 import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
-import { drawnAt, isOutOfSight, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
+import { drawnAt, isOutOfSight, stepsOf, trackPlace } from '../../src/ui/levels/levels.js';
 import { BINS, degreeBins, hexagonalCount, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
 import { spread } from '../../src/ui/neighbours.js';
@@ -124,14 +124,14 @@ describe('the places of the timeline', () => {
     expect(drawnAt(5, about)).toEqual({ level: null, step: 1 });
     expect(drawnAt(13, about)).toEqual({ level: null, step: 9 });
     expect(drawnAt(14, about)).toEqual({ level: null, step: null });
-    for (let at = 0; at <= 14; at += 1) expect(placeOf(drawnAt(at, about), about)).toBe(at);
+    for (let at = 0; at <= 14; at += 1) expect(trackPlace(drawnAt(at, about), about)).toBe(at);
   });
 
   test('end with everything where nothing is known of the relaxation', () => {
     const about = { last: 4, steps: stepsOf(0) };
     expect(drawnAt(5, about)).toEqual({ level: null, step: null });
-    expect(placeOf({ level: 99, step: null }, about)).toBe(4);
-    expect(placeOf({ level: null, step: 3 }, about)).toBe(5);
+    expect(trackPlace({ level: 99, step: null }, about)).toBe(4);
+    expect(trackPlace({ level: null, step: 3 }, about)).toBe(5);
   });
 });
 

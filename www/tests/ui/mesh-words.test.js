@@ -1,6 +1,6 @@
 import { beforeAll, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
-import { wordsOf } from '../../src/ui/view/mesh-words.js';
+import { meshWords } from '../../src/ui/view/mesh-words.js';
 
 beforeAll(() => setLocale('en'));
 
@@ -17,10 +17,10 @@ const mesh = (components, more) => ({
 });
 
 it('a mesh is told in a line: closed or where it is open, and its topology', () => {
-  expect(wordsOf(mesh([[2, 0]]))).toBe('Closed mesh · Euler number 2');
-  expect(wordsOf(mesh([[-8, 1204]]))).toBe('Mesh · 1,204 open edges · Euler number −8');
+  expect(meshWords(mesh([[2, 0]]))).toBe('Closed mesh · Euler number 2');
+  expect(meshWords(mesh([[-8, 1204]]))).toBe('Mesh · 1,204 open edges · Euler number −8');
   expect(
-    wordsOf(
+    meshWords(
       mesh([
         [2, 0],
         [0, 0],
@@ -28,7 +28,7 @@ it('a mesh is told in a line: closed or where it is open, and its topology', () 
     ),
   ).toBe('Mesh of 2 components · closed · Euler numbers 2, 0');
   expect(
-    wordsOf(
+    meshWords(
       mesh([
         [1, 30],
         [1, 30],
@@ -40,8 +40,8 @@ it('a mesh is told in a line: closed or where it is open, and its topology', () 
 });
 
 it('what could not be joined is not passed over', () => {
-  expect(wordsOf(mesh([[1, 6]], { unfilled: 2, left_out: 1 }))).toBe(
+  expect(meshWords(mesh([[1, 6]], { unfilled: 2, left_out: 1 }))).toBe(
     'Mesh · 6 open edges · Euler number 1 · 2 holes where sheets meet or particles are too sparse · 1 particle left out',
   );
-  expect(wordsOf(mesh([]))).toBe('Nothing to join to a mesh');
+  expect(meshWords(mesh([]))).toBe('Nothing to join to a mesh');
 });

@@ -2,7 +2,7 @@ import { beforeAll, describe, expect, test } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { captionOf, endsOf } from '../../src/ui/picture/compose.js';
 import { durationOf } from '../../src/ui/picture/film.js';
-import { FILM_SIZES, sizesOf, wordsOf } from '../../src/ui/picture/sizes.js';
+import { FILM_SIZES, sizesOf, sizeWords } from '../../src/ui/picture/sizes.js';
 
 beforeAll(() => setLocale('en'));
 
@@ -15,7 +15,7 @@ describe('the sizes of a picture', () => {
       [3840, 2160],
       [2048, 2048],
     ]);
-    expect(wordsOf(sizes[2])).toBe('4K, 3840\u202f×\u202f2160');
+    expect(sizeWords(sizes[2])).toBe('4K, 3840\u202f×\u202f2160');
   });
 
   test('keep the proportion of the window where a canvas has an end', () => {

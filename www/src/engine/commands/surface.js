@@ -5,7 +5,7 @@
  */
 
 import { FILE_SURFACE } from '../constants.js';
-import { shapeOf } from '../points/loader.js';
+import { freshShape } from '../points/loader.js';
 import {
   fromPoints,
   modelOf,
@@ -48,7 +48,7 @@ export function surfaceCommands({ store, runs, framing }) {
       const surface = surfaceOf(about, id);
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
       showAll(store);
-      change(store, shapeOf(id, surface?.formula));
+      change(store, freshShape(id, surface?.formula));
       runs.choose({ grow: true, fit: true });
     },
     openFile(file) {
@@ -68,7 +68,7 @@ export function surfaceCommands({ store, runs, framing }) {
       if (text === formula) return;
       // A model has no formula. A formula typed in its place starts from the default surface.
       const fresh = fromPoints(store.description.value, surface);
-      change(store, fresh ? shapeOf(description(store).default_surface, text) : { formula: text });
+      change(store, fresh ? freshShape(description(store).default_surface, text) : { formula: text });
       framing.written({ typed: true });
       framing.hold();
       if (unfinished) runs.chooseLater(NAME_MS);

@@ -18,7 +18,7 @@
 /** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
 /**
  * How an order ended. `givenUp`: the page cancelled it.
- * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Outcome
+ * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Ending
  */
 
 /** Time that the worker's script may take to load, on a slow connection. */
@@ -50,7 +50,7 @@ export class PointsClient {
     this.clock = clock;
     /** @type {Map<string, Solved>} */
     this.solved = new Map();
-    /** Ends the current order. @type {((outcome: Outcome) => void) | null} */
+    /** Ends the current order. @type {((ending: Ending) => void) | null} */
     this.end = null;
   }
 
@@ -62,7 +62,7 @@ export class PointsClient {
   /**
    * Solves a model and keeps it under `key`. The current order is given up.
    * @param {string} key @param {Order} order
-   * @returns {Promise<Outcome>}
+   * @returns {Promise<Ending>}
    */
   load(key, order) {
     this.giveUp();
@@ -70,14 +70,14 @@ export class PointsClient {
       const worker = this.spawn();
       /** @type {any} */
       let timer;
-      const end = (/** @type {Outcome} */ outcome) => {
+      const end = (/** @type {Ending} */ ending) => {
         this.clock.clearTimeout(timer);
         worker.onmessage = null;
         worker.onerror = null;
         worker.terminate();
         if (this.end === end) this.end = null;
-        if ('solved' in outcome) this.solved.set(key, outcome.solved);
-        resolve(outcome);
+        if ('solved' in ending) this.solved.set(key, ending.solved);
+        resolve(ending);
       };
       const refuse = (
         /** @type {string} */ kind,

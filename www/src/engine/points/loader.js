@@ -27,7 +27,7 @@ import { PointsClient } from './client.js';
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
 /** @param {string} surface @param {string} [formula] @returns {Shape} */
-export const shapeOf = (surface, formula = '') => ({
+export const freshShape = (surface, formula = '') => ({
   surface,
   formula,
   parameters: {},
@@ -97,9 +97,9 @@ export class ModelLoader {
   /** @returns {Shape} */
   before() {
     const { description } = this.store;
-    if (this.last || !description.value) return this.last ?? shapeOf('');
+    if (this.last || !description.value) return this.last ?? freshShape('');
     const { surface, formula } = defaultState(description.value);
-    return shapeOf(surface, formula);
+    return freshShape(surface, formula);
   }
 
   /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
@@ -147,7 +147,7 @@ export class ModelLoader {
     const { state } = this.store;
     await this.order(FILE_SURFACE, file.name, keyOf(key, null), { file, centres: null }, () => {
       this.opened = { file, key };
-      state.value = { ...state.value, ...shapeOf(FILE_SURFACE) };
+      state.value = { ...state.value, ...freshShape(FILE_SURFACE) };
       this.sample({ grow: true, fit: true });
     });
   }

@@ -12,7 +12,7 @@ import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
  * The measurements of a finished run.
- * @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Outcome
+ * @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Measured
  */
 
 /** Pause between live requests after which the next one belongs to another drag. */
@@ -56,21 +56,21 @@ export class Pace {
   /**
    * Updates the cost model and the drag from a finished run.
    * @param {Run} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
-   * @param {Outcome} outcome
+   * @param {Measured} measured
    * @returns {LastDrag | null} the state of the drag that the run belongs to, if any
    */
-  record({ request, sinceMs }, sampled, outcome) {
-    const { particles } = outcome;
+  record({ request, sinceMs }, sampled, measured) {
+    const { particles } = measured;
     const { drag } = this;
     const cost = this.costOf(sampled);
     // A run that ended at its coarse level does not tell what the whole one costs.
     const isWhole = !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
-    if (request.kind === 'sample' && isWhole) cost.record(outcome);
+    if (request.kind === 'sample' && isWhole) cost.record(measured);
     if (!request.live || !drag) return null;
     const latency = this.nowMs() - sinceMs;
     drag.latencies.push(latency);
     // The rest of the latency is drawing: a slow graphics device delays every message.
-    cost.recordPicture(particles, latency - samplingSeconds(outcome.seconds) * 1e3);
+    cost.recordPicture(particles, latency - samplingSeconds(measured.seconds) * 1e3);
     const sorted = [...drag.latencies].sort((a, b) => a - b);
     return {
       requested: drag.requested,

@@ -14,13 +14,13 @@ const LONGEST_STEP_S = 1 / 20;
 export const nowS = () => performance.now() / 1000;
 
 /**
- * The outcome of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
+ * What became of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
  * canvas.
- * @typedef {'drawn' | 'skipped' | 'none'} Outcome
+ * @typedef {'drawn' | 'skipped' | 'none'} FrameResult
  */
 
 export class FrameLoop {
-  /** @param {(nowS: number, dtS: number) => Outcome} draw  draws one frame and may request the next */
+  /** @param {(nowS: number, dtS: number) => FrameResult} draw  draws one frame and may request the next */
   constructor(draw) {
     this.draw = draw;
     /** Handle of the requested frame, 0 for none. */
@@ -64,11 +64,11 @@ export class FrameLoop {
     const now = nowS();
     const step = Math.min(now - this.lastS, LONGEST_STEP_S);
     this.lastS = now;
-    const outcome = this.draw(now, step);
-    if (outcome === 'drawn') {
+    const result = this.draw(now, step);
+    if (result === 'drawn') {
       this.drawn += 1;
       this.skipped = 0;
-    } else if (outcome === 'skipped' && this.skipped < MOST_SKIPS) {
+    } else if (result === 'skipped' && this.skipped < MOST_SKIPS) {
       this.skipped += 1;
       this.retry = setTimeout(() => this.ask(), RETRY_MS);
     }

@@ -22,7 +22,7 @@ import { ParticleUpload } from './upload.js';
  * @import { Bounds, CameraState, Legend, Place, Ray, Vec3, ViewState } from '../types.js'
  * @import { BackendKind, Device } from './backends.js'
  * @import { View } from './camera.js'
- * @import { Outcome } from './frames.js'
+ * @import { FrameResult } from './frames.js'
  * @import { Look } from './style.js'
  */
 
@@ -318,7 +318,7 @@ export class Viewer {
     this.events.onDevice(device);
   }
 
-  /** @param {number} nowS @param {number} dtS @returns {Outcome} */
+  /** @param {number} nowS @param {number} dtS @returns {FrameResult} */
   frame(nowS, dtS) {
     const { device } = this.keeper;
     if (!device) return 'none';

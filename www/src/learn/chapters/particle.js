@@ -13,7 +13,7 @@ import { createRange } from '../parts.js';
 
 /**
  * @import { Opened } from '../../figures/particle.js'
- * @import { Run } from '../lab.js'
+ * @import { LabRun } from '../lab.js'
  * @import { Context } from './index.js'
  */
 
@@ -103,7 +103,7 @@ export async function sixChildren({ lab, stops }) {
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 
-/** What became of the children, level by level. @param {Run} run */
+/** What became of the children, level by level. @param {LabRun} run */
 function fateChart(run) {
   const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
   const rows = levels.map(({ fates }) => [fates.added, fates.matched]);

@@ -8,7 +8,7 @@ import { createBars, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
 /**
- * @import { Lab, Run } from '../lab.js'
+ * @import { Lab, LabRun } from '../lab.js'
  * @import { Mark } from '../picture.js'
  * @import { Context } from './index.js'
  */
@@ -33,7 +33,7 @@ export async function widestHole(lab) {
   return widest.particle < 0 ? null : { ...widest, radius: run.radius, run };
 }
 
-/** Particles whose front met itself or another one out of step. @param {Run} run */
+/** Particles whose front met itself or another one out of step. @param {LabRun} run */
 async function seamsOf({ client, chapters }) {
   /** @type {Set<number>} */
   const found = new Set();

@@ -50,7 +50,7 @@ export async function createCharts(engine, player) {
     return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
   });
   const energy = computed(() => engine.report.value?.energy ?? []);
-  const followed = computed(() => (player.grain.value === 'level' ? null : (player.lesson.value?.level.value ?? null)));
+  const followed = computed(() => (player.grain.value === 'level' ? null : (player.panel.value?.level.value ?? null)));
   const atLevel = computed(() => followed.value ?? (level.value === null ? null : newest.value));
   const atStep = computed(() => {
     if (followed.value !== null || (level.value !== null && newest.value < table.value.last)) return null;

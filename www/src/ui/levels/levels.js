@@ -36,7 +36,7 @@ export function drawnAt(at, { last, steps }) {
  * Returns the place of what is drawn.
  * @param {{ level: number | null, step: number | null }} drawn @param {{ last: number, steps: number }} about
  */
-export function placeOf({ level, step }, { last, steps }) {
+export function trackPlace({ level, step }, { last, steps }) {
   if (level !== null) return Math.min(level, last);
   return step !== null && step < steps ? last + Math.max(1, step) : last + steps;
 }
@@ -72,7 +72,7 @@ export function createLevels(engine) {
   const level = computed(() => view.value.level);
   const step = computed(() => view.value.step);
   const about = computed(() => ({ last: table.value.last, steps: stepsOf(kept.value) }));
-  const at = computed(() => placeOf({ level: level.value, step: step.value }, about.value));
+  const at = computed(() => trackPlace({ level: level.value, step: step.value }, about.value));
   const last = computed(() => about.value.last + about.value.steps);
   const whole = computed(() => at.value === last.value);
   /** The newest level that is drawn. */
@@ -124,7 +124,7 @@ export function createLevels(engine) {
       return { heights: [...fresh, ...new Array(about.value.steps).fill(STEP_HEIGHT * most)] };
     }),
     show,
-    step(by) {
+    go(by) {
       const to = at.peek() + by;
       if (to < 0 || to > last.peek()) return false;
       show(to);

@@ -6,7 +6,7 @@ import { computed, effect, signal } from '@preact/signals-core';
 
 /**
  * @import { Engine, Grain } from '../../engine/types.js'
- * @import { Lesson, Track } from '../track.js'
+ * @import { FollowPanel, Track } from '../track.js'
  * @import { Move } from './keys.js'
  * @import { Levels } from './levels.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
@@ -16,14 +16,14 @@ export class Player {
   /**
    * @param {Engine} engine
    * @param {Levels} levels
-   * @param {() => Promise<Lesson | null>} load  the lesson; null if it cannot be had
+   * @param {() => Promise<FollowPanel | null>} load  loads the panel that follows a particle; null if it cannot be had
    */
   constructor(engine, levels, load) {
     this.engine = engine;
     this.levels = levels;
     this.load = load;
-    this.lesson = signal(/** @type {Lesson | null} */ (null));
-    this.isOpen = computed(() => this.lesson.value?.open.value ?? false);
+    this.panel = signal(/** @type {FollowPanel | null} */ (null));
+    this.isOpen = computed(() => this.panel.value?.open.value ?? false);
     /** @type {ReadonlySignal<Grain>} */
     this.grain = computed(() => (this.isOpen.value ? engine.state.value.view.grain : 'level'));
     this.track = computed(() => this.trackOf(this.grain.value));
@@ -40,15 +40,15 @@ export class Player {
 
   /** @param {Grain} grain @returns {Track} */
   trackOf(grain) {
-    const lesson = this.lesson.value;
-    if (!lesson || grain === 'level') return this.levels;
-    return grain === 'particle' ? lesson.particles : lesson.events;
+    const panel = this.panel.value;
+    if (!panel || grain === 'level') return this.levels;
+    return grain === 'particle' ? panel.particles : panel.events;
   }
 
-  /** Loads the lesson, which is then part of the timeline. */
+  /** Loads the panel that follows a particle, which is then part of the timeline. */
   async prepare() {
-    this.lesson.value ??= await this.load();
-    return this.lesson.value;
+    this.panel.value ??= await this.load();
+    return this.panel.value;
   }
 
   /** Chooses a grain. The finer ones open a particle: the first of the level that is shown. @param {Grain} grain */
@@ -57,14 +57,14 @@ export class Player {
     this.pause();
     const { engine, levels } = this;
     if (grain === 'level') {
-      const level = this.lesson.peek()?.level.peek() ?? null;
+      const level = this.panel.peek()?.level.peek() ?? null;
       return engine.setView({ grain, level, step: null });
     }
-    const lesson = await this.prepare();
-    if (!lesson) return;
+    const panel = await this.prepare();
+    if (!panel) return;
     const first = firstOf(engine, levels.level.peek());
-    if (!lesson.open.peek()) lesson.follow(first);
-    else if (this.grain.peek() === 'level' && levels.level.peek() !== null) lesson.goToLevel(levels.newest.peek());
+    if (!panel.open.peek()) panel.follow(first);
+    else if (this.grain.peek() === 'level' && levels.level.peek() !== null) panel.goToLevel(levels.newest.peek());
     engine.setView({ grain, level: null, step: null });
   }
 
@@ -97,7 +97,7 @@ export class Player {
   /** A particle that is followed goes along with the levels. */
   followLevel() {
     const { newest, level } = this.levels;
-    if (this.isOpen.peek() && level.peek() !== null) this.lesson.peek()?.goToLevel(newest.peek());
+    if (this.isOpen.peek() && level.peek() !== null) this.panel.peek()?.goToLevel(newest.peek());
   }
 
   /** @param {Move} move */
@@ -106,24 +106,24 @@ export class Player {
     const chosen = this.grain.peek();
     const grain = named === 'chosen' ? chosen : named;
     if (grain !== 'level' && !this.isOpen.peek()) return void this.choose(grain);
-    const lesson = this.lesson.peek();
-    if (grain === 'level' && chosen !== 'level' && lesson) {
+    const panel = this.panel.peek();
+    if (grain === 'level' && chosen !== 'level' && panel) {
       if (typeof to === 'string') return this.seekLevel(to === 'first' ? 0 : this.levels.last.peek());
       // Between the events a level begins with its first particle.
-      const level = lesson.level.peek();
-      if (level !== null) lesson.goToLevel(level + to);
+      const level = panel.level.peek();
+      if (level !== null) panel.goToLevel(level + to);
       return;
     }
     const track = this.trackOf(grain);
     if (to === 'first' || to === 'last') return this.show(track, to === 'first' ? 0 : track.last.peek());
-    this.step(track, to);
+    this.go(track, to);
   }
 
   /** @param {Track} track @param {1 | -1} by @returns {boolean} whether there was a place to go to */
-  step(track, by) {
-    const stepped = track.some.peek() && track.step(by);
-    if (stepped && track === this.levels) this.followLevel();
-    return stepped;
+  go(track, by) {
+    const moved = track.some.peek() && track.go(by);
+    if (moved && track === this.levels) this.followLevel();
+    return moved;
   }
 
   toggle() {
@@ -147,7 +147,7 @@ export class Player {
   wait() {
     const track = this.track.peek();
     const next = () => {
-      const goesOn = this.step(track, 1) && !(track === this.levels && track.at.peek() >= track.last.peek());
+      const goesOn = this.go(track, 1) && !(track === this.levels && track.at.peek() >= track.last.peek());
       if (goesOn) this.wait();
       else this.pause();
     };

@@ -1,6 +1,6 @@
 /**
  * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer
- * than a level open the lesson.
+ * than a level open the panel that follows a particle.
  */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h, live } from '../dom.js';
@@ -17,7 +17,7 @@ import { describeLevel } from './table.js';
 /**
  * @import { Engine, Grain } from '../../engine/types.js'
  * @import { IconName } from '../icons.js'
- * @import { Bars, Lesson } from '../track.js'
+ * @import { Bars, FollowPanel } from '../track.js'
  * @import { Move } from './keys.js'
  * @import { Levels } from './levels.js'
  * @import { ReadonlySignal, Signal } from '@preact/signals-core'
@@ -39,12 +39,12 @@ const GRAINS = /** @type {const} */ ([
  * @param {Engine} engine
  * @param {object} page
  * @param {Signal<Told | null>} page.told  the level in words, null while all are shown
- * @param {() => Promise<Lesson | null>} page.lesson  loads the lesson
+ * @param {() => Promise<FollowPanel | null>} page.loadFollow  loads the panel that follows a particle
  * @param {(text: string) => void} page.say  tells what a link names and is not there
  */
-export function createTimeline(body, engine, { told, lesson, say }) {
+export function createTimeline(body, engine, { told, loadFollow, say }) {
   const levels = createLevels(engine);
-  const player = new Player(engine, levels, lesson);
+  const player = new Player(engine, levels, loadFollow);
   effect(() => {
     told.value = describe(engine, levels, player);
   });
@@ -166,7 +166,7 @@ function takeKeys(player, { body, range }) {
   body.addEventListener('keydown', (event) => {
     if (event.key !== 'Escape' || !player.isOpen.peek()) return;
     event.preventDefault();
-    player.lesson.peek()?.close();
+    player.panel.peek()?.close();
   });
   addEventListener('keydown', (event) => {
     if (!isMeant(event)) return;
@@ -212,9 +212,8 @@ function restore(engine, player, { levels, say }) {
       say(`The link names level ${formatCount(level)}. The last one, ${formatCount(last)}, is shown.`);
     if (isNew && level === null && step !== null && step > steps)
       say(`The link names relaxation step ${formatCount(step)}. The last one, ${formatCount(steps)}, is shown.`);
-    const isOther =
-      named.peek() !== seen && named.peek() !== JSON.stringify(player.lesson.peek()?.place.peek() ?? null);
-    if (follow && (isNew || isOther)) void player.prepare().then((lesson) => lesson?.goTo(follow));
+    const isOther = named.peek() !== seen && named.peek() !== JSON.stringify(player.panel.peek()?.place.peek() ?? null);
+    if (follow && (isNew || isOther)) void player.prepare().then((panel) => panel?.goTo(follow));
     isNew = false;
     seen = named.peek();
   }

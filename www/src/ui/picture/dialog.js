@@ -6,7 +6,7 @@ import { captionOf } from './compose.js';
 import { drawOn, durationOf, kindOfFilm, recordFilm, recordSequence } from './film.js';
 import { printPage } from './print.js';
 import { createRecorderBar } from './recorder-bar.js';
-import { FILM_SIZES, sizesOf, wordsOf } from './sizes.js';
+import { FILM_SIZES, sizesOf, sizeWords } from './sizes.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -93,7 +93,7 @@ const action = (text, act, style = '') =>
 /** @param {Shared} shared */
 function pictureSection({ engine, page, parts, transparent, close }) {
   const sizes = () => sizesOf({ width: innerWidth, height: innerHeight, ratio: devicePixelRatio });
-  const { select, update } = selectOf(() => sizes().map((entry) => [entry.id, wordsOf(entry)]));
+  const { select, update } = selectOf(() => sizes().map((entry) => [entry.id, sizeWords(entry)]));
   addEventListener('resize', update);
   const save = async () => {
     const { size } = /** @type {SizeEntry} */ (sizes().find(({ id }) => id === select.value));
@@ -145,7 +145,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
     ),
     [FREE, 'What I do'],
   ]);
-  const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, wordsOf(entry)]));
+  const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, sizeWords(entry)]));
   const seconds = selectOf(() => SEQUENCE_S.map((value) => [String(value), `${value}\u202fs`]));
   seconds.select.setAttribute('aria-label', 'Length of the sequence');
   // The parameters are those of the present formula.

@@ -33,4 +33,4 @@ export const FILM_SIZES = [
 ];
 
 /** @param {{ label: string, size: Size }} entry */
-export const wordsOf = ({ label, size }) => `${label}, ${size.width}\u202f×\u202f${size.height}`;
+export const sizeWords = ({ label, size }) => `${label}, ${size.width}\u202f×\u202f${size.height}`;

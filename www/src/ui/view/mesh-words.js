@@ -10,7 +10,7 @@ const MOST_TOLD = 3;
  * @param {MeshAnswer} mesh
  * @returns {string}
  */
-export function wordsOf({ components, unfilled, left_out }) {
+export function meshWords({ components, unfilled, left_out }) {
   if (components.length === 0) return 'Nothing to join to a mesh';
   const open = components.reduce((sum, component) => sum + component.open_edges, 0);
   const euler = components.map((component) => formatCount(component.euler));

@@ -3,7 +3,7 @@ import { computed, effect } from '@preact/signals-core';
 import { enlarge } from '../box.js';
 import { fill, h } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
-import { NO_MESH, wordsOf } from './mesh-words.js';
+import { meshWords, NO_MESH } from './mesh-words.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -86,7 +86,7 @@ function meshOf(engine) {
   if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
   if (engine.backend.value === 'canvas2d') return NO_MESH;
   const mesh = engine.mesh.value;
-  return mesh && !engine.busy.value && !engine.reveal.value ? wordsOf(mesh) : '';
+  return mesh && !engine.busy.value && !engine.reveal.value ? meshWords(mesh) : '';
 }
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */

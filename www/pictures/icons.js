@@ -5,15 +5,12 @@
  */
 import { mkdir, readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
-import { chromium } from '@playwright/test';
+import { launch } from './browser.js';
 
-const folder = fileURLToPath(new URL('../../public/', import.meta.url));
+const folder = fileURLToPath(new URL('../public/', import.meta.url));
 const svg = await readFile(`${folder}favicon.svg`, 'utf8');
 await mkdir(`${folder}icons`, { recursive: true });
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
-  args: ['--no-sandbox'],
-});
+const browser = await launch();
 // Name, size, and the share of it that the shape takes: 80 % of a maskable icon are sure to be seen.
 for (const [name, px, share] of /** @type {[string, number, number][]} */ ([
   ['192', 192, 1],

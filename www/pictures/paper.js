@@ -2,19 +2,16 @@
  * Turns the figures that `cargo xtask paper` has drawn into files for a page: uncompressed pixels to WebP, drawings as
  * they are.
  *
- * Usage: node tests/ui/paper-pictures.js FROM TO
+ * Usage: node pictures/paper.js FROM TO
  */
 import { readdir, readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { chromium } from '@playwright/test';
+import { launch } from './browser.js';
 
 const QUALITY = 0.8;
 
 const [from, to] = process.argv.slice(2);
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
-  args: ['--no-sandbox'],
-});
+const browser = await launch();
 const page = await browser.newPage();
 
 /** A line with width and height, then red, green, blue and coverage of each pixel. @param {Buffer} bytes */

@@ -10,7 +10,7 @@ import { distanceSq } from './find.js';
 
 /**
  * A run and the surface that it belongs to.
- * @typedef {object} Run
+ * @typedef {object} FollowedRun
  * @property {string} surface  see {@link surfaceKey}
  * @property {string} words  the surface in words
  * @property {number} pictureRadius
@@ -51,7 +51,7 @@ export const settingOf = ({ state, description }, name) =>
 /**
  * Returns what a run is asked for, with the sizes of the picture. Adaptive particles have the law of the picture, as it
  * is: the paper has nothing that grades it.
- * @param {Engine} engine @param {Pick<Run, 'radius' | 'adaptive'>} run
+ * @param {Engine} engine @param {Pick<FollowedRun, 'radius' | 'adaptive'>} run
  * @returns {Partial<LessonSettings>}
  */
 export function settingsOf(engine, { radius, adaptive }) {
@@ -82,13 +82,6 @@ export function surfaceKey(engine) {
   const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
   const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
   return JSON.stringify([kind, formula, values, bounds, surface, model, sizes]);
-}
-
-/** The surface in words, for a transcript. @param {Engine} engine */
-export function surfaceWords({ field }) {
-  const { kind, formula, parameters } = field.value ?? {};
-  if (kind !== 'formula') return 'a model from points';
-  return [formula, ...(parameters ?? []).map(({ name, value }) => `${name} = ${value}`)].join(', ');
 }
 
 /** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */

@@ -7,8 +7,8 @@
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
-import { chromium } from '@playwright/test';
-import { FIELD_OF_VIEW_RAD } from '../../src/engine/view/camera.js';
+import { FIELD_OF_VIEW_RAD } from '../src/engine/view/camera.js';
+import { launch } from './browser.js';
 
 const PICTURE_PX = 160;
 /** Drawn larger and scaled down: smoother edges than one sample per pixel. */
@@ -20,13 +20,10 @@ const POSTER_PX = 720;
 const POSTER_SHARE = 0.008;
 
 const [base = 'http://localhost:4517/', ...wanted] = process.argv.slice(2);
-const folder = fileURLToPath(new URL('../../public/', import.meta.url));
+const folder = fileURLToPath(new URL('../public/', import.meta.url));
 await mkdir(`${folder}gallery`, { recursive: true });
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
-  args: ['--no-sandbox'],
-});
+const browser = await launch();
 const page = await browser.newPage({ viewport: { width: 480, height: 480 }, colorScheme: 'light' });
 await page.goto(base);
 await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);

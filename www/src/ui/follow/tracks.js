@@ -59,7 +59,7 @@ export function particleTrack(follower) {
       return { heights: widths, widths };
     }),
     show,
-    step(by) {
+    go(by) {
       const to = target.peek() + by;
       if (opened.peek() === null || to < 0 || to > last.peek()) return false;
       show(to);
@@ -84,7 +84,7 @@ export function eventTrack(follower) {
     short: computed(() => [`Event ${formatCount(at.value + 1)}`, `of ${formatCount(count.value)}`]),
     bars: computed(() => ({ heights: heightsOf(opened.value?.events ?? []) })),
     show: (to) => follower.seek(to),
-    step(by) {
+    go(by) {
       // Another particle is being opened.
       if (opened.peek() && opened.peek()?.subject.particle !== target.peek()) return true;
       const to = at.peek() + by;

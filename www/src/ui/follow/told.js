@@ -11,14 +11,14 @@ const REST_MS = 400;
 
 /** @param {Follower} follower */
 export function createTold(follower) {
-  const told = h('p', { class: 'follow-told', 'aria-hidden': 'true' }, () => wordsOf(follower));
+  const told = h('p', { class: 'follow-told', 'aria-hidden': 'true' }, () => toldWords(follower));
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   announce(follower, spoken);
   return h('div', { class: 'follow-stepper' }, told, spoken);
 }
 
 /** @param {Follower} follower */
-function wordsOf({ opened, moment, rest }) {
+function toldWords({ opened, moment, rest }) {
   if (!opened.value) return '';
   if (rest.status.value) return rest.status.value.text;
   return moment.value
@@ -35,7 +35,7 @@ function announce(follower, spoken) {
   let last = -Infinity;
   let timer = 0;
   effect(() => {
-    const words = wordsOf(follower);
+    const words = toldWords(follower);
     clearTimeout(timer);
     const wait = Math.max(REST_MS, last + ANNOUNCE_MS - performance.now());
     timer = window.setTimeout(() => {

@@ -7,14 +7,15 @@ import { momentAt } from '../../figures/moment.js';
 import { openParticle, triple } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
+import { surfaceWords } from '../surface-link.js';
 import { nearest, standIn } from './find.js';
 import { Relaxation } from './rest.js';
-import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey, surfaceWords } from './run.js';
+import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey } from './run.js';
 
 /**
  * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
- * @import { Run } from './run.js'
- * @import { Signal } from '@preact/signals-core'
+ * @import { FollowedRun } from './run.js'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
  */
 
 /**
@@ -46,7 +47,12 @@ export class Follower {
     this.at = signal(0);
     /** The particle that is open, or is about to be. */
     this.target = signal(0);
-    this.run = signal(/** @type {Run | null} */ (null));
+    /**
+     * The particle that is open, and its event.
+     * @type {ReadonlySignal<[number, number] | null>}
+     */
+    this.place = computed(() => (this.opened.value ? [this.opened.value.subject.particle, this.at.value] : null));
+    this.run = signal(/** @type {FollowedRun | null} */ (null));
     this.moment = computed(() => {
       const opened = this.opened.value;
       return opened && opened.events.length > 0 ? momentAt(opened.events, this.at.value) : null;
@@ -158,10 +164,12 @@ export class Follower {
       return null;
     }
     const { adaptive } = columns;
-    return this.begin({ surface, words: surfaceWords(engine), pictureRadius, own, radius, adaptive });
+    const field = engine.field.peek();
+    const words = field?.kind === 'formula' ? surfaceWords(field) : 'a model from points';
+    return this.begin({ surface, words, pictureRadius, own, radius, adaptive });
   }
 
-  /** @param {Omit<Run, 'end' | 'alike'>} about */
+  /** @param {Omit<FollowedRun, 'end' | 'alike'>} about */
   async begin(about) {
     const { engine } = this;
     const mine = this.next();

@@ -12,8 +12,8 @@ import { icon } from '../icons.js';
 import { download } from '../share.js';
 import { loadSheet } from '../sheet.js';
 import { placedBefore } from './find.js';
+import sheet from './follow.css?url';
 import { Follower } from './follower.js';
-import sheet from './lesson.css?url';
 import { childrenMark } from './mark.js';
 import { settingOf } from './run.js';
 import { createTold } from './told.js';
@@ -22,7 +22,7 @@ import { createViews } from './views.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Lesson, Track } from '../track.js'
+ * @import { FollowPanel, Track } from '../track.js'
  */
 
 /** Distance in radii up to which two particles are at one place, but for rounding. */
@@ -33,7 +33,7 @@ const SAME_PLACE = 0.005;
  * @param {object} page
  * @param {(text: string) => void} page.say  tells what a link names and is not there
  * @param {(mark: ReturnType<typeof childrenMark>) => void} page.mount  puts a mark on the picture
- * @returns {Promise<Lesson>}
+ * @returns {Promise<FollowPanel>}
  */
 export async function mountFollow(shell, engine, { say, mount }) {
   await loadSheet(sheet);
@@ -101,7 +101,7 @@ export async function mountFollow(shell, engine, { say, mount }) {
   return {
     open,
     level: computed(() => follower.opened.value?.subject.level ?? null),
-    place: placeOf(follower),
+    place: follower.place,
     particles,
     events,
     follow(index) {
@@ -123,19 +123,14 @@ export async function mountFollow(shell, engine, { say, mount }) {
   };
 }
 
-/** @param {Follower} follower */
-const placeOf = ({ opened, at }) =>
-  computed(() => (opened.value ? /** @type {[number, number]} */ ([opened.value.subject.particle, at.value]) : null));
-
 /**
  * Keeps the particle and its event in the state, and so in the link.
  * @param {Follower} follower
  * @param {Engine} engine
  */
 function keepPlace(follower, engine) {
-  const place = placeOf(follower);
   effect(() => {
-    const follow = place.value;
+    const follow = follower.place.value;
     if (follow) untracked(() => engine.setView({ follow }));
   });
 }

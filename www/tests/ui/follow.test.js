@@ -3,11 +3,11 @@ import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from
 import { isAdaptive, momentAt } from '../../src/figures/moment.js';
 import { numbersOfRest, pushersOf, restOf, tellRest } from '../../src/figures/rest.js';
 import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
+import { nearest, placedBefore, standIn } from '../../src/ui/follow/find.js';
+import { circleAround } from '../../src/ui/follow/mark.js';
+import { alikeIn } from '../../src/ui/follow/run.js';
+import { heightsOf, stretchesOf } from '../../src/ui/follow/tracks.js';
 import { setLocale } from '../../src/ui/format.js';
-import { nearest, placedBefore, standIn } from '../../src/ui/lesson/find.js';
-import { circleAround } from '../../src/ui/lesson/mark.js';
-import { alikeIn } from '../../src/ui/lesson/run.js';
-import { heightsOf, stretchesOf } from '../../src/ui/lesson/tracks.js';
 
 /**
  * @import { LessonEvent } from '../../src/engine/types.js'

@@ -1,13 +1,13 @@
-/** The link to the lesson's page, which carries the surface of the picture over. */
-import { explain } from '../explain.js';
-import { packCarried } from '../surface-link.js';
+/** The link to the learn page, which carries the surface of the picture over. */
+import { explain } from './explain.js';
+import { packCarried } from './surface-link.js';
 
-/** @import { Engine } from '../../engine/types.js' */
+/** @import { Engine } from '../engine/types.js' */
 
 const PAGE = './learn/';
 
 /** @param {HTMLAnchorElement} link  of the page's markup @param {Engine} engine */
-export function bindLessonLink(link, engine) {
+export function bindLearnLink(link, engine) {
   /** Says where the link leads just before it is followed or copied. */
   const write = () => {
     const surface = engine.lessonSurface();

@@ -7,11 +7,12 @@
  */
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
-import { chromium, expect } from '@playwright/test';
-import { WHAT_IFS } from '../../src/learn/whatifs.js';
+import { expect } from '@playwright/test';
+import { WHAT_IFS } from '../src/learn/whatifs.js';
+import { launch } from './browser.js';
 
 const [base = 'http://localhost:4517/'] = process.argv.slice(2);
-const folder = fileURLToPath(new URL('../../learn/stills/', import.meta.url));
+const folder = fileURLToPath(new URL('../learn/stills/', import.meta.url));
 /**
  * What is not of the picture. The bars of the costs are shown, since their still is for readers without JavaScript
  * alone.
@@ -19,10 +20,7 @@ const folder = fileURLToPath(new URL('../../learn/stills/', import.meta.url));
 const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, figcaption { display: none !important }
   .told { min-height: 0 !important } .cost { display: table !important }`;
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
-  args: ['--no-sandbox'],
-});
+const browser = await launch();
 const page = await browser.newPage({
   viewport: { width: 1040, height: 900 },
   colorScheme: 'light',

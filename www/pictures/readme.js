@@ -7,7 +7,7 @@
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
-import { chromium } from '@playwright/test';
+import { launch } from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -61,12 +61,9 @@ const LEVELS = [10, 17, 25, 34];
 const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
 
 const base = process.argv[2] ?? 'http://localhost:4517/';
-const folder = fileURLToPath(new URL('../../readme/', import.meta.url));
+const folder = fileURLToPath(new URL('../readme/', import.meta.url));
 await mkdir(folder, { recursive: true });
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
-  args: ['--no-sandbox'],
-});
+const browser = await launch();
 
 /** @param {string} name @param {Uint8Array} bytes */
 async function write(name, bytes) {
