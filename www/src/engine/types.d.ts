@@ -1,5 +1,6 @@
-// Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands. Lengths are
-// in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says otherwise.
+// Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands.
+// Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
+// otherwise.
 import type { Columns } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
 import type { Surface } from './lesson/protocol.js';

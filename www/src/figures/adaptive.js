@@ -2,8 +2,9 @@
  * The tangent plane of an adaptive particle: its free spaces, how a child is pushed into one, and the angles φ and τ
  * (paper §5, Figs 7 and 8).
  */
+
+import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
-import { s } from '../ui/svg.js';
 import { childMarks, slotGroup } from './drawings.js';
 import { arcOf, unrolled, widthOf } from './geometry.js';
 import { label, line, ring } from './svg.js';

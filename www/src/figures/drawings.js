@@ -1,8 +1,8 @@
 /** The two drawings of a particle: its tangent plane from above, and the plane of a slot from the side. */
 
 import { dot } from '../engine/vector.js';
+import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
-import { s } from '../ui/svg.js';
 import { inPlane, slotPlace } from './geometry.js';
 import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';

@@ -1,8 +1,8 @@
 /** Draws a relaxation step of one particle: the pushes on it and their sum, and the move enlarged. */
 
 import { dot } from '../engine/vector.js';
+import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
-import { s } from '../ui/svg.js';
 import { inPlane, tangentsOf } from './geometry.js';
 import { pushWords } from './rest.js';
 import { label, line, ring } from './svg.js';

@@ -1,5 +1,5 @@
 /** Parts of drawings, in which y points up and lengths are in radii. */
-import { s } from '../ui/svg.js';
+import { s } from '../ui/dom.js';
 
 /** @import { Point } from './geometry.js' */
 

@@ -1,9 +1,8 @@
 /** Controls and small charts that several figures have. */
 
 import { signal } from '@preact/signals-core';
-import { h, reducedMotion, uniqueId } from '../ui/dom.js';
+import { h, reducedMotion, s, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
-import { s } from '../ui/svg.js';
 
 /**
  * A native range with its name and its value in words.

@@ -1,9 +1,8 @@
 /** The race: the front against the method that the paper compares it with, side by side under one camera. */
 import { opponentOf, Race } from '../engine/lesson/race.js';
-import { fill, h } from '../ui/dom.js';
+import { fill, h, s } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
 import { spread } from '../ui/neighbours.js';
-import { s } from '../ui/svg.js';
 import { tableOf } from '../ui/table.js';
 import { adaptiveRun } from './adaptive.js';
 import { reasonOf } from './figure.js';

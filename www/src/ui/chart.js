@@ -2,9 +2,8 @@
  * Draws charts: stacked bars from 0 up, or a line. A chart fills the width that it has, so that no text is in the
  * drawing.
  */
-import { h } from './dom.js';
+import { h, s } from './dom.js';
 import { formatCount } from './format.js';
-import { s } from './svg.js';
 
 /**
  * What a chart shows. `first` is the number of the first place.

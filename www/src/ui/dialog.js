@@ -3,11 +3,11 @@
 import { h, uniqueId } from './dom.js';
 import { icon } from './icons.js';
 
-/** @import { Child } from './dom.js' */
+/** @import { Children } from './types.js' */
 
 /**
  * @param {string} title
- * @param {...Child} content
+ * @param {...Children} content
  */
 export function createDialog(title, ...content) {
   const id = uniqueId('dialog');

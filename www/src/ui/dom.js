@@ -4,17 +4,7 @@
  */
 import { effect } from '@preact/signals-core';
 
-/** @typedef {Node | string | number | null | undefined | false} Child */
-/**
- * What an element may be given: itself, or a function of signals whose text is kept up to date.
- * @typedef {Child | (() => Child)} Given
- */
-/** What an attribute may be. @typedef {string | number | boolean | null | undefined} Attribute */
-/**
- * @template {HTMLElement} [E=HTMLElement]
- * @typedef {{ on?: { [K in keyof HTMLElementEventMap]?: (event: HTMLElementEventMap[K]) => void }, prop?: Partial<E>,
- *   data?: Record<string, Attribute | (() => Attribute)> } & Record<string, unknown>} Props
- */
+/** @import { Children, Given, Props, SvgProps } from './types.js' */
 
 /** What ends with a node. @type {WeakMap<Node, (() => void)[]>} */
 const endings = new WeakMap();
@@ -45,33 +35,58 @@ export function release(node) {
 }
 
 /**
- * Creates an element.
+ * Creates an element of a page.
  *
- * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All
- * others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A function in the
- * place of an attribute, a data attribute or a child is read anew after every change of the signals that it reads, as
- * long as the element lasts.
+ * In `props`, `on` holds event listeners, `data` the data attributes, `style` the properties of CSS and `prop` those of
+ * the object. All others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A
+ * function in place of a value or a child is read anew after every change of the signals that it reads, as long as the
+ * element lasts.
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
  * @param {Props<HTMLElementTagNameMap[K]> | null} [props]
- * @param {...(Given | Given[])} children
- * @returns {HTMLElementTagNameMap[K]}
+ * @param {...Children} children
  */
-export function h(tag, props, ...children) {
-  const element = document.createElement(tag);
-  const set = (/** @type {unknown} */ value, /** @type {(value: any) => void} */ act) => {
-    if (typeof value === 'function') live(element, () => act(value()));
-    else act(value);
-  };
-  const { on = {}, data = {}, prop, ...attributes } = props ?? {};
-  for (const [name, value] of Object.entries(attributes)) set(value, (now) => setAttribute(element, name, now));
-  for (const [key, value] of Object.entries(data)) set(value, (now) => Object.assign(element.dataset, { [key]: now }));
-  Object.assign(element, prop);
+export const h = (tag, props, ...children) => equip(document.createElement(tag), props ?? {}, children);
+
+/**
+ * Creates an element of a drawing, likewise.
+ * @template {keyof SVGElementTagNameMap} K
+ * @param {K} tag
+ * @param {SvgProps<SVGElementTagNameMap[K]>} props
+ * @param {...Children} children
+ */
+export const s = (tag, props, ...children) =>
+  equip(document.createElementNS('http://www.w3.org/2000/svg', tag), props, children);
+
+/**
+ * @template {HTMLElement | SVGElement} E
+ * @param {E} element
+ * @param {Given<E>} props
+ * @param {readonly Children[]} children
+ */
+function equip(element, { on = {}, data = {}, style = {}, prop = {}, ...attributes }, children) {
+  each(element, attributes, (name, value) => setAttribute(element, name, value));
+  each(element, data, (name, value) => Object.assign(element.dataset, { [name]: value }));
+  each(element, style, (name, value) => element.style.setProperty(name, String(value)));
+  append(element, children);
+  each(element, prop, (name, value) => Object.assign(element, { [name]: value }));
   for (const [type, listener] of Object.entries(on))
     element.addEventListener(type, /** @type {EventListener} */ (listener));
-  append(element, children);
   return element;
+}
+
+/**
+ * Sets each of the values, and those that are functions again after every change of the signals that they read.
+ * @param {Node} node
+ * @param {object} values
+ * @param {(name: string, value: unknown) => void} set
+ */
+function each(node, values, set) {
+  for (const [name, value] of Object.entries(values)) {
+    if (typeof value === 'function') live(node, () => set(name, value()));
+    else set(name, value);
+  }
 }
 
 /**
@@ -85,35 +100,45 @@ export function setAttribute(element, name, value) {
   else element.setAttribute(name, value === true ? '' : String(value));
 }
 
-/**
- * @param {Node} parent
- * @param {(Given | Given[])[]} children
- */
-function append(parent, children) {
-  for (const child of children.flat()) {
-    if (child === null || child === undefined || child === false) continue;
-    if (typeof child === 'function') parent.appendChild(textOf(child));
-    else parent.appendChild(child instanceof Node ? child : document.createTextNode(String(child)));
-  }
+/** @param {Node} parent @param {Children} child */
+function append(parent, child) {
+  if (child === null || child === undefined || child === false) return;
+  if (typeof child === 'function') follow(parent, child);
+  else if (typeof child !== 'object') parent.appendChild(document.createTextNode(String(child)));
+  else if (child instanceof Node) parent.appendChild(child);
+  else for (const one of child) append(parent, one);
 }
 
 /**
- * Returns a text that is kept equal to what `read` returns. The node is only changed when the text changes.
- * @param {() => Child} read
+ * Appends what `read` returns, and replaces it after every change. A text stays in one node, which changes only with
+ * its words.
+ * @param {Node} parent
+ * @param {() => Children} read
  */
-function textOf(read) {
-  const node = document.createTextNode('');
-  live(node, () => {
-    const text = String(read() ?? '');
-    if (node.data !== text) node.data = text;
+function follow(parent, read) {
+  const text = document.createTextNode('');
+  parent.appendChild(text);
+  /** @type {ChildNode[]} */
+  let shown = [];
+  live(text, () => {
+    const content = read();
+    const isText = typeof content === 'string' || typeof content === 'number';
+    const next = document.createDocumentFragment();
+    append(next, isText ? null : content);
+    for (const node of shown) {
+      node.remove();
+      release(node);
+    }
+    shown = [...next.childNodes];
+    text.before(next);
+    if (text.data !== String(isText ? content : '')) text.data = String(isText ? content : '');
   });
-  return node;
 }
 
 /**
  * Replaces the children of `parent`, and ends what belongs to those that go.
  * @param {Element} parent
- * @param {...(Given | Given[])} children
+ * @param {...Children} children
  */
 export function fill(parent, ...children) {
   const old = [...parent.childNodes];
@@ -126,6 +151,21 @@ export function fill(parent, ...children) {
 export function byId(id) {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no element #${id}`);
+  return element;
+}
+
+/**
+ * Returns the first element within `root` that a selector finds.
+ * @overload @param {ParentNode} root @param {string} selector @returns {HTMLElement}
+ */
+/**
+ * @template {typeof HTMLElement} T
+ * @overload @param {ParentNode} root @param {string} selector @param {T} kind @returns {InstanceType<T>}
+ */
+/** @param {ParentNode} root @param {string} selector @param {typeof HTMLElement} [kind] */
+export function query(root, selector, kind = HTMLElement) {
+  const element = root.querySelector(selector);
+  if (!(element instanceof kind)) throw new Error(`the page has no ${kind.name} ${selector}`);
   return element;
 }
 

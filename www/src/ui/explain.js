@@ -98,8 +98,9 @@ export function place(element, anchor, side = 'below') {
 }
 
 /**
- * Attaches an explanation to `target`.
- * @param {Element} target hovered or focused
+ * Attaches an explanation to `target`, and returns that.
+ * @template {Element} E
+ * @param {E} target hovered or focused
  * @param {() => Explanation | null} read
  * @param {{ tap?: boolean, side?: Side, focus?: boolean }} [options] with `tap`, a press toggles it (for elements that
  *   do nothing else); without `focus` it is there for the pointer alone, where Escape has another use
@@ -122,4 +123,5 @@ export function explain(target, read, options = {}) {
   });
   target.addEventListener('focusout', hide);
   if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));
+  return target;
 }

@@ -1,4 +1,5 @@
 /** The icons, as strokes on a 16 × 16 grid. */
+import { s } from './dom.js';
 
 const PATHS = /** @type {const} */ ({
   plus: 'M8 3.500v9M3.500 8h9',
@@ -41,16 +42,5 @@ const PATHS = /** @type {const} */ ({
  * Creates a decorative icon. The element that contains it carries the accessible name.
  * @param {IconName} name
  */
-export const icon = (name) => drawIcon(PATHS[name]);
-
-/** @param {string} shape  a path on the same grid */
-function drawIcon(shape) {
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-  svg.setAttribute('viewBox', '0 0 16 16');
-  svg.setAttribute('aria-hidden', 'true');
-  svg.setAttribute('class', 'icon');
-  const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-  path.setAttribute('d', shape);
-  svg.append(path);
-  return svg;
-}
+export const icon = (name) =>
+  s('svg', { viewBox: '0 0 16 16', 'aria-hidden': 'true', class: 'icon' }, s('path', { d: PATHS[name] }));

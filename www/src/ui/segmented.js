@@ -1,32 +1,34 @@
 /** Creates a segmented control: two or three radio buttons side by side. */
-import { h, uniqueId } from './dom.js';
+import { h, live, uniqueId } from './dom.js';
 
 /**
  * @param {object} options
  * @param {string} options.name accessible name
  * @param {{ value: string, label: string }[]} options.choices
- * @param {(value: string) => void} options.change
+ * @param {() => string} options.value  the choice that is checked, from signals
+ * @param {() => boolean} [options.disabled]
+ * @param {(value: string) => unknown} options.change  may take its time
  */
-export function createSegmented({ name, choices, change }) {
+export function createSegmented({ name, choices, value: checked, disabled, change }) {
   const group = uniqueId('segmented');
   const inputs = choices.map(({ value }) =>
     h('input', {
       type: 'radio',
       name: group,
       value,
-      on: { change: () => change(value) },
+      disabled,
+      on: { change: () => void Promise.resolve(change(value)).then(check) },
     }),
   );
+  // A choice that is not taken over goes back to the present one.
+  const check = () => {
+    for (const input of inputs) input.checked = input.value === checked();
+  };
   const element = h(
     'div',
     { class: 'segmented', role: 'radiogroup', 'aria-label': name },
     choices.map(({ label }, i) => h('label', { class: 'segment' }, inputs[i], h('span', null, label))),
   );
-  return {
-    element,
-    /** @param {string} value */
-    set(value) {
-      for (const input of inputs) input.checked = input.value === value;
-    },
-  };
+  live(element, check);
+  return element;
 }

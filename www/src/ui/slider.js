@@ -2,7 +2,8 @@
  * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a
  * double click resets the value. The number can be typed and stepped.
  */
-import { h, setAttribute, uniqueId } from './dom.js';
+import { untracked } from '@preact/signals-core';
+import { h, live, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
 import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 
@@ -12,7 +13,7 @@ import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
  * @typedef {object} SliderOptions
  * @property {string} name accessible name
  * @property {Scale} scale
- * @property {number} value
+ * @property {number | (() => number)} value  or what reads it from signals, as long as the slider lasts
  * @property {(value: number) => string} describe returns the value in words, with its unit
  * @property {(value: number, live: boolean) => void} change `live` during a drag
  * @property {() => void} reset
@@ -51,14 +52,18 @@ export function createSlider(options) {
   if (box) listenToBox(model, box);
   model.writeScale();
   model.write();
+  /** @param {number} next */
+  const set = (next) => {
+    if (model.dragging || next === model.value) return;
+    model.value = next;
+    model.write(document.activeElement === box ? (box ?? undefined) : undefined);
+  };
+  const { value } = options;
+  if (typeof value === 'function') live(range, () => set(value()));
   return {
     range,
     box,
-    set(next) {
-      if (model.dragging || next === model.value) return;
-      model.value = next;
-      model.write(document.activeElement === box ? (box ?? undefined) : undefined);
-    },
+    set,
     setScale(next) {
       model.scale = next;
       model.writeScale();
@@ -73,7 +78,7 @@ class Model {
   constructor(options) {
     this.options = options;
     this.scale = options.scale;
-    this.value = options.value;
+    this.value = typeof options.value === 'function' ? untracked(options.value) : options.value;
     this.factor = options.factor ?? 1;
     this.dragging = false;
     const name = options.name;

@@ -5,10 +5,9 @@ import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
 import { FATES, tell } from '../../figures/words.js';
-import { fill, h } from '../../ui/dom.js';
+import { fill, h, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { icon } from '../../ui/icons.js';
-import { s } from '../../ui/svg.js';
 import { createRange } from '../parts.js';
 
 /**

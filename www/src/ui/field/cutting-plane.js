@@ -1,7 +1,8 @@
 /** The controls of the cutting plane: its direction, its position, and which side it hides. */
-import { computed, effect, signal } from '@preact/signals-core';
+import { computed, signal } from '@preact/signals-core';
 import { along, dot } from '../../engine/vector.js';
-import { h } from '../dom.js';
+import { button } from '../button.js';
+import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatSignificant } from '../format.js';
 import { createSegmented } from '../segmented.js';
@@ -11,6 +12,11 @@ import { AXES, anglesOf, axisOf, axisVector, centreOf, directionOf, extentOf, to
 /**
  * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'
  * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ */
+
+/**
+ * The present plane, and the axis that it lies across, if there is one.
+ * @typedef {{ plane: ReadonlySignal<CuttingPlane | null>, axis: ReadonlySignal<ReturnType<typeof axisOf>> }} Cut
  */
 
 /** Places of the position slider on the way through the box. */
@@ -25,24 +31,10 @@ export function createCuttingPlane(engine) {
   const free = signal(false);
   const axis = computed(() => (plane.value && !free.value ? axisOf(plane.value.normal) : null));
 
-  const direction = createSegmented({
-    name: 'Cut across',
-    choices: [
-      { value: 'off', label: 'Off' },
-      ...AXES.map((name) => ({ value: name, label: name })),
-      { value: 'free', label: 'Free' },
-    ],
-    change: choose,
-  });
-  const position = createPosition(engine, { bounds, plane, axis });
-  const angles = createAngles(engine, { plane, axis, free });
-  const flip = button('Flip', 'Hides the other side.', () => {
+  const flip = () => {
     const now = plane.peek();
     if (now) engine.setPlane({ normal: along([0, 0, 0], now.normal, -1), offset: -now.offset });
-  });
-  const face = button('Face me', 'Turns the plane so that it hides what is nearer to you.', () => choose('free'));
-  const controls = h('div', { class: 'rows' }, position, ...angles, h('div', { class: 'repairs' }, flip, face));
-
+  };
   /** Cuts through the middle of the box and hides the side that is turned to the viewer. @param {string} value */
   function choose(value) {
     const now = bounds.peek();
@@ -54,44 +46,54 @@ export function createCuttingPlane(engine) {
     engine.setPlane({ normal, offset: dot(normal, centreOf(now)) });
   }
 
-  const summary = h('span', { class: 'quiet now' });
+  const told = () => {
+    const [now, straight] = [plane.value, axis.value];
+    if (!now) return 'off';
+    return straight ? `${AXES[straight.axis]} = ${formatSignificant(straight.sign * now.offset, 3)}` : 'free direction';
+  };
   const details = h(
     'details',
     { class: 'section clip plane' },
-    h('summary', { class: 'section-head' }, h('h2', null, 'Cutting plane'), summary),
-    direction.element,
-    controls,
+    h('summary', { class: 'section-head' }, h('h2', null, 'Cutting plane'), h('span', { class: 'quiet now' }, told)),
+    createSegmented({
+      name: 'Cut across',
+      choices: [
+        { value: 'off', label: 'Off' },
+        ...AXES.map((name) => ({ value: name, label: name })),
+        { value: 'free', label: 'Free' },
+      ],
+      value: () => (!plane.value ? 'off' : axis.value ? AXES[axis.value.axis] : 'free'),
+      change: choose,
+    }),
+    h(
+      'div',
+      { class: 'rows', hidden: () => !plane.value },
+      createPosition(engine, { bounds, plane, axis }),
+      createAngles(engine, { plane, axis, free }),
+      h(
+        'div',
+        { class: 'repairs' },
+        action('Flip', 'Hides the other side.', flip),
+        action('Face me', 'Turns the plane so that it hides what is nearer to you.', () => choose('free')),
+      ),
+    ),
   );
-  effect(() => {
-    const [now, straight] = [plane.value, axis.value];
-    direction.set(!now ? 'off' : straight ? AXES[straight.axis] : 'free');
-    controls.hidden = !now;
-    summary.textContent = !now
-      ? 'off'
-      : straight
-        ? `${AXES[straight.axis]} = ${formatSignificant(straight.sign * now.offset, 3)}`
-        : 'free direction';
-    // A plane that comes with a link or by undo is not left unexplained.
-    if (now) details.open = true;
+  // A plane that comes with a link or by undo is not left unexplained.
+  live(details, () => {
+    if (plane.value) details.open = true;
   });
   return details;
 }
 
-/** @param {string} label @param {string} text @param {() => void} act */
-function button(label, text, act) {
-  const element = h('button', { type: 'button', class: 'button small', on: { click: act } }, label);
-  explain(element, () => ({ title: label, text }));
-  return element;
-}
+/** @param {string} label @param {string} text @param {() => void} press */
+const action = (label, text, press) =>
+  explain(button({ class: 'small', press }, label), () => ({ title: label, text }));
 
 /**
  * Creates the slider for the position: the coordinate where the plane lies across an axis, else the distance from the
  * origin along the normal.
  * @param {Engine} engine
- * @param {object} present
- * @param {ReadonlySignal<Bounds | null>} present.bounds
- * @param {ReadonlySignal<CuttingPlane | null>} present.plane
- * @param {ReadonlySignal<{axis: number, sign: number} | null>} present.axis
+ * @param {Cut & { bounds: ReadonlySignal<Bounds | null> }} cut
  */
 function createPosition(engine, { bounds, plane, axis }) {
   const sign = () => axis.peek()?.sign ?? 1;
@@ -109,26 +111,22 @@ function createPosition(engine, { bounds, plane, axis }) {
       if (now && box) engine.setPlane({ ...now, offset: dot(now.normal, centreOf(box)) });
     },
   });
-  const name = h('var', null, 'd');
-  effect(() => {
+  live(slider.range, () => {
     const [now, box, straight] = [plane.value, bounds.value, axis.value];
     if (!now || !box) return;
     const normal = straight ? axisVector(straight.axis) : now.normal;
     const [min, max] = extentOf(box, normal);
-    name.textContent = straight ? AXES[straight.axis] : 'd';
     slider.setScale({ min, max, step: (max - min) / PLACES });
     slider.set((straight?.sign ?? 1) * now.offset);
   });
+  const name = h('var', null, () => (axis.value ? AXES[axis.value.axis] : 'd'));
   return h('div', { class: 'row' }, h('span', { class: 'name' }, name), slider.range, slider.box);
 }
 
 /**
  * Creates the sliders for a free direction.
  * @param {Engine} engine
- * @param {object} present
- * @param {ReadonlySignal<CuttingPlane | null>} present.plane
- * @param {ReadonlySignal<{axis: number, sign: number} | null>} present.axis
- * @param {Signal<boolean>} present.free
+ * @param {Cut & { free: Signal<boolean> }} cut
  */
 function createAngles(engine, { plane, axis, free }) {
   const angles = computed(() => anglesOf(plane.value?.normal ?? [1, 0, 0]));
@@ -151,7 +149,7 @@ function createAngles(engine, { plane, axis, free }) {
     const slider = createSlider({
       name,
       scale: { min: -most, max: most, step: 1 },
-      value: 0,
+      value: () => Number((angles.value[key] * DEGREES).toFixed(2)),
       describe: (value) => `${formatSignificant(value, 3)}°`,
       change: (value) => turn({ [key]: value / DEGREES }),
       reset: () => turn({ [key]: 0 }),
@@ -164,11 +162,7 @@ function createAngles(engine, { plane, axis, free }) {
           ? 'Direction of the hidden side in the xy plane, in degrees from x towards y.'
           : 'Direction of the hidden side above the xy plane, in degrees.',
     }));
-    const row = h('div', { class: 'row' }, caption, slider.range, slider.box);
-    effect(() => {
-      row.hidden = !plane.value || axis.value !== null;
-      slider.set(Number((angles.value[key] * DEGREES).toFixed(2)));
-    });
-    return row;
+    const hidden = () => !plane.value || axis.value !== null;
+    return h('div', { class: 'row', hidden }, caption, slider.range, slider.box);
   });
 }

@@ -1,6 +1,7 @@
 /** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h, setAttribute, uniqueId } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { button } from '../button.js';
+import { fill, h, live, query, uniqueId } from '../dom.js';
 import { mathElement, mathParts } from '../mathml.js';
 import { beginsFunction, describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
@@ -32,13 +33,8 @@ import { createTextarea } from './textarea.js';
 export function createFormula(engine, description) {
   const input = new FormulaInput(engine, description);
   const preview = createPreview(engine);
-  const help = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain small',
-      on: { click: () => openFunctions(description, (name) => input.insert(name)) },
-    },
+  const help = button(
+    { class: 'plain small', press: () => openFunctions(description, (name) => input.insert(name)) },
     'Functions',
   );
   const section = h(
@@ -51,7 +47,7 @@ export function createFormula(engine, description) {
   );
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
-    if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
+    if (section.hidden) query(document, '.tile :checked').focus();
     else input.editor.focus();
   });
   return section;
@@ -83,16 +79,16 @@ class FormulaInput {
     /** @type {Editor} */
     this.editor = createTextarea({ text: shown.peek(), change: this.change, focused: () => this.upgrade() });
     this.holder.append(this.editor.element);
-    effect(() => {
+    live(this.holder, () => {
       const text = shown.value;
       if (this.editor.text() !== text) this.editor.setText(text);
     });
-    effect(() => {
+    live(this.holder, () => {
       void this.fault.value;
       this.unfinished = false;
       this.render();
     });
-    effect(() => {
+    live(this.holder, () => {
       void shown.value;
       this.render();
     });
@@ -153,9 +149,11 @@ class FormulaInput {
 
   /** @param {Repair[]} repairs */
   repairButtons(repairs) {
-    const button = (/** @type {Repair} */ repair) =>
-      h('button', { type: 'button', class: 'button small', on: { click: () => this.mend(repair) } }, repair.label);
-    return h('div', { class: 'repairs' }, repairs.map(button));
+    return h(
+      'div',
+      { class: 'repairs' },
+      repairs.map((repair) => button({ class: 'small', press: () => this.mend(repair) }, repair.label)),
+    );
   }
 
   /** @param {Repair} repair */
@@ -186,13 +184,18 @@ const excerptElement = ({ excerpt }) =>
 
 /** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
+  const math = computed(() => engine.field.value?.mathml ?? null);
+  // Beside a formula that cannot be read, the last one that could stays. What it is must be said.
+  const isLast = computed(() => engine.fieldError.value !== null && math.value !== null);
+  const id = uniqueId('preview');
+  const last = h('p', { class: 'quiet', id, hidden: () => !isLast.value }, 'The last formula that could be read:');
   const preview = h('div', {
     class: 'preview',
     role: 'group',
     'aria-label': 'The formula as mathematics',
+    'aria-describedby': () => isLast.value && id,
     tabindex: 0,
   });
-  const math = computed(() => engine.field.value?.mathml ?? null);
   // A formula is split into parts only if it is too long for one line.
   const fit = () => {
     const tree = math.peek();
@@ -206,18 +209,11 @@ function createPreview(engine) {
       mathParts(tree).flatMap((part) => [part, h('wbr')]),
     );
   };
-  effect(() => {
+  live(preview, () => {
     void math.value;
     fit();
   });
-  // Beside a formula that cannot be read, the last one that could stays. What it is must be said.
-  const last = h('p', { class: 'quiet', id: uniqueId('preview') }, 'The last formula that could be read:');
-  effect(() => {
-    const isLast = engine.fieldError.value !== null && math.value !== null;
-    last.hidden = !isLast;
-    preview.classList.toggle('stale', isLast);
-    setAttribute(preview, 'aria-describedby', isLast && last.id);
-  });
+  live(preview, () => preview.classList.toggle('stale', isLast.value));
   let width = 0;
   new ResizeObserver(() => {
     if (preview.clientWidth !== width) fit();

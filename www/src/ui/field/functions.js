@@ -1,5 +1,6 @@
 /** Shows the functions that a formula may use, from the core's description. */
 
+import { button } from '../button.js';
 import { createDialog } from '../dialog.js';
 import { h } from '../dom.js';
 
@@ -27,16 +28,12 @@ export function openFunctions(description, insert) {
         h(
           'li',
           null,
-          h(
-            'button',
+          button(
             {
-              type: 'button',
-              class: 'button plain small',
-              on: {
-                click: () => {
-                  dialog?.close();
-                  insert(name);
-                },
+              class: 'plain small',
+              press: () => {
+                dialog?.close();
+                insert(name);
               },
             },
             h('code', null, signature),

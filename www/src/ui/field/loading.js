@@ -1,6 +1,7 @@
 /** Shows the progress of a model or a file that is loading, a Cancel button, and advice after a refusal. */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { button } from '../button.js';
+import { h, live, query } from '../dom.js';
 import { formatShare } from '../format.js';
 import { describeLoadingError } from './files.js';
 
@@ -9,83 +10,87 @@ import { describeLoadingError } from './files.js';
 /** Step of the progress that is announced to assistive technology. */
 const SPOKEN_SHARE = 0.25;
 
+/** The button that opens a file. */
+const opener = () => query(document, '.open-file');
+
 /** @param {Engine} engine */
 export function createLoading(engine) {
-  const title = h('h2');
-  const stage = h('p', { class: 'quiet load-stage', 'aria-hidden': 'true' });
-  const bar = h('div', { class: 'load-bar', role: 'progressbar', 'aria-valuemin': 0, 'aria-valuemax': 100 });
-  const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
-  const cancel = h(
-    'button',
-    { type: 'button', class: 'button small', on: { click: () => engine.cancelLoading() } },
-    'Cancel',
-  );
+  const name = computed(() => engine.loading.value?.name ?? null);
+  const cancel = button({ class: 'small', press: () => engine.cancelLoading() }, 'Cancel');
   const working = h(
     'div',
-    { class: 'section loading' },
-    h('div', { class: 'section-head' }, title, cancel),
-    bar,
-    stage,
+    { class: 'section loading', hidden: () => name.value === null },
+    h(
+      'div',
+      { class: 'section-head' },
+      h('h2', null, () => name.value),
+      cancel,
+    ),
+    createBar(engine.loading),
   );
-  const refused = h('div', { class: 'section refused', role: 'group' });
-
-  const name = computed(() => engine.loading.value?.name ?? null);
-  effect(() => {
-    const present = name.value;
+  live(working, () => {
     // The Cancel button disappears, so the focus moves to the button that opens a file.
-    if (present === null && document.activeElement === cancel)
-      /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.focus();
-    working.hidden = present === null;
-    title.textContent = present ?? '';
-    bar.setAttribute('aria-label', `Loading ${present ?? ''}`);
-  });
-  effect(() => {
-    const loading = engine.loading.value;
-    if (!loading) return;
-    bar.style.setProperty('--fraction', loading.fraction.toFixed(3));
-    bar.setAttribute('aria-valuenow', String(Math.round(loading.fraction * 100)));
-    bar.setAttribute('aria-valuetext', `${loading.label}, ${formatShare(loading.fraction, 0)}`);
-    fill(stage, h('span', null, loading.label), h('span', { class: 'unit' }, formatShare(loading.fraction, 0)));
+    if (name.value === null && document.activeElement === cancel) opener().focus();
   });
   const heard = computed(() => {
-    const {
-      loading: { value: loading },
-      loadingError: { value: error },
-    } = engine;
+    const [loading, error] = [engine.loading.value, engine.loadingError.value];
     if (loading)
       return `${loading.name}: ${loading.label}, ${formatShare(Math.floor(loading.fraction / SPOKEN_SHARE) * SPOKEN_SHARE, 0)}`;
     if (!error) return '';
-    const { title: what, line, text } = describeLoadingError(error);
-    return [what, line, text].filter(Boolean).join('. ');
+    const { title, line, text } = describeLoadingError(error);
+    return [title, line, text].filter(Boolean).join('. ');
   });
-  effect(() => {
-    spoken.textContent = heard.value;
+  const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' }, () => heard.value);
+  return [working, createRefusal(engine.loadingError), spoken];
+}
+
+/** Creates the bar and the line about the stage. What was shown last stays. @param {Engine['loading']} present */
+function createBar(present) {
+  let last = present.peek();
+  const loading = computed(() => {
+    last = present.value ?? last;
+    return last;
   });
-  effect(() => {
-    const error = engine.loadingError.value;
-    refused.hidden = error === null;
-    if (!error) return fill(refused);
-    const { title: what, line, text, advice } = describeLoadingError(error);
-    refused.setAttribute('aria-label', what);
-    fill(
-      refused,
-      h('h2', null, what),
-      h('p', null, line ? h('strong', null, `${line}: `) : null, text),
-      h('p', { class: 'quiet' }, advice, advice ? ' ' : '', 'The surface before it stays.'),
-      h(
-        'div',
-        { class: 'repairs' },
+  const fraction = () => loading.value?.fraction ?? 0;
+  const share = () => formatShare(fraction(), 0);
+  const bar = h('div', {
+    class: 'load-bar',
+    role: 'progressbar',
+    'aria-valuemin': 0,
+    'aria-valuemax': 100,
+    'aria-label': () => `Loading ${loading.value?.name ?? ''}`,
+    'aria-valuenow': () => Math.round(fraction() * 100),
+    'aria-valuetext': () => loading.value && `${loading.value.label}, ${share()}`,
+    style: { '--fraction': () => fraction().toFixed(3) },
+  });
+  const stage = h('p', { class: 'quiet load-stage', 'aria-hidden': 'true' }, () => [
+    h('span', null, loading.value?.label),
+    h('span', { class: 'unit' }, share()),
+  ]);
+  return [bar, stage];
+}
+
+/** Creates what is said after a refusal. @param {Engine['loadingError']} error */
+function createRefusal(error) {
+  const told = computed(() => error.value && describeLoadingError(error.value));
+  return h(
+    'div',
+    {
+      class: 'section refused',
+      role: 'group',
+      hidden: () => told.value === null,
+      'aria-label': () => told.value?.title,
+    },
+    () =>
+      told.value && [
+        h('h2', null, told.value.title),
+        h('p', null, told.value.line && h('strong', null, `${told.value.line}: `), told.value.text),
+        h('p', { class: 'quiet' }, told.value.advice, told.value.advice ? ' ' : '', 'The surface before it stays.'),
         h(
-          'button',
-          {
-            type: 'button',
-            class: 'button small',
-            on: { click: () => /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.click() },
-          },
-          'Choose another file',
+          'div',
+          { class: 'repairs' },
+          button({ class: 'small', press: () => opener().click() }, 'Choose another file'),
         ),
-      ),
-    );
-  });
-  return [working, refused, spoken];
+      ],
+  );
 }

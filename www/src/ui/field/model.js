@@ -1,8 +1,9 @@
 /**
  * Replaces the formula for a surface from points: its facts, how well it fits, and a button that returns to a formula.
  */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { button } from '../button.js';
+import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
@@ -19,28 +20,28 @@ import { factsOf, fittedOf } from './facts.js';
  */
 export function createModel(engine, description) {
   const model = computed(() => (engine.field.value?.kind === 'points' ? engine.field.value.model : null));
-  const fitted = h('p', { class: 'quiet' });
-  const facts = h('dl', { class: 'facts' });
-  const warnings = h('ul', { class: 'warnings' });
-  const back = h(
-    'button',
-    { type: 'button', class: 'button plain small', on: { click: () => goBack() } },
-    'Back to the formula',
-  );
+  const warnings = computed(() => model.value?.warnings ?? []);
   const section = h(
     'div',
-    { class: 'section model' },
-    h('div', { class: 'section-head' }, h('h2', null, 'Function'), back),
-    fitted,
+    { class: 'section model', hidden: () => engine.field.value?.kind !== 'points' },
+    h(
+      'div',
+      { class: 'section-head' },
+      h('h2', null, 'Function'),
+      button({ class: 'plain small', press: () => goBack() }, 'Back to the formula'),
+    ),
+    h('p', { class: 'quiet' }, () => model.value && fittedOf(model.value)),
     createCentres(engine, description, model),
-    facts,
-    warnings,
+    h('dl', { class: 'facts' }, () => model.value && factsOf(model.value).map(factElements)),
+    h('ul', { class: 'warnings', hidden: () => warnings.value.length === 0 }, () =>
+      warnings.value.map((text) => h('li', null, text)),
+    ),
   );
 
   // The last formula, with its parameters and box, for the way back.
   /** @type {Shape | null} */
   let left = null;
-  effect(() => {
+  live(section, () => {
     const { v: _, view: __, ...shape } = engine.state.value;
     if (shape.formula !== '' && engine.field.value?.kind !== 'points') left = shape;
   });
@@ -49,33 +50,25 @@ export function createModel(engine, description) {
     else engine.setSurface(description.default_surface);
   }
 
-  effect(() => {
-    section.hidden = engine.field.value?.kind !== 'points';
-    const info = model.value;
-    fitted.textContent = info ? fittedOf(info) : '';
-    fill(
-      facts,
-      info
-        ? factsOf(info).flatMap(({ label, value, unit, help }) => {
-            const term = h(
-              'button',
-              { type: 'button', class: 'term' },
-              label,
-              unit ? h('span', { class: 'unit' }, `\u00a0${unit}`) : null,
-            );
-            explain(term, () => ({ title: label, text: help }), { tap: true });
-            return [h('dt', null, term), h('dd', null, value)];
-          })
-        : null,
-    );
-    const list = info?.warnings ?? [];
-    warnings.hidden = list.length === 0;
-    fill(
-      warnings,
-      list.map((text) => h('li', null, text)),
-    );
-  });
   return section;
+}
+
+/** @param {ReturnType<typeof factsOf>[number]} fact */
+function factElements({ label, value, unit, help }) {
+  const term = h(
+    'button',
+    { type: 'button', class: 'term' },
+    label,
+    unit && h('span', { class: 'unit' }, `\u00a0${unit}`),
+  );
+  return [
+    h(
+      'dt',
+      null,
+      explain(term, () => ({ title: label, text: help }), { tap: true }),
+    ),
+    h('dd', null, value),
+  ];
 }
 
 /**
@@ -105,7 +98,7 @@ function createCentres(engine, { limits }, model) {
     title: 'Points fitted',
     text: 'Points that f is zero at, with its gradient along their normals: as far from each other as can be. More follow finer details; the time to solve for them grows with the cube of their number.',
   }));
-  effect(() => {
+  live(row, () => {
     const info = model.value;
     // While another number is being solved for, the slider shows that one.
     const asked = engine.loading.value && engine.state.value.centres;

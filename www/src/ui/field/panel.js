@@ -1,5 +1,5 @@
 /** The field panel: the surface, its formula, its parameters, its clip box and the cutting plane. */
-import { computed, effect } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { createClipBox } from './clip-box.js';
 import { createCuttingPlane } from './cutting-plane.js';
@@ -41,19 +41,16 @@ export function mountField(body, engine, description, motion) {
  * @param {Description} description
  */
 function createStory(engine, description) {
-  const section = h('div', { class: 'section story' });
   const story = computed(() => {
     const field = engine.field.value;
     return storyOf(description, field ? field.surface : engine.state.value.surface, field?.model ?? null);
   });
-  effect(() => {
+  return h('div', { class: 'section story' }, () => {
     const { name, facts, text, credit } = story.value;
-    fill(
-      section,
-      h('div', { class: 'section-head' }, h('h2', null, name), facts ? h('span', { class: 'quiet' }, facts) : null),
-      text ? h('p', { class: 'quiet' }, text) : null,
-      credit ? h('p', { class: 'credit' }, credit) : null,
-    );
+    return [
+      h('div', { class: 'section-head' }, h('h2', null, name), facts && h('span', { class: 'quiet' }, facts)),
+      text && h('p', { class: 'quiet' }, text),
+      credit && h('p', { class: 'credit' }, credit),
+    ];
   });
-  return section;
 }

@@ -7,9 +7,8 @@ import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawing
 import { isAdaptive } from '../../figures/moment.js';
 import { fateShape } from '../../figures/svg.js';
 import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
-import { fill, h, uniqueId } from '../dom.js';
+import { fill, h, s, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
-import { s } from '../svg.js';
 import { createRestViews } from './rest.js';
 
 /**
@@ -72,7 +71,7 @@ function linkHover(element, { pointed, hot, opened, moment }) {
 }
 
 /**
- * @param {string} title @param {(opened: Opened, moment: Moment) => import('../dom.js').Child[]} contentOf
+ * @param {string} title @param {(opened: Opened, moment: Moment) => import('../types.js').Children[]} contentOf
  * @param {boolean} [isPointed]  whether it shows one child, which may be pointed at elsewhere
  */
 function view(title, contentOf, isPointed = false) {

@@ -2,11 +2,11 @@
  * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer
  * than a level open the panel that follows a particle.
  */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h, live } from '../dom.js';
+import { computed, signal } from '@preact/signals-core';
+import { button } from '../button.js';
+import { fill, h, live, s } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
-import { icon } from '../icons.js';
 import { clamp } from '../scale.js';
 import { createSegmented } from '../segmented.js';
 import { isMeant, moveOf } from './keys.js';
@@ -16,11 +16,11 @@ import { describeLevel } from './table.js';
 
 /**
  * @import { Engine, Grain } from '../../engine/types.js'
- * @import { IconName } from '../icons.js'
  * @import { Bars, FollowPanel } from '../track.js'
+ * @import { ButtonProps } from '../types.js'
  * @import { Move } from './keys.js'
  * @import { Levels } from './levels.js'
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Signal } from '@preact/signals-core'
  */
 
 /** @typedef {{ title: string, text: string }} Told */
@@ -45,7 +45,7 @@ const GRAINS = /** @type {const} */ ([
 export function createTimeline(body, engine, { told, loadFollow, say }) {
   const levels = createLevels(engine);
   const player = new Player(engine, levels, loadFollow);
-  effect(() => {
+  live(body, () => {
     told.value = describe(engine, levels, player);
   });
   const range = rangeOf(player);
@@ -53,25 +53,15 @@ export function createTimeline(body, engine, { told, loadFollow, say }) {
   const grains = createSegmented({
     name: 'Steps of the timeline',
     choices: GRAINS.map(([value, label]) => ({ value, label })),
-    change: (grain) => void player.choose(/** @type {Grain} */ (grain)).then(() => grains.set(player.grain.peek())),
+    value: () => player.grain.value,
+    disabled: () => !levels.some.value,
+    change: (grain) => player.choose(/** @type {Grain} */ (grain)),
   });
-  effect(() => {
-    grains.set(player.grain.value);
-    for (const input of grains.element.querySelectorAll('input')) input.disabled = !levels.some.value;
-  });
-  fill(
-    body,
-    grains.element,
-    buttonsOf(player),
-    track,
-    captionOf(player),
-    speedOf(player),
-    chartsOf(body, engine, player, say),
-  );
-  explainParts(grains.element, track, player);
+  fill(body, grains, buttonsOf(player), track, captionOf(player), speedOf(player), chartsOf(body, engine, player, say));
+  explainParts(grains, track, player);
   takeKeys(player, { body, range });
-  restore(engine, player, { levels, say });
-  effect(() => {
+  restore(body, engine, player, { levels, say });
+  live(body, () => {
     // The keys work at once: from the panel that has opened the focus goes to the range.
     const isReady = player.isOpen.value && player.track.value.some.value;
     if (isReady && document.activeElement?.matches('.panel-follow')) range.focus({ preventScroll: true });
@@ -106,31 +96,39 @@ function describe(engine, { table, newest, kept, some, whole, relaxed, text }, p
 
 /** Creates the bars and the range over them. @param {Player} player @param {HTMLInputElement} range */
 function trackOf({ track }, range) {
-  const chart = h('div', { class: 'levels-chart', 'aria-hidden': 'true' });
-  const element = h('div', { class: 'levels-track' }, chart, range);
-  effect(() => {
-    const { bars, last } = track.value;
+  const places = computed(() => track.value.last.value + 1);
+  const bars = () => drawBars(track.value.bars.value, places.value);
+  return h(
+    'div',
+    {
+      class: 'levels-track',
+      style: { '--bars': () => places.value, '--done': () => (track.value.at.value + 1) / places.value },
+      'data-chosen': () => !track.value.whole.value,
+    },
     // The bars are drawn twice: pale in full, and coloured up to the present place.
-    fill(chart, drawBars(bars.value, last.value + 1), drawBars(bars.value, last.value + 1));
-    element.style.setProperty('--bars', String(last.value + 1));
-    range.max = String(last.value);
-  });
-  effect(() => {
-    const { at, last, some, text, whole, name } = track.value;
-    range.disabled = !some.value;
-    range.max = String(last.value);
-    range.valueAsNumber = at.value;
-    range.setAttribute('aria-label', `Timeline, by ${name}s`);
-    range.setAttribute('aria-valuetext', some.value ? text.value : 'Nothing to step through yet');
-    element.style.setProperty('--done', String((at.value + 1) / (last.value + 1)));
-    element.toggleAttribute('data-chosen', !whole.value);
-  });
-  return element;
+    h('div', { class: 'levels-chart', 'aria-hidden': 'true' }, bars, bars),
+    range,
+  );
 }
 
 /** @param {Player} player */
 function rangeOf(player) {
-  const range = h('input', { type: 'range', class: 'levels-range', min: 0, step: 1 });
+  const { track } = player;
+  const some = () => track.value.some.value;
+  const range = h('input', {
+    type: 'range',
+    class: 'levels-range',
+    min: 0,
+    step: 1,
+    disabled: () => !some(),
+    'aria-label': () => `Timeline, by ${track.value.name}s`,
+    'aria-valuetext': () => (some() ? track.value.text.value : 'Nothing to step through yet'),
+  });
+  // The place is set after the number of places, which limits it.
+  live(range, () => {
+    range.max = String(track.value.last.value);
+    range.valueAsNumber = track.value.at.value;
+  });
   /** @param {PointerEvent} event */
   const placeUnder = ({ clientX }) => {
     const { left, width } = range.getBoundingClientRect();
@@ -183,10 +181,10 @@ function takeKeys(player, { body, range }) {
 
 /**
  * Opens the particle that a link names, once the surface is there, and says what a link names and is not there.
- * @param {Engine} engine @param {Player} player
+ * @param {HTMLElement} body @param {Engine} engine @param {Player} player
  * @param {{ levels: Levels, say: (text: string) => void }} parts
  */
-function restore(engine, player, { levels, say }) {
+function restore(body, engine, player, { levels, say }) {
   let isNew = true;
   let seen = 'null';
   addEventListener('hashchange', () => {
@@ -197,7 +195,7 @@ function restore(engine, player, { levels, say }) {
     return !engine.busy.value && engine.loading.value === null && phase === 'done' && particles > 0;
   });
   const named = computed(() => JSON.stringify(engine.state.value.view.follow));
-  effect(() => {
+  live(body, () => {
     void named.value;
     // A link that is read begins a run at once.
     if (rests.value && levels.table.value.count > 0) queueMicrotask(() => rests.peek() && go());
@@ -221,27 +219,27 @@ function restore(engine, player, { levels, say }) {
 
 /** Creates the caption with the present place. @param {Player} player */
 function captionOf({ track }) {
-  const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
-  effect(() => {
-    const { some, short } = track.value;
-    const [place, of] = short.value;
-    if (some.value) fill(now, `${place} `, h('span', { class: 'unit' }, of));
-    else fill(now);
+  return h('p', { class: 'levels-now', 'aria-hidden': 'true' }, () => {
+    const [place, of] = track.value.short.value;
+    return track.value.some.value && [`${place} `, h('span', { class: 'unit' }, of)];
   });
-  return now;
 }
 
 /** @param {Player} player */
 function speedOf(player) {
-  const select = h(
+  return h(
     'select',
-    { class: 'select speed', 'aria-label': 'Speed of the timeline' },
+    {
+      class: 'select speed',
+      'aria-label': 'Speed of the timeline',
+      on: {
+        change: ({ currentTarget }) => {
+          player.speed = Number(currentTarget.value);
+        },
+      },
+    },
     SPEEDS.map((value) => h('option', { value, selected: value === 1 }, `${value}\u202f×`)),
   );
-  select.addEventListener('change', () => {
-    player.speed = Number(select.value);
-  });
-  return select;
 }
 
 /**
@@ -251,6 +249,7 @@ function speedOf(player) {
 function chartsOf(body, engine, player, say) {
   /** @type {Awaited<ReturnType<typeof import('./charts.js')['createCharts']>> | null} */
   let charts = null;
+  const isShown = signal(false);
   const toggle = async () => {
     try {
       charts ??= await (await import('./charts.js')).createCharts(engine, player);
@@ -261,22 +260,20 @@ function chartsOf(body, engine, player, say) {
     if (element.isConnected) element.remove();
     else body.before(element);
     shown.value = element.isConnected;
-    button.setAttribute('aria-expanded', String(shown.value));
+    isShown.value = shown.value;
   };
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain square charts-toggle',
-      'aria-label': 'Charts',
-      'aria-expanded': 'false',
-      on: { click: () => void toggle() },
-    },
-    icon('charts'),
-  );
   const text = 'Particles and fates per level, energy and moves per relaxation step, distances and neighbours.';
-  explain(button, () => ({ title: 'Charts', text }), { side: 'above' });
-  return button;
+  return explain(
+    button({
+      class: 'plain square charts-toggle',
+      icon: 'charts',
+      'aria-label': 'Charts',
+      'aria-expanded': () => String(isShown.value),
+      press: () => void toggle(),
+    }),
+    () => ({ title: 'Charts', text }),
+    { side: 'above' },
+  );
 }
 
 /** @param {HTMLElement} grains @param {HTMLElement} track @param {Player} player */
@@ -306,75 +303,38 @@ function explainParts(grains, track, player) {
 /** @param {Player} player */
 function buttonsOf(player) {
   const { track, playing } = player;
-  const notFirst = computed(() => track.value.some.value && (track.value.at.value > 0 || track.value.name === 'event'));
-  const notLast = computed(
-    () => track.value.some.value && (track.value.at.value < track.value.last.value || track.value.name === 'event'),
-  );
   const name = () => track.value.name;
+  const some = () => track.value.some.value;
+  // Before the first event and after the last one comes another particle.
+  const isFirst = () => !some() || (track.value.at.value === 0 && name() !== 'event');
+  const isLast = () => !some() || (track.value.at.value >= track.value.last.value && name() !== 'event');
   const move = (/** @type {Move['to']} */ to) => () => player.move({ grain: 'chosen', to });
-  const some = computed(() => track.value.some.value);
-  const toggle = button({
-    shape: () => (playing.value ? 'pause' : 'play'),
-    label: () => (playing.value ? 'Pause' : 'Play'),
-    key: 'Space',
-    act: () => player.toggle(),
-    enabled: some,
-  });
-  const last = () => (name() === 'level' ? 'All levels' : `Last ${name()}`);
-  return h(
-    'div',
-    { class: 'levels-buttons', role: 'group', 'aria-label': 'Step along the timeline' },
-    button({
-      shape: () => 'first',
-      label: () => `First ${name()}`,
-      key: 'Home',
-      act: move('first'),
-      enabled: notFirst,
+  return h('div', { class: 'levels-buttons', role: 'group', 'aria-label': 'Step along the timeline' }, [
+    step('Home', { icon: 'first', 'aria-label': () => `First ${name()}`, off: isFirst, press: move('first') }),
+    step('Page up', { icon: 'back', 'aria-label': () => `${named(name())} back`, off: isFirst, press: move(-1) }),
+    step('Space', {
+      icon: () => (playing.value ? 'pause' : 'play'),
+      'aria-label': () => (playing.value ? 'Pause' : 'Play'),
+      off: () => !some(),
+      press: () => player.toggle(),
     }),
-    button({
-      shape: () => 'back',
-      label: () => `${named(name())} back`,
-      key: 'Page up',
-      act: move(-1),
-      enabled: notFirst,
+    step('Page down', { icon: 'forward', 'aria-label': () => `${named(name())} forward`, off: isLast, press: move(1) }),
+    step('End', {
+      icon: 'last',
+      'aria-label': () => (name() === 'level' ? 'All levels' : `Last ${name()}`),
+      off: isLast,
+      press: move('last'),
     }),
-    toggle,
-    button({
-      shape: () => 'forward',
-      label: () => `${named(name())} forward`,
-      key: 'Page down',
-      act: move(1),
-      enabled: notLast,
-    }),
-    button({ shape: () => 'last', label: last, key: 'End', act: move('last'), enabled: notLast }),
-  );
+  ]);
 }
 
 /** @param {string} name */
 const named = (name) => name[0].toUpperCase() + name.slice(1);
 
-/**
- * @param {object} options
- * @param {() => IconName} options.shape
- * @param {() => string} options.label
- * @param {string} options.key
- * @param {() => void} options.act
- * @param {ReadonlySignal<boolean>} options.enabled
- */
-function button({ shape, label, key, act, enabled }) {
-  const press = () => {
-    if (enabled.peek()) act();
-  };
-  const element = h('button', {
-    type: 'button',
-    class: 'button plain square',
-    'aria-label': label,
-    'aria-disabled': () => String(!enabled.value),
-    on: { click: press },
-  });
-  live(element, () => fill(element, icon(shape())));
-  explain(element, () => ({ title: element.getAttribute('aria-label') ?? '', text: `Key ${key}` }), { side: 'above' });
-  return element;
+/** @param {string} key @param {ButtonProps} props */
+function step(key, props) {
+  const element = button(props);
+  return explain(element, () => ({ title: element.ariaLabel ?? '', text: `Key ${key}` }), { side: 'above' });
 }
 
 /** Gap on each side of a bar, as a share of its width, and the minimum height of a bar. */
@@ -386,12 +346,8 @@ const LEAST = 0.06;
  * @param {Bars} bars @param {number} places
  */
 function drawBars({ heights, widths }, places) {
-  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-  const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
   const all = Array.from(heights);
   const most = all.reduce((a, b) => Math.max(a, b), 1e-9);
-  svg.setAttribute('viewBox', `0 0 ${places} 1`);
-  svg.setAttribute('preserveAspectRatio', 'none');
   let left = 0;
   const bars = all.map((height, k) => {
     const width = widths?.[k] ?? 1;
@@ -400,7 +356,6 @@ function drawBars({ heights, widths }, places) {
     // A minimum height keeps a level with few particles visible.
     return `M${+x.toFixed(3)} 1V${(1 - Math.max(height / most, LEAST)).toFixed(3)}h${+((1 - 2 * GAP) * width).toFixed(3)}V1z`;
   });
-  path.setAttribute('d', bars.join(''));
-  svg.append(path);
-  return svg;
+  const d = bars.join('');
+  return s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none' }, s('path', { d }));
 }

@@ -1,6 +1,7 @@
 /** The sampling panel: the kind of sampling, the actions, the progress, and the settings that the core describes. */
-import { computed } from '@preact/signals-core';
-import { fill, h, live, once, uniqueId } from '../dom.js';
+import { computed, signal } from '@preact/signals-core';
+import { button } from '../button.js';
+import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { plural } from '../format.js';
 import { createSetting } from './setting.js';
@@ -8,7 +9,7 @@ import { arrange, countChanged } from './settings.js';
 
 /**
  * @import { Description, Engine, SettingInfo } from '../../engine/types.js'
- * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { ButtonProps } from '../types.js'
  */
 
 /**
@@ -20,13 +21,13 @@ import { arrange, countChanged } from './settings.js';
 export function mountSampling(body, engine, { settings }, { head }) {
   const { kind, plain, advanced } = arrange(settings);
   const create = (/** @type {SettingInfo} */ info) => createSetting(engine, settings, info);
-  const more = createAdvanced(engine, settings, advanced, create);
+  const [more, section] = createAdvanced(engine, settings, advanced, create);
   fill(
     body,
     createTrack(engine),
     h('div', { class: 'sampling-head' }, kind ? create(kind) : null, createActions(engine), head),
-    h('div', { class: 'settings', role: 'group', 'aria-label': 'Settings' }, plain.map(create), more.button),
-    more.section,
+    h('div', { class: 'settings', role: 'group', 'aria-label': 'Settings' }, plain.map(create), more),
+    section,
   );
 }
 
@@ -40,7 +41,7 @@ function createTrack({ busy, reveal, progress, loading }) {
     const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : busy.value ? done : 0;
     return Math.round(Math.min(1, share) * 200) / 200;
   });
-  const track = h('div', {
+  return h('div', {
     class: 'progress',
     role: 'progressbar',
     'aria-label': 'Sampling',
@@ -48,67 +49,45 @@ function createTrack({ busy, reveal, progress, loading }) {
     'aria-valuemax': 100,
     'aria-valuenow': () => Math.round(fraction.value * 100),
     data: { busy: () => growing.value },
+    style: { '--fraction': () => fraction.value },
   });
-  live(track, () => track.style.setProperty('--fraction', String(fraction.value)));
-  return track;
 }
 
 /** @param {Engine} engine */
 function createActions(engine) {
-  const { busy } = engine;
-  const stoppable = computed(() => busy.value || engine.loading.value !== null);
-  const always = computed(() => true);
-  const some = computed(() => engine.progress.value.particles > 0);
-  return h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
-    action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), always, 'primary in-tabs'),
-    action(
+  const { busy, loading, progress } = engine;
+  const idle = () => !busy.value && loading.value === null;
+  const fixed = () => busy.value || progress.value.particles === 0;
+  /** @type {[string, string, ButtonProps][]} */
+  const actions = [
+    [
+      'Run',
+      'Samples the surface from its first particle. Key R.',
+      { class: 'primary in-tabs', press: () => engine.run() },
+    ],
+    [
       'Stop',
       'Ends the run and keeps the particles placed so far. Key Escape.',
-      () => engine.stop(),
-      stoppable,
-      'in-tabs',
-    ),
-    action(
+      { class: 'in-tabs', off: idle, press: () => engine.stop() },
+    ],
+    [
       'Generate only',
       'Places the particles level by level and leaves them unrelaxed. Key G.',
-      () => engine.generateOnly(),
-      always,
-    ),
-    action(
+      { press: () => engine.generateOnly() },
+    ],
+    [
       'Relax one step',
       'Moves the present particles one relaxation step further. Key E.',
-      () => engine.relax(1),
-      computed(() => some.value && !busy.value),
+      { off: fixed, press: () => engine.relax(1) },
+    ],
+  ];
+  return h(
+    'div',
+    { class: 'actions', role: 'group', 'aria-label': 'Run' },
+    actions.map(([label, text, { press = () => {}, ...props }]) =>
+      explain(button({ ...props, press: once(press) }, label), () => ({ text }), { side: 'above' }),
     ),
-  ]);
-}
-
-/**
- * @param {string} label
- * @param {string} help
- * @param {() => void} act
- * @param {ReadonlySignal<boolean>} enabled
- * @param {string} [kind]
- */
-function action(label, help, act, enabled, kind = '') {
-  const press = once(act);
-  // The button stays focusable while it is disabled, so that keyboard users do not lose their position.
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: `button ${kind}`,
-      'aria-disabled': () => (enabled.value ? null : 'true'),
-      on: {
-        click: () => {
-          if (enabled.peek()) press();
-        },
-      },
-    },
-    label,
   );
-  explain(button, () => ({ text: help }), { side: 'above' });
-  return button;
 }
 
 /**
@@ -120,32 +99,28 @@ function action(label, help, act, enabled, kind = '') {
  */
 function createAdvanced(engine, all, advanced, create) {
   const id = uniqueId('advanced');
+  const isOpen = signal(false);
   const section = h(
     'div',
-    { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: true },
+    { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: () => !isOpen.value },
     advanced.map(create),
   );
   const count = computed(() => countChanged(advanced, all, engine.state.value.settings));
   const changed = h('span', { class: 'unit', hidden: () => count.value === 0 }, () => `${count.value} changed`);
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain disclose',
-      'aria-controls': id,
-      'aria-expanded': 'false',
-      on: {
-        click: () => {
-          section.hidden = !section.hidden;
-          button.setAttribute('aria-expanded', String(!section.hidden));
+  const more = explain(
+    button(
+      {
+        class: 'plain disclose',
+        hidden: advanced.length === 0,
+        'aria-controls': id,
+        'aria-expanded': () => String(isOpen.value),
+        press: () => {
+          isOpen.value = !isOpen.peek();
         },
       },
-    },
-    'Advanced',
-    changed,
-  );
-  explain(
-    button,
+      'Advanced',
+      changed,
+    ),
     () => ({
       text: count.peek()
         ? `${plural(count.peek(), 'setting')} changed. A double click on a slider takes its default back.`
@@ -153,6 +128,5 @@ function createAdvanced(engine, all, advanced, create) {
     }),
     { side: 'above' },
   );
-  button.hidden = advanced.length === 0;
-  return { button, section };
+  return [more, section];
 }

@@ -1,6 +1,6 @@
 /** Creates the control of one setting from the core's description. */
 import { computed } from '@preact/signals-core';
-import { h, live, uniqueId } from '../dom.js';
+import { h, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { wantsSlider } from '../scale.js';
@@ -53,28 +53,24 @@ const kindOf = (info) =>
  */
 function createChoice(engine, info, value) {
   if (isSegmented(info)) {
-    const segmented = createSegmented({
+    return createSegmented({
       name: info.label,
       choices: info.choices ?? [],
+      value: () => String(value.value),
       change: (next) => engine.setSetting(info.name, next),
     });
-    live(segmented.element, () => segmented.set(String(value.value)));
-    return segmented.element;
   }
-  const select = h(
+  return h(
     'select',
     {
       class: 'select',
       id: uniqueId('setting'),
       'aria-label': info.label,
-      on: { change: () => engine.setSetting(info.name, select.value) },
+      prop: { value: () => String(value.value) },
+      on: { change: ({ currentTarget }) => engine.setSetting(info.name, currentTarget.value) },
     },
     (info.choices ?? []).map((choice) => h('option', { value: choice.value }, choice.label)),
   );
-  live(select, () => {
-    select.value = String(value.value);
-  });
-  return select;
 }
 
 /**
@@ -88,14 +84,12 @@ function createNumber(engine, info, value) {
   const slider = createSlider({
     name: info.label,
     scale: { min: info.min, max: info.max, step: info.step, scale: info.scale, integer },
-    value: Number(value.peek()),
+    value: () => Number(value.value),
     factor,
     describe: (now) =>
       `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
   });
-  const line = h('div', { class: 'setting-line' }, wantsSlider(info) ? slider.range : null, slider.box);
-  live(line, () => slider.set(Number(value.value)));
-  return line;
+  return h('div', { class: 'setting-line' }, wantsSlider(info) && slider.range, slider.box);
 }

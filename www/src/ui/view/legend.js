@@ -6,7 +6,7 @@ import { formatCount, formatSignificant } from '../format.js';
 
 /**
  * @import { ColourMode, Description, Engine, Legend } from '../../engine/types.js'
- * @import { Child } from '../dom.js'
+ * @import { Child } from '../types.js'
  */
 
 /**

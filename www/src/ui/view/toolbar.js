@@ -2,17 +2,17 @@
 
 import { computed } from '@preact/signals-core';
 import { DISC_SIZE } from '../../engine/constants.js';
-import { h, live } from '../dom.js';
+import { button } from '../button.js';
+import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
-import { icon } from '../icons.js';
 import { attachMenu } from '../menu.js';
 import { copyLink, exportFile, exportMesh } from '../share.js';
 import { createSlider } from '../slider.js';
 
 /**
  * @import { Engine, MeshFormat, ViewState } from '../../engine/types.js'
- * @import { Props } from '../dom.js'
+ * @import { ButtonProps } from '../types.js'
  * @import { IconName } from '../icons.js'
  * @import { Motion } from '../motion.js'
  * @import { Toast } from '../toasts.js'
@@ -86,21 +86,16 @@ export function createToolbar(engine, { hide, shortcuts, picture, motion, toast 
 }
 
 /**
- * @param {IconName} name
- * @param {string} label
- * @param {string} help
- * @param {() => void} [act]
- * @param {Props} [props]
+ * @param {IconName} icon @param {string} label @param {string} text
+ * @param {() => void} [press]
+ * @param {ButtonProps} [props]
  */
-function tool(name, label, help, act, props = {}) {
-  const button = h(
-    'button',
-    { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {}, ...props },
-    icon(name),
+const tool = (icon, label, text, press, props) =>
+  explain(
+    button({ class: 'square tool', icon, 'aria-label': label, press, ...props }),
+    () => ({ title: label, text }),
+    { side: 'left' },
   );
-  explain(button, () => ({ title: label, text: help }), { side: 'left' });
-  return button;
-}
 
 /** Creates the switch that shows the points of a model. @param {Engine} engine */
 function pointsToggle(engine) {
@@ -115,15 +110,9 @@ function pointsToggle(engine) {
 /** @param {string} text */
 const heading = (text) => h('p', { class: 'menu-head quiet' }, text);
 
-/** @param {string} label @param {() => void} act @param {string} [note] */
-function choice(label, act, note) {
-  return h(
-    'button',
-    { type: 'button', class: 'button', data: { closes: '' }, on: { click: act } },
-    label,
-    note ? h('span', { class: 'unit note' }, note) : null,
-  );
-}
+/** @param {string} label @param {() => void} press @param {string} [note] */
+const choice = (label, press, note) =>
+  button({ data: { closes: '' }, press }, label, note && h('span', { class: 'unit note' }, note));
 
 /**
  * Creates buttons that turn the picture, for users who cannot drag, and one that keeps it turning.
@@ -137,55 +126,36 @@ function turning(engine, motion) {
     ['up', 'Tilt up', 0, -1],
     ['down', 'Tilt down', 0, 1],
   ];
-  const turntable = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button square',
+  return line('Turn', [
+    ...turns.map(([icon, label, x, y]) =>
+      button({
+        class: 'square',
+        icon,
+        'aria-label': label,
+        press: () => engine.orbit(x * TURN_RAD, y * TURN_RAD),
+      }),
+    ),
+    button({
+      class: 'square',
+      icon: 'turntable',
       'aria-label': 'Turntable',
       'aria-pressed': () => String(motion.turning.value),
-      on: { click: motion.toggleTurning },
-    },
-    icon('turntable'),
-  );
-  return h(
-    'div',
-    { class: 'menu-line', role: 'group', 'aria-label': 'Turn' },
-    h('span', null, 'Turn'),
-    h(
-      'span',
-      { class: 'pad' },
-      turns.map(([name, label, x, y]) =>
-        h(
-          'button',
-          {
-            type: 'button',
-            class: 'button square',
-            'aria-label': label,
-            on: { click: () => engine.orbit(x * TURN_RAD, y * TURN_RAD) },
-          },
-          icon(name),
-        ),
-      ),
-      turntable,
-    ),
-  );
+      press: motion.toggleTurning,
+    }),
+  ]);
 }
 
 /** @param {Engine} engine */
 function discSize(engine) {
-  const size = computed(() => engine.state.value.view.size);
-  const slider = createSlider({
+  return createSlider({
     name: 'Disc size',
     scale: DISC_SIZE,
-    value: size.peek(),
+    value: () => engine.state.value.view.size,
     describe: (value) => `${formatShare(value, 0)} of the repulsion radius`,
     change: (value) => engine.setView({ size: value }),
     reset: () => engine.setView({ size: DISC_SIZE.initial }),
     number: false,
-  });
-  live(slider.range, () => slider.set(size.value));
-  return slider.range;
+  }).range;
 }
 
 /**
@@ -219,24 +189,18 @@ function choices(engine, name, key, values, hidden) {
 function switches(engine, name, parts, hidden) {
   const buttons = parts.map(([key, label, text]) => {
     const on = computed(() => engine.state.value.view[key]);
-    const button = press(
+    const toggle = press(
       label,
       () => on.value,
       () => engine.setView({ [key]: !on.peek() }),
     );
-    explain(button, () => ({ title: label, text }), { side: 'left' });
-    return button;
+    return explain(toggle, () => ({ title: label, text }), { side: 'left' });
   });
   return line(name, buttons, hidden);
 }
 
 /** @param {string} label @param {() => boolean} isOn @param {() => void} act */
-const press = (label, isOn, act) =>
-  h(
-    'button',
-    { type: 'button', class: 'button small', 'aria-pressed': () => String(isOn()), on: { click: act } },
-    label,
-  );
+const press = (label, isOn, act) => button({ class: 'small', 'aria-pressed': () => String(isOn()), press: act }, label);
 
 /** @param {string} name @param {HTMLElement[]} buttons @param {() => boolean} [hidden] */
 const line = (name, buttons, hidden) =>

@@ -1,0 +1,76 @@
+// Types of the interface's parts: what elements are created from, and what panels share.
+import type { IconName } from './icons.js';
+
+/** A value, or a function of signals that is read anew after every change of them. */
+export type Live<T> = T | (() => T);
+export type Attribute = string | number | boolean | null | undefined;
+export type Child = Node | string | number | null | undefined | false;
+/** What an element holds; a function is read anew, and what it returned before is taken away. */
+export type Children = Live<Child | readonly Children[]>;
+type AttributeName =
+  | `aria-${string}`
+  | `data-${string}`
+  | 'accept'
+  | 'alt'
+  | 'autocapitalize'
+  | 'autocomplete'
+  | 'autocorrect'
+  | 'checked'
+  | 'class'
+  | 'cols'
+  | 'colspan'
+  | 'decoding'
+  | 'disabled'
+  | 'for'
+  | 'height'
+  | 'hidden'
+  | 'href'
+  | 'id'
+  | 'inputmode'
+  | 'lang'
+  | 'loading'
+  | 'max'
+  | 'maxlength'
+  | 'min'
+  | 'name'
+  | 'placeholder'
+  | 'popover'
+  | 'popovertarget'
+  | 'readonly'
+  | 'rel'
+  | 'role'
+  | 'rows'
+  | 'scope'
+  | 'selected'
+  | 'spellcheck'
+  | 'src'
+  | 'start'
+  | 'step'
+  | 'tabindex'
+  | 'title'
+  | 'type'
+  | 'value'
+  | 'width';
+type Listeners<E> = {
+  [K in keyof HTMLElementEventMap]?: (event: HTMLElementEventMap[K] & { currentTarget: E }) => void;
+};
+/** What every element may be given besides attributes. */
+export interface Given<E> {
+  /** listeners of events */
+  on?: Listeners<E>;
+  /** properties of the object, set once its children are there */
+  prop?: { [K in keyof E]?: Live<E[K]> };
+  data?: Record<string, Live<Attribute>>;
+  /** properties of CSS by their own names */
+  style?: Record<string, Live<string | number>>;
+}
+export type Props<E> = Given<E> & { [K in AttributeName]?: Live<Attribute> };
+export type SvgProps<E> = Given<E> & Record<string, unknown>;
+
+export interface ButtonProps extends Props<HTMLButtonElement> {
+  press?: () => void;
+  /** in place of a text, which `aria-label` then gives */
+  icon?: Live<IconName>;
+  /** whether a press does nothing; the button can still be reached by the keyboard */
+  off?: () => boolean;
+}
