@@ -2,6 +2,7 @@
  * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. What a learner
  * answers is saved with both runs as one file; nothing is sent.
  */
+import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
@@ -68,8 +69,8 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     h(
       'div',
       { class: 'controls' },
-      h('button', { type: 'button', class: 'button primary', on: { click: () => save('json') } }, 'Save as JSON'),
-      h('button', { type: 'button', class: 'button', on: { click: () => save('csv') } }, 'Save as CSV'),
+      button({ class: 'primary', press: () => save('json') }, 'Save as JSON'),
+      button({ press: () => save('csv') }, 'Save as CSV'),
       h('span', { class: 'quiet' }, 'With your answers, your predictions and both runs. Nothing is sent.'),
     ),
   );
@@ -136,8 +137,8 @@ export function createMaker({ setup, linkOf }) {
     h(
       'div',
       { class: 'controls' },
-      h('button', { type: 'button', class: 'button primary', on: { click: () => void copy() } }, 'Copy the link'),
-      h('button', { type: 'button', class: 'button', on: { click: () => dialog.close() } }, 'Close'),
+      button({ class: 'primary', press: () => void copy() }, 'Copy the link'),
+      button({ press: () => dialog.close() }, 'Close'),
     ),
     told,
   );

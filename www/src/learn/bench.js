@@ -1,4 +1,6 @@
 /** The bench on which two runs are compared, and the cards that lead to it. */
+import { signal } from '@preact/signals-core';
+import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
@@ -72,31 +74,23 @@ export function mountCards(cards, lab) {
     const { whatIf: id } = /** @type {HTMLElement} */ (card).dataset;
     if (!id) continue;
     const title = card.querySelector('h3')?.textContent ?? '';
-    const place = h('div', { class: 'card-pair', hidden: true });
+    const isOpen = signal(false);
+    const place = h('div', { class: 'card-pair', hidden: () => !isOpen.value });
     /** @type {ReturnType<typeof createPair> | null} */
     let pair = null;
     const press = () => {
-      place.hidden = !place.hidden;
-      button.setAttribute('aria-expanded', String(!place.hidden));
-      card.toggleAttribute('data-open', !place.hidden);
-      if (pair || place.hidden) return;
+      isOpen.value = !isOpen.peek();
+      card.toggleAttribute('data-open', isOpen.peek());
+      if (pair || !isOpen.peek()) return;
       pair = createPair(lab);
       const whatIf = whatIfOf(id);
       const { left, right } = setupOf(id);
       fill(place, h('p', { class: 'look' }, whatIf.look), pair.element);
       void pair.show(sidesOf(whatIf, [left, right]), whatIf.colouring);
     };
-    const button = h(
-      'button',
-      {
-        type: 'button',
-        class: 'button',
-        'aria-expanded': 'false',
-        'aria-label': `Show both: ${title}`,
-        on: { click: press },
-      },
-      'Show both',
+    card.append(
+      button({ 'aria-expanded': () => String(isOpen.value), 'aria-label': `Show both: ${title}`, press }, 'Show both'),
+      place,
     );
-    card.append(button, place);
   }
 }

@@ -3,6 +3,8 @@
  * come from the run, and a browser does not wait for one when it prints: so they are asked for as their figures come to
  * life, and the page's own button and the keys for printing wait for the rest.
  */
+import { signal } from '@preact/signals-core';
+import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 import { PREDICTIONS } from './predictions.js';
@@ -65,21 +67,19 @@ export function createHandout(host, { figures, lab, compare, say }) {
   }
 
   const isWhole = () => known.size === ids.length;
-  let isPreparing = false;
-  const button = h('button', { type: 'button', class: 'button plain', on: { click: () => void press() } }, 'Print');
+  const isPreparing = signal(false);
+  const print = button({ class: 'plain', disabled: () => isPreparing.value, press: () => void press() }, () =>
+    isPreparing.value ? 'Preparing' : 'Print',
+  );
   async function press() {
-    if (isPreparing) return;
-    isPreparing = true;
-    button.disabled = true;
-    button.textContent = 'Preparing';
+    if (isPreparing.peek()) return;
+    isPreparing.value = true;
     try {
       await prepare();
     } finally {
-      isPreparing = false;
-      button.disabled = false;
-      button.textContent = 'Print';
+      isPreparing.value = false;
     }
-    print();
+    window.print();
   }
   addEventListener('keydown', (event) => {
     const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
@@ -91,5 +91,5 @@ export function createHandout(host, { figures, lab, compare, say }) {
   addEventListener('afterprint', () => {
     if (!isWhole()) say('Not all answers were known when this was printed. The button “Print” waits for them.');
   });
-  return { button };
+  return { button: print };
 }

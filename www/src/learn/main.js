@@ -1,7 +1,8 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
 import { LessonClient } from '../engine/lesson/client.js';
-import { byId, h } from '../ui/dom.js';
+import { button } from '../ui/button.js';
+import { byId } from '../ui/dom.js';
 import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
 import { createMaker, mountAssignment } from './assignment.js';
@@ -102,8 +103,7 @@ const handout = createHandout(byId('answers'), {
     notice.textContent = words;
   },
 });
-const tool = (/** @type {string} */ label, /** @type {() => void} */ click) =>
-  h('button', { type: 'button', class: 'button plain', on: { click } }, label);
+const tool = (/** @type {string} */ label, /** @type {() => void} */ press) => button({ class: 'plain', press }, label);
 byId('tools').append(
   tool('Present', present),
   handout.button,

@@ -1,6 +1,7 @@
 /** Controls and small charts that several figures have. */
 
 import { signal } from '@preact/signals-core';
+import { button } from '../ui/button.js';
 import { h, reducedMotion, s, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
@@ -11,33 +12,31 @@ import { icon } from '../ui/icons.js';
  */
 export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
-  const input = h('input', { type: 'range', class: 'slider', id, min: 0, max, step: 1, value });
-  const output = h('output', { class: 'range-value', for: id });
   /** Where it stands. */
   const place = signal(value);
-  const tell = () => {
-    const at = Number(input.value);
-    place.value = at;
-    output.textContent = say(at);
-    input.setAttribute('aria-valuetext', say(at));
-    input.style.setProperty('--place', String(max > 0 ? at / max : 0));
+  const set = (/** @type {number} */ to) => {
+    place.value = to;
+    change(to);
   };
-  input.addEventListener('input', () => {
-    tell();
-    change(Number(input.value));
+  const input = h('input', {
+    type: 'range',
+    class: 'slider',
+    id,
+    min: 0,
+    max,
+    step: 1,
+    'aria-valuetext': () => say(place.value),
+    style: { '--place': () => (max > 0 ? place.value / max : 0) },
+    prop: { value: () => String(place.value) },
+    on: { input: () => set(Number(input.value)) },
   });
-  tell();
+  const output = h('output', { class: 'range-value', for: id }, () => say(place.value));
   return {
     element: h('div', { class: 'range-row' }, h('label', { for: id }, name), input, output),
     input,
     place,
-    get: () => Number(input.value),
-    /** @param {number} to */
-    set(to) {
-      input.value = String(to);
-      tell();
-      change(Number(input.value));
-    },
+    get: () => place.peek(),
+    set,
   };
 }
 
@@ -47,26 +46,24 @@ export function createRange({ name, max, value = 0, say, change }) {
  */
 export function createPlay(range, { label, totalMs }) {
   const max = Number(range.input.max);
-  let timer = 0;
-  const face = () => button.replaceChildren(icon(timer ? 'pause' : 'play'), timer ? 'Pause' : label);
+  const timer = signal(0);
   function stop() {
-    clearInterval(timer);
-    timer = 0;
-    face();
+    clearInterval(timer.peek());
+    timer.value = 0;
   }
   function play() {
     if (reducedMotion()) return range.set(max);
     if (range.get() >= max) range.set(0);
-    timer = window.setInterval(() => {
+    timer.value = window.setInterval(() => {
       range.set(range.get() + 1);
       if (range.get() >= max) stop();
     }, totalMs / Math.max(1, max));
-    face();
   }
-  const button = h('button', { type: 'button', class: 'button', on: { click: () => (timer ? stop() : play()) } });
-  face();
+  const element = button({ press: () => (timer.peek() ? stop() : play()) }, () =>
+    timer.value ? [icon('pause'), 'Pause'] : [icon('play'), label],
+  );
   range.input.addEventListener('pointerdown', stop);
-  return { element: button, play, stop };
+  return { element, play, stop };
 }
 
 /**

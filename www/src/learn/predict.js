@@ -2,7 +2,9 @@
  * Predictions: a question, a guess, and the answer that the run itself gives. Nothing is scored or sent; a prediction
  * may be skipped.
  */
+
 import { signal } from '@preact/signals-core';
+import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 
@@ -93,8 +95,8 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   const input = inputOf(prediction, question, stops.pickOf(id));
   stops.entries.set(id, { question, get: input.get });
   const result = h('div', { class: 'predict-result', role: 'status' });
-  const reveal = h('button', { type: 'submit', class: 'button primary' }, 'Reveal');
-  const skip = h('button', { type: 'button', class: 'button plain', on: { click: () => void answer(null) } }, 'Skip');
+  const reveal = button({ type: 'submit', class: 'primary' }, 'Reveal');
+  const skip = button({ class: 'plain', press: () => void answer(null) }, 'Skip');
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const guess = input.get();

@@ -1,5 +1,8 @@
 /** The race: the front against the method that the paper compares it with, side by side under one camera. */
+
+import { signal } from '@preact/signals-core';
 import { opponentOf, Race } from '../engine/lesson/race.js';
+import { button } from '../ui/button.js';
 import { fill, h, s } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
 import { spread } from '../ui/neighbours.js';
@@ -93,96 +96,116 @@ function createLane(orbit, name) {
 
 /** @param {HTMLElement} host @param {Lab} lab */
 export function mountRace(host, lab) {
-  let kind = KINDS[0].value;
-  /** @type {Race | null} */
-  let race = null;
-  let isPaused = false;
-  const place = h('div', { class: 'pair' });
-  const status = h('p', { class: 'figure-status', role: 'status' });
-  const result = h('div', { class: 'compare-box' });
+  const course = new Course(lab);
+  const { kind, race, isPaused, place, result } = course;
   const choose = createSelect({
     name: 'Race',
     choices: KINDS,
     change: (value) => {
-      kind = value;
-      stop();
-      lay();
+      kind.value = value;
+      course.stop();
+      course.lay();
     },
   });
-  const go = h('button', { type: 'button', class: 'button primary', on: { click: () => void press() } }, 'Start');
+  const go = button({ class: 'primary', press: () => course.press() }, () =>
+    !race.value ? 'Start' : isPaused.value ? 'Go on' : 'Pause',
+  );
+  const status = h('p', { class: 'figure-status', role: 'status' }, () => course.status.value);
+  fill(host, h('div', { class: 'controls' }, choose.element, go), place, status, result);
+  course.lay();
+}
 
-  function lay() {
-    const orbit = new Orbit(lab.surface.bounds);
-    const names = kind === 'uniform' ? ['The front', 'Witkin and Heckbert'] : ['The front', 'Forces'];
+/** The race that is run, with its two lanes. */
+class Course {
+  #lab;
+  kind = signal(KINDS[0].value);
+  race = signal(/** @type {Race | null} */ (null));
+  isPaused = signal(false);
+  status = signal('');
+  place = h('div', { class: 'pair' });
+  result = h('div', { class: 'compare-box' });
+
+  /** @param {Lab} lab */
+  constructor(lab) {
+    this.#lab = lab;
+  }
+
+  /** Lays the lanes anew. */
+  lay() {
+    const orbit = new Orbit(this.#lab.surface.bounds);
+    const names = this.kind.peek() === 'uniform' ? ['The front', 'Witkin and Heckbert'] : ['The front', 'Forces'];
     const lanes = names.map((name) => createLane(orbit, name));
     fill(
-      place,
+      this.place,
       lanes.map(({ element }) => element),
     );
-    fill(result);
+    fill(this.result);
     return { orbit, lanes, names };
   }
 
-  function stop() {
-    race?.close();
-    race = null;
-    isPaused = false;
-    go.textContent = 'Start';
-    status.textContent = '';
+  stop() {
+    this.race.peek()?.close();
+    this.race.value = null;
+    this.isPaused.value = false;
+    this.status.value = '';
   }
 
-  async function press() {
-    if (!race) return void run();
-    isPaused = !isPaused;
-    if (isPaused) race.pause();
+  press() {
+    const race = this.race.peek();
+    if (!race) return void this.run();
+    this.isPaused.value = !this.isPaused.peek();
+    if (this.isPaused.peek()) race.pause();
     else race.resume();
-    go.textContent = isPaused ? 'Go on' : 'Pause';
   }
 
-  async function run() {
-    const chosen = kind;
-    const { orbit, lanes, names } = lay();
-    const lastMs = [-Infinity, -Infinity];
-    const own = new Race({
-      onLane(k, lane) {
-        lanes[k].tell(lane);
-        const now = performance.now();
-        if (!lane.progress?.is_done && now - lastMs[k] < PICTURE_MS) return;
-        lastMs[k] = now;
-        own.particles(k).then(
-          (particles) => {
-            if (particles.radii.length > 0) lanes[k].show(particles);
-          },
-          () => {},
-        );
-      },
-    });
-    race = own;
-    go.textContent = 'Pause';
-    status.textContent = 'Both are running. You may turn the pictures.';
+  async run() {
+    const kind = this.kind.peek();
+    const { orbit, lanes, names } = this.lay();
+    const own = raceOn(lanes);
+    const isOver = () => this.race.peek() !== own;
+    this.race.value = own;
+    this.status.value = 'Both are running. You may turn the pictures.';
     try {
-      const settings = await settingsOf(lab, chosen);
-      const { end } = await lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES });
+      const settings = await settingsOf(this.#lab, kind);
+      const { end } = await this.#lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES });
       // Meanwhile the race may have been given up, or paused.
-      if (race !== own) return;
+      if (isOver()) return;
       orbit.fitTo(end);
-      const done = own.start(lab.surface, [settings, opponentOf(settings)]);
-      if (isPaused) own.pause();
+      const done = own.start(this.#lab.surface, [settings, opponentOf(settings)]);
+      if (this.isPaused.peek()) own.pause();
       await done;
       const ends = [await own.particles(0), await own.particles(1)];
-      if (race !== own) return;
+      if (isOver()) return;
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
-      fill(result, resultOf(names, own.lanes, ends), marksOf(chosen, own.lanes[1].workMs / own.lanes[0].workMs));
-      stop();
+      const ratio = own.lanes[1].workMs / own.lanes[0].workMs;
+      fill(this.result, resultOf(names, own.lanes, ends), marksOf(kind, ratio));
+      this.stop();
     } catch (error) {
-      if (race !== own || /** @type {any} */ (error)?.kind === 'given_up') return;
-      stop();
-      status.textContent = reasonOf(error);
+      if (isOver() || /** @type {any} */ (error)?.kind === 'given_up') return;
+      this.stop();
+      this.status.value = reasonOf(error);
     }
   }
+}
 
-  fill(host, h('div', { class: 'controls' }, choose.element, go), place, status, result);
-  lay();
+/** A race that shows itself on its lanes. @param {readonly ReturnType<typeof createLane>[]} lanes */
+function raceOn(lanes) {
+  const lastMs = [-Infinity, -Infinity];
+  const race = new Race({
+    onLane(k, lane) {
+      lanes[k].tell(lane);
+      const now = performance.now();
+      if (!lane.progress?.is_done && now - lastMs[k] < PICTURE_MS) return;
+      lastMs[k] = now;
+      race.particles(k).then(
+        (particles) => {
+          if (particles.radii.length > 0) lanes[k].show(particles);
+        },
+        () => {},
+      );
+    },
+  });
+  return race;
 }
 
 /** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly LessonParticles[]} ends */

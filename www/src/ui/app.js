@@ -1,12 +1,13 @@
 /** Mounts the interface on an engine. */
+
 import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { isBoxDrawn } from './box.js';
-import { byId, h, once } from './dom.js';
+import { button } from './button.js';
+import { byId, h, live, once, query } from './dom.js';
 import { explain } from './explain.js';
 import { mountDrop } from './field/drop.js';
 import { mountField } from './field/panel.js';
 import { createHistory } from './history.js';
-import { icon } from './icons.js';
 import { mountLayout } from './layout.js';
 import { createMotion } from './motion.js';
 import { mountReport } from './report/panel.js';
@@ -25,7 +26,7 @@ import { createToolbar } from './view/toolbar.js';
  * @import { Motion } from './motion.js'
  * @import { Shortcut } from './shortcuts.js'
  * @import { Toast } from './toasts.js'
- * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
  */
 
 /** @param {Engine} engine @returns {Toast}  shows a notice of the page */
@@ -38,7 +39,7 @@ export function mountInterface(engine) {
     ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility(),
   );
   const samplingTools = h('div', { class: 'sampling-tools' });
-  const head = (/** @type {HTMLElement} */ panel) => /** @type {HTMLElement} */ (panel.querySelector('.panel-head'));
+  const head = (/** @type {HTMLElement} */ panel) => query(panel, '.panel-head');
   const layout = mountLayout({
     shell,
     view,
@@ -75,58 +76,68 @@ export function mountInterface(engine) {
 
   followTheme(engine);
   nameTab(engine);
-  head(field)
-    .querySelector('.fold')
-    ?.before(
-      historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo),
-      historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo),
-    );
+  query(field, '.fold').before(...historyButtons(history));
   mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   // What is said where there is no surface does not hide the box.
-  layout.follow(/** @type {HTMLElement} */ (view.querySelector('.empty')));
+  layout.follow(query(view, '.empty'));
   const boxDrawn = computed(() => isBoxDrawn(engine));
-  effect(() => {
+  live(view, () => {
     void boxDrawn.value;
     untracked(layout.measure);
   });
   linkLearn(engine);
-  const loadFollow = followLoader(engine, { shell, stage }, toast);
   mountHover(stage, engine, { view, follow: (index) => void timeline?.follow(index) });
   byId('tabs').append(goButton(engine));
 
-  let mounted = false;
-  effect(() => {
+  let isMounted = false;
+  live(shell, () => {
     const description = engine.description.value;
-    if (!description || mounted) return;
-    mounted = true;
+    if (!description || isMounted) return;
+    isMounted = true;
     mountField(byId('field-body'), engine, description, motion);
     mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
     mountReport(byId('report-body'), engine, description);
     const legend = createLegend(engine, description);
-    view.prepend(
-      legend,
-      createToolbar(engine, { hide: layout.hideMore, shortcuts: shortcuts.open, picture, motion, toast }),
-    );
+    const tools = { hide: layout.hideMore, shortcuts: shortcuts.open, picture, motion, toast };
+    view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
     shell.dataset.ready = '';
-    // Without its marks the picture is as good as before.
-    import('./view/marks/index.js').then(
-      ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view }),
-      () => {},
-    );
-    import('./levels/timeline.js').then(
-      ({ createTimeline }) => {
-        const say = (/** @type {string} */ text) => toast({ id: 'link', kind: 'warn', text });
-        timeline = createTimeline(byId('levels-body'), engine, { told, loadFollow: () => loadFollow(say), say });
-      },
-      // If the timeline fails to load, the rest of the page still works.
-      () => {
-        levels.hidden = true;
-      },
-    );
+    loadMarks(engine, { stage, view });
+    void loadTimeline(engine, { shell, stage, told }, toast).then((loaded) => {
+      timeline = loaded;
+      levels.hidden = timeline === null;
+    });
   });
   return toast;
+}
+
+/**
+ * Loads the marks on the picture, which is as good as before without them.
+ * @param {Engine} engine
+ * @param {{ stage: HTMLElement, view: HTMLElement }} parts
+ */
+function loadMarks(engine, { stage, view }) {
+  import('./view/marks/index.js').then(
+    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view }),
+    () => {},
+  );
+}
+
+/**
+ * Loads the timeline; null if it cannot be had, without which the rest of the page still works.
+ * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement, told: Signal<Told | null> }} parts
+ * @param {Toast} toast
+ */
+async function loadTimeline(engine, { shell, stage, told }, toast) {
+  try {
+    const { createTimeline } = await import('./levels/timeline.js');
+    const say = (/** @type {string} */ text) => toast({ id: 'link', kind: 'warn', text });
+    const loadFollow = () => loadPanel(engine, { shell, stage, say }, toast);
+    return createTimeline(byId('levels-body'), engine, { told, loadFollow, say });
+  } catch {
+    return null;
+  }
 }
 
 /**
@@ -151,23 +162,23 @@ function nameTab(engine) {
 }
 
 /**
- * Returns what loads the panel that follows particles, when it is first asked for; its promise is null if that fails.
- * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement }} parts @param {Toast} toast
+ * Loads the panel that follows particles; null if it cannot be had.
+ * @param {Engine} engine
+ * @param {{ shell: HTMLElement, stage: HTMLElement, say: (text: string) => void }} parts
+ * @param {Toast} toast
  */
-function followLoader(engine, { shell, stage }, toast) {
-  return async (/** @type {(text: string) => void} */ say) => {
-    try {
-      const [{ mountFollow }, { mountMarks }] = await Promise.all([
-        import('./follow/panel.js'),
-        import('./view/marks/layer.js'),
-      ]);
-      return await mountFollow(shell, engine, { say, mount: (mark) => void mountMarks(stage, engine, [mark]) });
-    } catch {
-      const text = 'The panel that follows particles did not load. The picture is not affected.';
-      toast({ id: 'follow', kind: 'error', text });
-      return null;
-    }
-  };
+async function loadPanel(engine, { shell, stage, say }, toast) {
+  try {
+    const [{ mountFollow }, { mountMarks }] = await Promise.all([
+      import('./follow/panel.js'),
+      import('./view/marks/layer.js'),
+    ]);
+    return await mountFollow(shell, engine, { say, mount: (mark) => void mountMarks(stage, engine, [mark]) });
+  } catch {
+    const text = 'The panel that follows particles did not load. The picture is not affected.';
+    toast({ id: 'follow', kind: 'error', text });
+    return null;
+  }
 }
 
 /** Gives the page and the browser's frame the chosen theme. @param {Engine} engine */
@@ -292,10 +303,14 @@ function goButton(engine) {
     if (active.peek()) engine.stop();
     else engine.run();
   });
-  return h('button', { type: 'button', class: 'button primary go', on: { click: press } }, () =>
-    active.value ? 'Stop' : 'Run',
-  );
+  return button({ class: 'primary go', press }, () => (active.value ? 'Stop' : 'Run'));
 }
+
+/** @param {ReturnType<typeof createHistory>} history */
+const historyButtons = ({ canUndo, undo, canRedo, redo }) => [
+  historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, canUndo, undo),
+  historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, canRedo, redo),
+];
 
 /**
  * @param {'undo' | 'redo'} name
@@ -305,23 +320,10 @@ function goButton(engine) {
  * @param {() => void} act
  */
 function historyButton(name, label, keys, can, act) {
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain square',
-      'aria-label': label,
-      'aria-disabled': () => String(!can.value),
-      on: {
-        click: () => {
-          if (can.peek()) act();
-        },
-      },
-    },
-    icon(name),
-  );
-  explain(button, () => ({ title: label, text: `Surface, formula, clip box and settings. Keys ${keys}.` }));
-  return button;
+  return explain(button({ icon: name, 'aria-label': label, off: () => !can.value, press: act }), () => ({
+    title: label,
+    text: `Surface, formula, clip box and settings. Keys ${keys}.`,
+  }));
 }
 
 /** @param {Engine} engine */

@@ -1,8 +1,12 @@
-/** The page's button. */
+/** The buttons of the page. */
 import { h } from './dom.js';
+import { explain } from './explain.js';
 import { icon as draw } from './icons.js';
 
-/** @import { ButtonProps, Children } from './types.js' */
+/**
+ * @import { Explanation, Side } from './explain.js'
+ * @import { ButtonProps, Children } from './types.js'
+ */
 
 /**
  * Creates a button of the class `button` and those of `class`, with a text or with an icon alone.
@@ -27,3 +31,12 @@ export function button({ press, icon, off, class: look = icon ? 'plain square' :
     children,
   );
 }
+
+/**
+ * Creates a name of a figure that is explained on a press.
+ * @param {() => Explanation} read
+ * @param {{ side?: Side }} options
+ * @param {...Children} words
+ */
+export const term = (read, options, ...words) =>
+  explain(h('button', { type: 'button', class: 'term' }, words), read, { ...options, tap: true });

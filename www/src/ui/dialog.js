@@ -1,7 +1,7 @@
 /** Creates modal dialogs with a title and a close button. */
 /** @typedef {ReturnType<typeof createDialog>} Dialog */
+import { button } from './button.js';
 import { h, uniqueId } from './dom.js';
-import { icon } from './icons.js';
 
 /** @import { Children } from './types.js' */
 
@@ -18,11 +18,7 @@ export function createDialog(title, ...content) {
       'div',
       { class: 'dialog-head' },
       h('h2', { id }, title),
-      h(
-        'button',
-        { type: 'button', class: 'button plain square', 'aria-label': 'Close', on: { click: () => element.close() } },
-        icon('close'),
-      ),
+      button({ icon: 'close', 'aria-label': 'Close', press: () => element.close() }),
     ),
     content,
   );

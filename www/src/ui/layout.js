@@ -1,9 +1,10 @@
 /**
  * Manages the layout: folding and hiding of panels, the tabs of the compact layout, and the free area for the picture.
  */
-import { h } from './dom.js';
+import { signal } from '@preact/signals-core';
+import { button } from './button.js';
+import { live } from './dom.js';
 import { explain } from './explain.js';
-import { icon } from './icons.js';
 
 /** Width below which the report is initially folded, to leave room for the picture. */
 const NARROW = '(max-width: 67.45em)';
@@ -29,50 +30,37 @@ const COMPACT = '(max-width: 44.95em)';
  * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
  */
 export function mountLayout({ shell, view, nav, panels, covered, inset }) {
-  const folds = panels.flatMap(({ title, panel, head }) => (head ? [createFold(title, panel, head)] : []));
-  if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
+  const last = panels.findLast(({ head }) => head);
+  for (const each of panels)
+    if (each.head) addFold(each.title, each.panel, each.head, each === last && matchMedia(NARROW).matches);
 
-  const tabs = panels.map(({ title, panel }) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        class: 'button tab',
-        'aria-controls': panel.id,
-        'aria-expanded': 'false',
-        on: { click: () => toggle(panel) },
-      },
-      title,
-    ),
-  );
-  nav.append(...tabs);
-
-  /** @param {HTMLElement | null} active */
-  function activate(active) {
-    panels.forEach(({ panel }, i) => {
-      panel.toggleAttribute('data-active', panel === active);
-      tabs[i].setAttribute('aria-expanded', String(panel === active));
-    });
+  const active = signal(/** @type {HTMLElement | null} */ (panels[0].panel));
+  for (const { title, panel } of panels) {
+    live(panel, () => panel.toggleAttribute('data-active', panel === active.value));
+    nav.append(
+      button(
+        {
+          class: 'tab',
+          'aria-controls': panel.id,
+          'aria-expanded': () => String(panel === active.value),
+          press: () => {
+            active.value = panel === active.peek() ? null : panel;
+          },
+        },
+        title,
+      ),
+    );
   }
-  /** @param {HTMLElement} panel */
-  function toggle(panel) {
-    activate(panel.hasAttribute('data-active') ? null : panel);
-  }
-  activate(panels[0].panel);
 
-  const unhide = h(
-    'button',
-    { type: 'button', class: 'button unhide', on: { click: () => hide('nothing') } },
-    'Show the panels',
-  );
+  const unhide = button({ class: 'unhide', press: () => hide('nothing') }, 'Show the panels');
   view.append(unhide);
   /** @param {Hidden} hidden */
   function hide(hidden) {
     if (hidden === 'nothing') delete shell.dataset.hidden;
     else shell.dataset.hidden = hidden;
-    const { activeElement: active } = document;
+    const { activeElement: focused } = document;
     // The focus does not stay on what is hidden.
-    if (active instanceof HTMLElement && active !== document.body && active.offsetParent === null) unhide.focus();
+    if (focused instanceof HTMLElement && focused !== document.body && focused.offsetParent === null) unhide.focus();
   }
 
   const compact = matchMedia(COMPACT);
@@ -102,21 +90,24 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   };
 }
 
-/** @param {string} title @param {HTMLElement} panel @param {HTMLElement} head */
-function createFold(title, panel, head) {
-  const button = h('button', { type: 'button', class: 'button plain square fold', 'aria-controls': panel.id });
-  let folded = false;
-  /** @param {boolean} next */
-  const set = (next) => {
-    folded = next;
-    panel.toggleAttribute('data-folded', folded);
-    button.setAttribute('aria-expanded', String(!folded));
-    button.setAttribute('aria-label', folded ? `Unfold ${title.toLowerCase()}` : `Fold ${title.toLowerCase()}`);
-    button.replaceChildren(icon(folded ? 'unfold' : 'fold'));
-  };
-  button.addEventListener('click', () => set(!folded));
-  explain(button, () => ({ text: folded ? 'Unfold' : 'Fold' }));
-  set(false);
-  head.append(button);
-  return { set };
+/** @param {string} title @param {HTMLElement} panel @param {HTMLElement} head @param {boolean} folded  at first */
+function addFold(title, panel, head, folded) {
+  const isFolded = signal(folded);
+  const name = title.toLowerCase();
+  head.append(
+    explain(
+      button({
+        class: 'plain square fold',
+        icon: () => (isFolded.value ? 'unfold' : 'fold'),
+        'aria-controls': panel.id,
+        'aria-expanded': () => String(!isFolded.value),
+        'aria-label': () => (isFolded.value ? `Unfold ${name}` : `Fold ${name}`),
+        press: () => {
+          isFolded.value = !isFolded.peek();
+        },
+      }),
+      () => ({ text: isFolded.peek() ? 'Unfold' : 'Fold' }),
+    ),
+  );
+  live(panel, () => panel.toggleAttribute('data-folded', isFolded.value));
 }

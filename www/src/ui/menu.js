@@ -1,5 +1,5 @@
 /** Attaches a menu in the top layer to a button. */
-import { h, uniqueId } from './dom.js';
+import { h, query, uniqueId } from './dom.js';
 import { place } from './explain.js';
 
 /**
@@ -18,7 +18,7 @@ export function attachMenu(button, items, { label }) {
     button.setAttribute('aria-expanded', String(open));
     if (!open) return;
     place(menu, button.getBoundingClientRect(), 'left');
-    /** @type {HTMLElement | null} */ (menu.querySelector('button, input, select'))?.focus();
+    query(menu, 'button, input, select').focus();
   });
   menu.addEventListener('click', (event) => {
     if (event.target instanceof Element && event.target.closest('button[data-closes]')) menu.hidePopover();

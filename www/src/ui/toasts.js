@@ -1,7 +1,7 @@
 /** Shows notices as short lines. They disappear after a while, unless they need an answer. */
-import { effect } from '@preact/signals-core';
-import { fill, h } from './dom.js';
-import { icon } from './icons.js';
+
+import { button } from './button.js';
+import { fill, h, live } from './dom.js';
 
 /** @import { Engine, Notice } from '../engine/types.js' */
 
@@ -31,8 +31,17 @@ export function mountToasts(host, engine, isTold) {
     if (engine.notice.peek()?.id === id) engine.dismissNotice();
   }
 
+  /** Takes a notice away later, but not while it is looked at. @param {string} id @param {HTMLElement} element */
+  const count = (id, element) =>
+    window.setTimeout(() => {
+      const entry = shown.get(id);
+      if (entry && element.matches(':hover, :focus-within')) entry.timer = count(id, element);
+      else remove(id);
+    }, STAY_MS);
+
   /** @type {Toast} */
-  const toast = ({ id, kind, text, details, action }) => {
+  const toast = (notice) => {
+    const { id, kind } = notice;
     const old = shown.get(id);
     if (old) clearTimeout(old.timer);
     const element = old?.element ?? host.appendChild(h('div'));
@@ -41,57 +50,14 @@ export function mountToasts(host, engine, isTold) {
     if (kind === 'error') element.setAttribute('role', 'alert');
     fill(
       element,
-      h('p', null, text),
-      action
-        ? h(
-            'button',
-            {
-              type: 'button',
-              class: 'button',
-              on: {
-                click: () => {
-                  remove(id);
-                  action.run();
-                },
-              },
-            },
-            action.label,
-          )
-        : null,
-      details
-        ? h(
-            'button',
-            {
-              type: 'button',
-              class: 'button plain',
-              on: {
-                click: () => {
-                  void navigator.clipboard.writeText(details).catch(() => {});
-                },
-              },
-            },
-            'Copy report',
-          )
-        : null,
-      h(
-        'button',
-        { type: 'button', class: 'button plain square', 'aria-label': 'Dismiss', on: { click: () => remove(id) } },
-        icon('close'),
-      ),
+      partsOf(notice, () => remove(id)),
     );
-    const stays = kind === 'error' || action !== undefined || details !== undefined;
-    /** @type {() => number} */
-    const count = () =>
-      window.setTimeout(() => {
-        const entry = shown.get(id);
-        if (entry && element.matches(':hover, :focus-within')) entry.timer = count();
-        else remove(id);
-      }, STAY_MS);
-    shown.set(id, { element, timer: stays ? 0 : count() });
+    const stays = kind === 'error' || notice.action !== undefined || notice.details !== undefined;
+    shown.set(id, { element, timer: stays ? 0 : count(id, element) });
   };
 
   let last = '';
-  effect(() => {
+  live(host, () => {
     const notice = engine.notice.value;
     if (!notice) return remove(last);
     last = notice.id;
@@ -99,4 +65,19 @@ export function mountToasts(host, engine, isTold) {
     else toast(notice);
   });
   return toast;
+}
+
+/** The text of a notice, and what can be done. @param {Notice} notice @param {() => void} remove */
+function partsOf({ text, details, action }, remove) {
+  const act = () => {
+    remove();
+    action?.run();
+  };
+  const copy = () => void navigator.clipboard.writeText(details ?? '').catch(() => {});
+  return [
+    h('p', null, text),
+    action && button({ press: act }, action.label),
+    details && button({ class: 'plain', press: copy }, 'Copy report'),
+    button({ icon: 'close', 'aria-label': 'Dismiss', press: remove }),
+  ];
 }

@@ -6,7 +6,7 @@ export type Live<T> = T | (() => T);
 export type Attribute = string | number | boolean | null | undefined;
 export type Child = Node | string | number | null | undefined | false;
 /** What an element holds; a function is read anew, and what it returned before is taken away. */
-export type Children = Live<Child | readonly Children[]>;
+export type Children = Child | readonly Children[] | (() => Children);
 type AttributeName =
   | `aria-${string}`
   | `data-${string}`

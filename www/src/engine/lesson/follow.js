@@ -38,7 +38,7 @@ export function follow(lesson, env) {
     if (holds) return env.post({ type: 'ended', id, progress: answer });
     for (let budget = FIRST_BUDGET; ; ) {
       const before = env.nowMs();
-      const progress = step(budget);
+      const progress = step(lesson, budget);
       if (progress.is_done) return env.post({ type: 'ended', id, progress });
       budget = nextBudget(budget, env.nowMs() - before, SLICE_MS);
       env.post({ type: 'progress', id, progress });
@@ -46,60 +46,6 @@ export function follow(lesson, env) {
       // Another run has begun in the meantime, which answers for itself.
       if (present !== id) return;
       if (stops) return env.post({ type: 'ended', id, progress });
-    }
-  }
-
-  /** @param {number} units */
-  function step(units) {
-    const progress = lesson.step(units);
-    if (!progress) throw new Error('No run was begun.');
-    return progress;
-  }
-
-  /** @param {number} units @returns {Advanced} */
-  function advance(units) {
-    const before = env.nowMs();
-    return { progress: step(units), workMs: env.nowMs() - before };
-  }
-
-  /** @returns {Particles} */
-  function particles(/** @type {number} */ at) {
-    return {
-      at,
-      positions: lesson.positions(),
-      normals: lesson.normals(),
-      radii: lesson.radii(),
-      levels: lesson.levels(),
-      parents: lesson.parents(),
-      fronts: lesson.fronts(),
-      slots: lesson.slots(),
-      done: lesson.done(),
-    };
-  }
-
-  /** @param {Extract<ToLesson, {type: 'ask'}>} question */
-  function answer(question) {
-    switch (question.about) {
-      case 'chapters':
-        return lesson.chapters(question.ask.first);
-      case 'events':
-        return lesson.events(question.ask.first, question.ask.count);
-      case 'seek':
-        return particles(lesson.seek(Math.min(question.ask.event, 0xffff_ffff)));
-      case 'life':
-        return lesson.life(question.ask.particle);
-      case 'pushes':
-        return lesson.pushes(question.ask.particle);
-      case 'section': {
-        const { centre, right, up, half, cells } = question.ask;
-        return lesson.section(Float64Array.from(centre), Float64Array.from(right), Float64Array.from(up), half, cells);
-      }
-      case 'newton':
-        return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
-      case 'advance':
-        return advance(question.ask.units);
-      case 'digest':
-        return lesson.digest();
     }
   }
 
@@ -114,10 +60,62 @@ export function follow(lesson, env) {
           stops = true;
           break;
         case 'ask':
-          env.post({ type: 'answer', id: message.id, answer: answer(message) });
+          env.post({ type: 'answer', id: message.id, answer: answer(lesson, env.nowMs, message) });
           break;
         default:
       }
     },
   };
+}
+
+/** @param {Lesson} lesson @param {number} units */
+function step(lesson, units) {
+  const progress = lesson.step(units);
+  if (!progress) throw new Error('No run was begun.');
+  return progress;
+}
+
+/** @param {Lesson} lesson @param {number} at  the event that was sought @returns {Particles} */
+const particles = (lesson, at) => ({
+  at,
+  positions: lesson.positions(),
+  normals: lesson.normals(),
+  radii: lesson.radii(),
+  levels: lesson.levels(),
+  parents: lesson.parents(),
+  fronts: lesson.fronts(),
+  slots: lesson.slots(),
+  done: lesson.done(),
+});
+
+/** @param {Lesson} lesson @param {() => number} nowMs @param {Extract<ToLesson, {type: 'ask'}>} question */
+function answer(lesson, nowMs, question) {
+  switch (question.about) {
+    case 'chapters':
+      return lesson.chapters(question.ask.first);
+    case 'events':
+      return lesson.events(question.ask.first, question.ask.count);
+    case 'seek':
+      return particles(lesson, lesson.seek(Math.min(question.ask.event, 0xffff_ffff)));
+    case 'life':
+      return lesson.life(question.ask.particle);
+    case 'pushes':
+      return lesson.pushes(question.ask.particle);
+    case 'section': {
+      const { centre, right, up, half, cells } = question.ask;
+      return lesson.section(Float64Array.from(centre), Float64Array.from(right), Float64Array.from(up), half, cells);
+    }
+    case 'newton':
+      return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
+    case 'advance':
+      return advance(lesson, nowMs, question.ask.units);
+    case 'digest':
+      return lesson.digest();
+  }
+}
+
+/** @param {Lesson} lesson @param {() => number} nowMs @param {number} units @returns {Advanced} */
+function advance(lesson, nowMs, units) {
+  const before = nowMs();
+  return { progress: step(lesson, units), workMs: nowMs() - before };
 }

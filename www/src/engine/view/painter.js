@@ -76,8 +76,13 @@ function shadeOf(keyward, skyward, edgeOn) {
 }
 
 /**
+ * The pixels of a picture and how near each is.
+ * @typedef {{out: Uint32Array, depth: Float32Array, width: number, height: number}} Target
+ */
+
+/**
  * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
- * @param {{out: Uint32Array, depth: Float32Array, width: number, height: number}} target
+ * @param {Target} target
  * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number,
  *   rim: number, coreSq: number}} disc `inv` is the depth at the centre; beyond the squared distance `coreSq` the disc
  *   has the colour of its rim
@@ -257,84 +262,90 @@ export class Painter {
   paint(image, depth, transparent, timeS) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
-    const target = { out, depth, width, height };
-    const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view } = this.style;
-    const { level = null, plane = null } = this.style;
+    const { background, box, key_light_view: toward } = this.style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
     // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
     depth.fill(0);
-    const m = this.view;
-    const [ex, ey, ez] = [m[16], m[17], m[18]];
-    const { right, up, forward, clipXPerWorld } = eyeAxes(m);
-    const light = Math.hypot(key_light_view[0], key_light_view[1], key_light_view[2]) || 1;
-    const key = [0, 1, 2].map(
-      (k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light,
-    );
-    const { positions, normals, radii, levels, colours, births } = this;
-    for (let i = 0; i < this.count; i += 1) {
-      if (births[i] > timeS) continue;
-      const older = level !== null && levels[i] < level;
-      if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) continue;
-      if (plane && isBeyond(plane, positions, 3 * i)) continue;
-      const x = positions[3 * i];
-      const y = positions[3 * i + 1];
-      const z = positions[3 * i + 2];
-      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-      if (!(w > 1e-9)) continue;
-      const inv = 1 / w;
-      const cx = (m[0] * x + m[4] * y + m[8] * z + m[12]) * inv;
-      const cy = (m[1] * x + m[5] * y + m[9] * z + m[13]) * inv;
-      const sx = (0.5 + 0.5 * cx) * width;
-      const sy = (0.5 - 0.5 * cy) * height;
-      const r = radii[i] * disc_scale;
-      const px = clipXPerWorld * r * inv * 0.5 * width;
-      if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) continue;
-      let nx = normals[3 * i];
-      let ny = normals[3 * i + 1];
-      let nz = normals[3 * i + 2];
-      const facing = (ex - x) * nx + (ey - y) * ny + (ez - z) * nz;
-      const back = facing < 0;
-      if (back) {
-        nx = -nx;
-        ny = -ny;
-        nz = -nz;
-      }
-      const keyward = nx * key[0] + ny * key[1] + nz * key[2];
-      const skyward = nx * up[0] + ny * up[1] + nz * up[2];
-      const edgeOn = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
-      const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 1 - dim_backfaces * (1 - INSIDE_LIGHT) : 1);
-      const away = older ? Math.max(dim, MUTE) : dim;
-      const grey = back ? dim_backfaces * (1 - INSIDE_CHROMA) : 0;
-      const colour = colours[i];
-      const [red, green, blue] = [LINEAR[colour & 255], LINEAR[(colour >> 8) & 255], LINEAR[(colour >> 16) & 255]];
-      const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-      const mix = (/** @type {number} */ value, /** @type {number} */ k, /** @type {number} */ lightHere) =>
-        Math.min(1, (value + (luminance - value) * grey) * lightHere) * (1 - away) + ground[k] * away;
-      const lit = (/** @type {number} */ lightHere) =>
-        packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
-      const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
-      const rim = i === outline ? value : lit(shade * 0.78);
-      // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise.
-      const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
-      if (px < POINT_PX) {
-        const at = (sy | 0) * width + (sx | 0);
-        if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
-          depth[at] = inv;
-          out[at] = value;
-        }
-        continue;
-      }
-      // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
-      // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
-      const a = nx * right[0] + ny * right[1] + nz * right[2];
-      const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
-      // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
-      const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
-      const depthPerPx = (r / px) * inv * inv;
-      fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, inv, depthPerPx, value, rim, coreSq });
-    }
+    const axes = eyeAxes(this.view);
+    const { right, up, forward } = axes;
+    const light = Math.hypot(toward[0], toward[1], toward[2]) || 1;
+    const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
+    const scene = { target: { out, depth, width, height }, axes, key, ground };
+    for (let i = 0; i < this.count; i += 1) if (this.births[i] <= timeS) this.paintDisc(i, scene);
     if (box) this.paintBox(out, depth, width, height, box);
+  }
+
+  /**
+   * Draws a particle, unless the style hides it or it is out of sight.
+   * @param {number} i
+   * @param {{ target: Target, axes: ReturnType<typeof eyeAxes>, key: number[], ground: number[] }} scene  `key`: the
+   *   direction to the light; `ground`: the background in linear light
+   */
+  paintDisc(i, { target, axes, key, ground }) {
+    const { out, depth, width, height } = target;
+    const { right, up, forward, clipXPerWorld } = axes;
+    const { dim, dim_backfaces, disc_scale, outline, level = null, plane = null } = this.style;
+    const { positions, normals, radii, levels, colours, view: m } = this;
+    const older = level !== null && levels[i] < level;
+    if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) return;
+    if (plane && isBeyond(plane, positions, 3 * i)) return;
+    const x = positions[3 * i];
+    const y = positions[3 * i + 1];
+    const z = positions[3 * i + 2];
+    const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+    if (!(w > 1e-9)) return;
+    const inv = 1 / w;
+    const cx = (m[0] * x + m[4] * y + m[8] * z + m[12]) * inv;
+    const cy = (m[1] * x + m[5] * y + m[9] * z + m[13]) * inv;
+    const sx = (0.5 + 0.5 * cx) * width;
+    const sy = (0.5 - 0.5 * cy) * height;
+    const r = radii[i] * disc_scale;
+    const px = clipXPerWorld * r * inv * 0.5 * width;
+    if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return;
+    let nx = normals[3 * i];
+    let ny = normals[3 * i + 1];
+    let nz = normals[3 * i + 2];
+    const facing = (m[16] - x) * nx + (m[17] - y) * ny + (m[18] - z) * nz;
+    const back = facing < 0;
+    if (back) {
+      nx = -nx;
+      ny = -ny;
+      nz = -nz;
+    }
+    const keyward = nx * key[0] + ny * key[1] + nz * key[2];
+    const skyward = nx * up[0] + ny * up[1] + nz * up[2];
+    const edgeOn = 1 - Math.abs(facing) / Math.hypot(m[16] - x, m[17] - y, m[18] - z);
+    const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 1 - dim_backfaces * (1 - INSIDE_LIGHT) : 1);
+    const away = older ? Math.max(dim, MUTE) : dim;
+    const grey = back ? dim_backfaces * (1 - INSIDE_CHROMA) : 0;
+    const colour = colours[i];
+    const [red, green, blue] = [LINEAR[colour & 255], LINEAR[(colour >> 8) & 255], LINEAR[(colour >> 16) & 255]];
+    const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    const mix = (/** @type {number} */ value, /** @type {number} */ k, /** @type {number} */ lightHere) =>
+      Math.min(1, (value + (luminance - value) * grey) * lightHere) * (1 - away) + ground[k] * away;
+    const lit = (/** @type {number} */ lightHere) =>
+      packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
+    const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
+    const rim = i === outline ? value : lit(shade * 0.78);
+    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise.
+    const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
+    if (px < POINT_PX) {
+      const at = (sy | 0) * width + (sx | 0);
+      if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
+        depth[at] = inv;
+        out[at] = value;
+      }
+      return;
+    }
+    // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
+    // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
+    const a = nx * right[0] + ny * right[1] + nz * right[2];
+    const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
+    // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
+    const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
+    const depthPerPx = (r / px) * inv * inv;
+    fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, inv, depthPerPx, value, rim, coreSq });
   }
 
   /**

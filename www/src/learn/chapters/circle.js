@@ -1,10 +1,9 @@
 /** The search on the circle and Newton's method, side by side in the plane of one slot. */
-import { effect } from '@preact/signals-core';
 import { lens, profileOf } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { inRadii, tell } from '../../figures/words.js';
-import { fill, h } from '../../ui/dom.js';
+import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, MISSING } from '../../ui/format.js';
 import { NoSurface } from '../lab.js';
 import { sharpestBend } from '../measure.js';
@@ -71,9 +70,6 @@ export async function circle({ lab, stops }) {
         : null,
     );
   }
-  effect(() => {
-    stops.isOpen('predict-newton');
-    show();
-  });
+  live(box, show);
   return [h('div', { class: 'two' }, box, side)];
 }

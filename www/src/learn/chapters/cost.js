@@ -1,5 +1,4 @@
 /** What placing costs and what relaxing costs, in evaluations of f. */
-import { effect } from '@preact/signals-core';
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 
@@ -33,29 +32,30 @@ export async function cost({ lab, stops }) {
   const most = Math.max(...rows.map(({ value }) => value));
   const table = h(
     'table',
-    { class: 'cost' },
+    { class: 'cost', hidden: () => !stops.isOpen('predict-cost') },
     h('caption', null, `Evaluations of f for each of ${formatCount(particles)} particles`),
     h(
       'tbody',
       null,
-      rows.map(({ name, value, kind }) => {
-        const bar = h('span', { class: 'cost-bar', data: { kind } });
-        bar.style.width = `${(100 * value) / most}%`;
-        return h(
+      rows.map(({ name, value, kind }) =>
+        h(
           'tr',
           null,
           h('th', { scope: 'row' }, name),
-          h('td', { class: 'cost-cell' }, bar),
+          h(
+            'td',
+            { class: 'cost-cell' },
+            h('span', { class: 'cost-bar', data: { kind }, style: { width: `${(100 * value) / most}%` } }),
+          ),
           h('td', null, formatSignificant(value / particles, 3)),
-        );
-      }),
+        ),
+      ),
     ),
   );
-  const waiting = h('p', { class: 'figure-count' }, 'The bars come with the answer.');
-  effect(() => {
-    const isOpen = stops.isOpen('predict-cost');
-    table.hidden = !isOpen;
-    waiting.hidden = isOpen;
-  });
+  const waiting = h(
+    'p',
+    { class: 'figure-count', hidden: () => stops.isOpen('predict-cost') },
+    'The bars come with the answer.',
+  );
   return [table, waiting];
 }

@@ -1,13 +1,14 @@
 /** One particle and its children: the tangent plane event by event, and the particles that were there first. */
-import { effect, signal } from '@preact/signals-core';
+
+import { signal } from '@preact/signals-core';
 import { tangentPlane } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
 import { FATES, tell } from '../../figures/words.js';
+import { button } from '../../ui/button.js';
 import { fill, h, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
-import { icon } from '../../ui/icons.js';
 import { createRange } from '../parts.js';
 
 /**
@@ -53,16 +54,12 @@ function stepThrough(opened, at) {
   });
   show(range.get());
   const step = (/** @type {number} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ name) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        class: 'button square',
-        'aria-label': label,
-        on: { click: () => range.set(Math.min(last, Math.max(0, range.get() + by))) },
-      },
-      icon(name),
-    );
+    button({
+      class: 'square',
+      icon: name,
+      'aria-label': label,
+      press: () => range.set(Math.min(last, Math.max(0, range.get() + by))),
+    });
   const controls = h(
     'div',
     { class: 'controls' },
@@ -82,15 +79,15 @@ export async function sixChildren({ lab, stops }) {
   const third = run.end.parents.indexOf(1);
   const subjects = [0, 1, ...(third > 0 ? [third] : [])];
   const buttons = subjects.map((_, k) =>
-    h('button', { type: 'button', class: 'button', on: { click: () => choose(k) } }, names[k]),
+    button(
+      {
+        'aria-pressed': () => String(chosen.value === k),
+        disabled: () => k > 0 && !stops.isOpen('predict-children'),
+        press: () => void choose(k),
+      },
+      names[k],
+    ),
   );
-  effect(() => {
-    const isOpen = stops.isOpen('predict-children');
-    for (const [k, button] of buttons.entries()) {
-      button.setAttribute('aria-pressed', String(chosen.value === k));
-      button.disabled = k > 0 && !isOpen;
-    }
-  });
   /** @param {number} k */
   async function choose(k) {
     const opened = await openParticle(run.client, run, subjects[k]);
@@ -102,8 +99,8 @@ export async function sixChildren({ lab, stops }) {
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 
-/** What became of the children, level by level. @param {LabRun} run */
-function fateChart(run) {
+/** What became of the children, level by level. @param {LabRun} run @param {() => boolean} hidden */
+function fateChart(run, hidden) {
   const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
   const rows = levels.map(({ fates }) => [fates.added, fates.matched]);
   const most = Math.max(1, ...rows.map(([added, matched]) => added + matched));
@@ -123,7 +120,7 @@ function fateChart(run) {
     );
   }
   const words = `Children by level: ${formatCount(totals[0])} added below, ${formatCount(totals[1])} matched above. Parents are not counted.`;
-  return h('div', { class: 'chart' }, svg, h('p', { class: 'figure-count' }, words));
+  return h('div', { class: 'chart', hidden }, svg, h('p', { class: 'figure-count' }, words));
 }
 
 /** A particle amid the front, and the fates of all children. @param {Context} context */
@@ -140,27 +137,18 @@ export async function whoWasFirst({ lab, stops }) {
     fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
   }
   await show();
-  const another = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button',
-      on: {
-        click: () => {
-          particle = (particle + 7) % count;
-          void show();
-        },
-      },
-    },
-    'Another particle',
-  );
-  const chart = fateChart(run);
-  effect(() => {
-    chart.hidden = !stops.isOpen('predict-average');
-  });
+  const next = () => {
+    particle = (particle + 7) % count;
+    void show();
+  };
   return [
-    h('div', { class: 'controls choices' }, another, h('span', null, `of ${plural(count, 'particle')}`)),
+    h(
+      'div',
+      { class: 'controls choices' },
+      button({ press: next }, 'Another particle'),
+      h('span', null, `of ${plural(count, 'particle')}`),
+    ),
     place,
-    chart,
+    fateChart(run, () => !stops.isOpen('predict-average')),
   ];
 }

@@ -1,6 +1,5 @@
 /** Where rings meet, and ten steps of rest. */
-import { effect } from '@preact/signals-core';
-import { h } from '../../ui/dom.js';
+import { h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
 import { spread } from '../../ui/neighbours.js';
 import { energiesOf, nearestDistances } from '../measure.js';
@@ -79,7 +78,7 @@ export async function seams({ lab, stops }) {
       : 'Turn the picture and press a particle: that is your prediction.';
   };
   show.addEventListener('change', draw);
-  effect(draw);
+  live(box, draw);
   return [picture.element, h('div', { class: 'controls' }, box, words)];
 }
 
@@ -119,7 +118,7 @@ export async function rest({ lab, stops }) {
   const play = createPlay(range, { label: 'Relax', totalMs: STEP_MS * (states.length - 1) });
   const chart = h(
     'div',
-    { class: 'chart' },
+    { class: 'chart', hidden: () => !stops.isOpen('predict-rest') },
     bars.element,
     h(
       'p',
@@ -127,9 +126,6 @@ export async function rest({ lab, stops }) {
       'Energy per particle, from before the first step on. The scale begins a little below the lowest.',
     ),
   );
-  effect(() => {
-    chart.hidden = !stops.isOpen('predict-rest');
-  });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),

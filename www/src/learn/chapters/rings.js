@@ -1,6 +1,5 @@
 /** The front that grows ring by ring: the opening picture, and the chapter on rings. */
-import { effect } from '@preact/signals-core';
-import { h, reducedMotion } from '../../ui/dom.js';
+import { h, live, reducedMotion } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { ringsOf } from '../measure.js';
 import { createBars, createPlay, createRange } from '../parts.js';
@@ -79,17 +78,18 @@ export async function rings(context) {
     values: sizes,
     words: `New particles on each level: ${sizes.slice(0, 8).join(', ')}; at most ${Math.max(...sizes)}`,
   });
-  const words = h('p', { class: 'figure-count' });
-  const chart = h('div', { class: 'chart' }, bars.element, words);
-  effect(() => {
-    chart.hidden = !context.stops.isOpen('predict-ring');
-  });
-  effect(() => {
+  const words = () => {
     const level = range.place.value;
-    bars.mark(level);
     const flat = level === 0 ? '' : ` On a plane: ${formatCount(6 * level)}.`;
-    words.textContent = `Level ${formatCount(level)}: ${plural(sizes[level] ?? 0, 'new particle')}.${flat}`;
-  });
+    return `Level ${formatCount(level)}: ${plural(sizes[level] ?? 0, 'new particle')}.${flat}`;
+  };
+  const chart = h(
+    'div',
+    { class: 'chart', hidden: () => !context.stops.isOpen('predict-ring') },
+    bars.element,
+    h('p', { class: 'figure-count' }, words),
+  );
+  live(chart, () => bars.mark(range.place.value));
   bars.element.addEventListener('click', (event) => {
     const { clientX } = /** @type {MouseEvent} */ (event);
     const box = bars.element.getBoundingClientRect();

@@ -1,5 +1,4 @@
 /** Particles as small as the curvature asks for. */
-import { effect } from '@preact/signals-core';
 import { fill, h } from '../../ui/dom.js';
 import { formatSignificant, plural } from '../../ui/format.js';
 import { adaptiveRun, LAWS } from '../adaptive.js';
@@ -24,7 +23,7 @@ export async function sizes({ lab, stops }) {
   const picture = new Picture(orbit, {
     name: 'Particles of sizes that follow the curvature, coloured by their radius',
   });
-  const words = h('p', { class: 'figure-count' });
+  const words = h('p', { class: 'figure-count', hidden: () => !stops.isOpen('predict-sizes') });
   const legend = h('div');
   let isFirst = true;
   const show = async (/** @type {Law} */ law) => {
@@ -44,8 +43,5 @@ export async function sizes({ lab, stops }) {
     change: (value) => void show(/** @type {Law} */ (value)),
   });
   await show('max_curvature');
-  effect(() => {
-    words.hidden = !stops.isOpen('predict-sizes');
-  });
   return [picture.element, h('div', { class: 'controls' }, law.element, words), legend];
 }

@@ -2,7 +2,7 @@
  * Replaces the formula for a surface from points: its facts, how well it fits, and a button that returns to a formula.
  */
 import { computed } from '@preact/signals-core';
-import { button } from '../button.js';
+import { button, term } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
@@ -55,20 +55,13 @@ export function createModel(engine, description) {
 
 /** @param {ReturnType<typeof factsOf>[number]} fact */
 function factElements({ label, value, unit, help }) {
-  const term = h(
-    'button',
-    { type: 'button', class: 'term' },
+  const name = term(
+    () => ({ title: label, text: help }),
+    {},
     label,
     unit && h('span', { class: 'unit' }, `\u00a0${unit}`),
   );
-  return [
-    h(
-      'dt',
-      null,
-      explain(term, () => ({ title: label, text: help }), { tap: true }),
-    ),
-    h('dd', null, value),
-  ];
+  return [h('dt', null, name), h('dd', null, value)];
 }
 
 /**

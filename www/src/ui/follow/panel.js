@@ -2,13 +2,14 @@
  * The panel that follows one particle through the paper's algorithm, event by event. It takes the place of the report,
  * and on a phone that of the sheet; it is loaded when it is first asked for.
  */
-import { computed, effect, signal, untracked } from '@preact/signals-core';
+
+import { computed, signal, untracked } from '@preact/signals-core';
 import { momentAt } from '../../figures/moment.js';
 import { inRadii, transcript } from '../../figures/words.js';
-import { fill, h, live, uniqueId } from '../dom.js';
+import { button } from '../button.js';
+import { h, live, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
-import { icon } from '../icons.js';
 import { download } from '../share.js';
 import { loadSheet } from '../sheet.js';
 import { placedBefore } from './find.js';
@@ -23,6 +24,7 @@ import { createViews } from './views.js';
 /**
  * @import { Engine } from '../../engine/types.js'
  * @import { FollowPanel, Track } from '../track.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
 /** Distance in radii up to which two particles are at one place, but for rounding. */
@@ -39,38 +41,15 @@ export async function mountFollow(shell, engine, { say, mount }) {
   await loadSheet(sheet);
   const follower = new Follower(engine, say);
   const [particles, events] = [particleTrack(follower), eventTrack(follower)];
-  const id = uniqueId('follow');
-  const title = h('h2', { id }, () => {
-    const opened = follower.opened.value;
-    return opened ? `Particle ${formatCount(opened.subject.particle)}` : 'Particle';
-  });
   const open = signal(false);
-  const ready = h(
-    'div',
-    { class: 'follow-ready', hidden: () => follower.opened.value === null },
-    createAbout(follower),
-    createTold(follower),
-    createViews(follower),
-    createFoot(follower, engine),
-  );
-  // What was pressed goes away with what it offered, so the panel itself takes the focus.
-  const held = () => element.focus({ preventScroll: true });
-  const element = h(
-    'section',
-    { class: 'panel panel-follow', 'aria-labelledby': id, tabindex: -1, hidden: () => !open.value },
-    createHead({ title, follower, particles, close: () => close() }),
-    h('div', { class: 'panel-body' }, createStale(follower, engine, held), createStatus(follower, held), ready),
-  );
+  const element = createPanel(engine, follower, { particles, open, close: () => close() });
   shell.append(element);
-  element.addEventListener('keydown', (event) => {
-    if (event.key !== 'Escape') return;
-    event.preventDefault();
-    event.stopPropagation();
-    close();
+  live(element, () => {
+    const follow = follower.place.value;
+    if (follow) untracked(() => engine.setView({ follow }));
   });
-  keepPlace(follower, engine);
-  drawFront(follower, engine);
-  follower.rest.watch();
+  drawFront(element, follower, engine);
+  follower.rest.watch(element);
   mount(childrenMark(engine, follower));
 
   /**
@@ -107,7 +86,7 @@ export async function mountFollow(shell, engine, { say, mount }) {
     follow(index) {
       show();
       refine();
-      held();
+      element.focus({ preventScroll: true });
       void follower.follow(index);
     },
     goTo(place) {
@@ -124,23 +103,57 @@ export async function mountFollow(shell, engine, { say, mount }) {
 }
 
 /**
- * Keeps the particle and its event in the state, and so in the link.
- * @param {Follower} follower
- * @param {Engine} engine
+ * @param {Engine} engine @param {Follower} follower
+ * @param {{ particles: Track, open: ReadonlySignal<boolean>, close: () => void }} parts
  */
-function keepPlace(follower, engine) {
-  effect(() => {
-    const follow = follower.place.value;
-    if (follow) untracked(() => engine.setView({ follow }));
+function createPanel(engine, follower, { particles, open, close }) {
+  const id = uniqueId('follow');
+  // What was pressed goes away with what it offered, so the panel itself takes the focus.
+  const held = () => element.focus({ preventScroll: true });
+  const title = h('h2', { id }, () => {
+    const opened = follower.opened.value;
+    return opened ? `Particle ${formatCount(opened.subject.particle)}` : 'Particle';
   });
+  const onKey = (/** @type {KeyboardEvent} */ event) => {
+    if (event.key !== 'Escape') return;
+    event.preventDefault();
+    event.stopPropagation();
+    close();
+  };
+  const element = h(
+    'section',
+    {
+      class: 'panel panel-follow',
+      'aria-labelledby': id,
+      tabindex: -1,
+      hidden: () => !open.value,
+      on: { keydown: onKey },
+    },
+    createHead({ title, follower, particles, close }),
+    h(
+      'div',
+      { class: 'panel-body' },
+      createStale(follower, engine, held),
+      createStatus(follower, held),
+      h(
+        'div',
+        { class: 'follow-ready', hidden: () => follower.opened.value === null },
+        createAbout(follower),
+        createTold(follower),
+        createViews(follower),
+        createFoot(follower, engine),
+      ),
+    ),
+  );
+  return element;
 }
 
 /**
  * Draws the front as it was at the event, unless whole levels are looked at. It needs the particles of the picture to
  * be those of the run.
- * @param {Follower} follower @param {Engine} engine
+ * @param {HTMLElement} element @param {Follower} follower @param {Engine} engine
  */
-function drawFront({ opened, at, run, stale }, engine) {
+function drawFront(element, { opened, at, run, stale }, engine) {
   const grain = computed(() => engine.state.value.view.grain);
   const count = computed(() => {
     if (grain.value === 'level' || stale.value || !opened.value || !run.value) return null;
@@ -149,7 +162,7 @@ function drawFront({ opened, at, run, stale }, engine) {
     const there = placedBefore(run.value.end.parents, subject.particle) + added;
     return there <= run.value.alike ? there : null;
   });
-  effect(() => {
+  live(element, () => {
     const there = count.value;
     untracked(() => engine.showFirst(there));
   });
@@ -164,24 +177,17 @@ function drawFront({ opened, at, run, stale }, engine) {
  */
 function createHead({ title, follower, particles, close }) {
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'left' | 'right'} */ name) => {
-    const act = () => void follower.open(follower.target.peek() + by);
-    const disabled = () => {
-      const to = particles.at.value + by;
-      return String(follower.opened.value === null || to < 0 || to > particles.last.value);
-    };
-    const button = h(
-      'button',
-      {
-        type: 'button',
-        class: 'button plain square',
+    const to = () => particles.at.value + by;
+    return explain(
+      button({
+        icon: name,
         'aria-label': label,
-        'aria-disabled': disabled,
-        on: { click: act },
-      },
-      icon(name),
+        off: () => follower.opened.value === null || to() < 0 || to() > particles.last.value,
+        // Several presses at once go as many particles further.
+        press: () => void follower.open(follower.target.peek() + by),
+      }),
+      () => ({ title: label, text: `Key Shift ${by < 0 ? '←' : '→'}` }),
     );
-    explain(button, () => ({ title: label, text: `Key Shift ${by < 0 ? '←' : '→'}` }));
-    return button;
   };
   return h(
     'header',
@@ -189,11 +195,7 @@ function createHead({ title, follower, particles, close }) {
     title,
     turn(-1, 'Previous particle', 'left'),
     turn(1, 'Next particle', 'right'),
-    h(
-      'button',
-      { type: 'button', class: 'button plain square', 'aria-label': 'Close', on: { click: close } },
-      icon('close'),
-    ),
+    button({ icon: 'close', 'aria-label': 'Close', press: close }),
   );
 }
 
@@ -224,23 +226,20 @@ function createAbout(follower) {
  * @param {Follower} follower @param {Engine} engine @param {() => void} held
  */
 function createStale(follower, engine, held) {
-  const words = 'The surface has changed. This panel still shows the one before.';
+  const isStale = () => follower.stale.value;
   const again = () => {
     held();
     void follower.anew();
   };
-  const button = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button',
-      disabled: () => engine.busy.value || engine.empty.value || engine.loading.value !== null,
-      on: { click: again },
-    },
-    'Follow the particle at the same place',
+  return h(
+    'div',
+    { class: 'follow-notice', role: 'status', hidden: () => !isStale() },
+    h('p', null, () => isStale() && 'The surface has changed. This panel still shows the one before.'),
+    button(
+      { disabled: () => engine.busy.value || engine.empty.value || engine.loading.value !== null, press: again },
+      'Follow the particle at the same place',
+    ),
   );
-  const text = h('p', null, () => (follower.stale.value ? words : ''));
-  return h('div', { class: 'follow-notice', role: 'status', hidden: () => !follower.stale.value }, text, button);
 }
 
 /**
@@ -248,36 +247,29 @@ function createStale(follower, engine, held) {
  * @param {Follower} follower @param {() => void} held
  */
 function createStatus(follower, held) {
-  const text = h('p');
-  const action = h('div');
-  const element = h('div', { class: 'follow-status', role: 'status' }, text, action);
-  const again = (/** @type {string} */ label, /** @type {number | null} */ radius) =>
-    h(
-      'button',
-      {
-        type: 'button',
-        class: 'button',
-        on: {
-          click: () => {
-            held();
-            follower.again(radius);
-          },
-        },
-      },
-      label,
-    );
-  live(element, () => {
-    const status = follower.status.value;
-    element.hidden = status.kind === 'ready';
-    if (status.kind === 'running')
-      text.textContent = `Running the paper’s algorithm: ${formatCount(status.particles)} particles`;
-    else if (status.kind !== 'ready') text.textContent = status.text;
-    if (status.kind === 'too_many')
-      fill(action, again(coarserWords(status.radius, follower.engine.columns.adaptive), status.radius));
-    else if (status.kind === 'failed') fill(action, again('Try again', null));
-    else fill(action);
-  });
-  return element;
+  const { status, engine } = follower;
+  const words = () => {
+    if (status.value.kind === 'ready') return '';
+    if (status.value.kind !== 'running') return status.value.text;
+    return `Running the paper’s algorithm: ${formatCount(status.value.particles)} particles`;
+  };
+  const again = (/** @type {string} */ label, /** @type {number | null} */ radius) => {
+    const press = () => {
+      held();
+      follower.again(radius);
+    };
+    return button({ press }, label);
+  };
+  return h(
+    'div',
+    { class: 'follow-status', role: 'status', hidden: () => status.value.kind === 'ready' },
+    h('p', null, words),
+    h('div', null, () => {
+      if (status.value.kind === 'failed') return again('Try again', null);
+      if (status.value.kind !== 'too_many') return null;
+      return again(coarserWords(status.value.radius, engine.columns.adaptive), status.value.radius);
+    }),
+  );
 }
 
 /** @param {number} radius  or, with particles of many sizes, the factor on them @param {boolean} adaptive */
@@ -310,7 +302,7 @@ function createFoot(follower, engine) {
     // The name that the drawings give it: its number in the picture may be another one.
     engine.pointOut({ places: [place], radius: subject.radius, normal, text: 'p' }, { turns });
   };
-  effect(() => {
+  live(about, () => {
     void follower.rest.status.value;
     if (follower.opened.value) mark(false);
   });
@@ -321,8 +313,8 @@ function createFoot(follower, engine) {
       'div',
       { class: 'follow-actions' },
       createTurn(follower, engine),
-      h('button', { type: 'button', class: 'button', on: { click: () => mark(true) } }, 'Show in the picture'),
-      h('button', { type: 'button', class: 'button', on: { click: () => void save(follower) } }, 'Save transcript'),
+      button({ press: () => mark(true) }, 'Show in the picture'),
+      button({ press: () => void save(follower) }, 'Save transcript'),
     ),
     about,
   );
@@ -339,9 +331,7 @@ function createTurn({ rest }, engine) {
     engine.setView(isResting ? { grain: 'event', level: null, step: null } : { grain: 'level', level: null, step: 1 });
   };
   const hidden = () => Number(settingOf(engine, 'relax_steps')) === 0;
-  return h('button', { type: 'button', class: 'button', hidden, on: { click: turn } }, () =>
-    rest.status.value ? 'Its events' : 'Its relaxation',
-  );
+  return button({ hidden, press: turn }, () => (rest.status.value ? 'Its events' : 'Its relaxation'));
 }
 
 /** @param {Follower} follower */

@@ -3,17 +3,20 @@
  * shows who pushes the particle, and where it goes. The run with its steps is another one, made when it is first asked
  * for.
  */
-import { computed, effect, signal } from '@preact/signals-core';
+
+import { computed, signal } from '@preact/signals-core';
 import { mostPushed, numbersOfRest, pushersOf, restOf, tellRest } from '../../figures/rest.js';
 import { moveLens, restPlane, SCALE_WORDS } from '../../figures/rest-drawings.js';
-import { fill, h, uniqueId } from '../dom.js';
+import { button } from '../button.js';
+import { h, live, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { settingOf, settingsOf } from './run.js';
 
 /**
  * @import { LessonChapter, LessonClient } from '../../engine/types.js'
  * @import { Rest } from '../../figures/rest.js'
- * @import { Follower } from './follower.js'
+ * @import { Children } from '../types.js'
+ * @import { Follower, Opened } from './follower.js'
  */
 
 /**
@@ -36,15 +39,15 @@ export class Relaxation {
     this.asked = 0;
   }
 
-  /** Shows the step at which the timeline stands. */
-  watch() {
+  /** Shows the step at which the timeline stands. @param {HTMLElement} element  as long as it lasts */
+  watch(element) {
     const { engine, opened, stale } = this.follower;
     const wanted = computed(() => {
       const { grain, level, step } = engine.state.value.view;
       const isThere = grain === 'level' && level === null && opened.value !== null && !stale.value;
       return isThere ? `${opened.value?.subject.particle} ${step ?? 'last'}` : null;
     });
-    effect(() => {
+    live(element, () => {
       const place = wanted.value;
       this.asked += 1;
       const mine = this.asked;
@@ -128,68 +131,63 @@ export class Relaxation {
 
 /** The views of a step. @param {Follower} follower */
 export function createRestViews({ rest, opened }) {
-  const [plane, numbers, pushers] = ['A step of rest', 'Numbers', 'Who pushes'].map((title) => {
-    const id = uniqueId('rest');
-    const body = h('div', { class: 'follow-view' });
-    const head = h('h3', { id, class: 'section-title' }, title);
-    return { body, element: h('section', { class: 'section', 'aria-labelledby': id }, head, body) };
+  const shown = computed(() => {
+    const [found, particle] = [rest.status.value?.rest, opened.value];
+    return found && particle ? { found, particle } : null;
   });
-  const element = h(
-    'div',
-    { class: 'follow-rest' },
-    [plane, numbers, pushers].map((part) => part.element),
-  );
-  effect(() => {
-    const found = rest.status.value?.rest ?? null;
-    const particle = opened.value;
-    element.hidden = !found || !particle;
-    if (!found || !particle) return;
-    const frame = particle.events.find(({ type }) => type === 'frame');
-    const towards = frame?.type === 'frame' ? frame.u : undefined;
-    const lens = moveLens(found, towards);
-    fill(
-      plane.body,
-      restPlane(particle.subject, found, towards),
-      h(
-        'div',
-        { class: 'follow-key' },
-        h('p', { class: 'quiet' }, SCALE_WORDS),
-        lens
-          ? h(
-              'div',
-              { class: 'lens-box' },
-              lens.svg,
-              h(
-                'p',
-                { class: 'quiet' },
-                `The move and the landing, enlarged about ${formatSignificant(lens.times, 2)} times`,
-              ),
-            )
-          : null,
-      ),
+  const part = (/** @type {string} */ title, /** @type {(step: Shown) => Children} */ content) => {
+    const id = uniqueId('rest');
+    return h(
+      'section',
+      { class: 'section', 'aria-labelledby': id },
+      h('h3', { id, class: 'section-title' }, title),
+      h('div', { class: 'follow-view' }, () => shown.value && content(shown.value)),
     );
-    fill(
-      numbers.body,
+  };
+  return h(
+    'div',
+    { class: 'follow-rest', hidden: () => !shown.value },
+    part('A step of rest', planeOf),
+    part('Numbers', ({ found }) => [
       h(
         'dl',
         { class: 'facts' },
-        numbersOfRest(found).flatMap(([name, value]) => [h('dt', null, name), h('dd', null, value)]),
+        numbersOfRest(found).map(([name, value]) => [h('dt', null, name), h('dd', null, value)]),
       ),
-      h(
-        'button',
-        { type: 'button', class: 'button', on: { click: () => void rest.openMost() } },
-        'Follow the one that is pushed most',
-      ),
-    );
-    const words = pushersOf(found);
-    fill(
-      pushers.body,
-      h(
+      button({ press: () => void rest.openMost() }, 'Follow the one that is pushed most'),
+    ]),
+    part('Who pushes', ({ found }) => {
+      const words = pushersOf(found);
+      return h(
         'ol',
         { class: 'slots', 'aria-label': `${formatCount(words.length)} particles push` },
         words.map((text) => h('li', null, text)),
-      ),
-    );
-  });
-  return element;
+      );
+    }),
+  );
+}
+
+/** @typedef {{ found: Rest, particle: Opened }} Shown */
+
+/** The step in the tangent plane, with the move enlarged. @param {Shown} shown */
+function planeOf({ found, particle }) {
+  const frame = particle.events.find(({ type }) => type === 'frame');
+  const towards = frame?.type === 'frame' ? frame.u : undefined;
+  const lens = moveLens(found, towards);
+  const times = lens && formatSignificant(lens.times, 2);
+  return [
+    restPlane(particle.subject, found, towards),
+    h(
+      'div',
+      { class: 'follow-key' },
+      h('p', { class: 'quiet' }, SCALE_WORDS),
+      lens &&
+        h(
+          'div',
+          { class: 'lens-box' },
+          lens.svg,
+          h('p', { class: 'quiet' }, `The move and the landing, enlarged about ${times} times`),
+        ),
+    ),
+  ];
 }

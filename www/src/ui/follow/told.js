@@ -1,7 +1,6 @@
 /** Tells the event of the timeline in words, on the panel and to assistive technology. */
-import { effect } from '@preact/signals-core';
 import { tell } from '../../figures/words.js';
-import { h } from '../dom.js';
+import { h, live } from '../dom.js';
 
 /** @import { Follower } from './follower.js' */
 
@@ -34,7 +33,7 @@ function toldWords({ opened, moment, rest }) {
 function announce(follower, spoken) {
   let last = -Infinity;
   let timer = 0;
-  effect(() => {
+  live(spoken, () => {
     const words = toldWords(follower);
     clearTimeout(timer);
     const wait = Math.max(REST_MS, last + ANNOUNCE_MS - performance.now());

@@ -1,42 +1,32 @@
 /**
  * The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm.
  */
-import { effect } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
 import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { isAdaptive } from '../../figures/moment.js';
 import { fateShape } from '../../figures/svg.js';
 import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
-import { fill, h, s, uniqueId } from '../dom.js';
+import { h, live, s, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
 import { createRestViews } from './rest.js';
 
 /**
  * @import { Child, Moment } from '../../figures/moment.js'
+ * @import { Children } from '../types.js'
  * @import { Follower, Opened } from './follower.js'
  */
 
 /** @param {Follower} follower */
 export function createViews(follower) {
-  const parts = [
-    view('Tangent plane', tangentView),
-    view('Profile', profileView, true),
-    view('Numbers', numbersView, true),
-    view('Algorithm', algorithmView),
-  ];
   const element = h(
     'div',
     { class: 'follow-views' },
-    parts.map((part) => part.element),
+    view(follower, 'Tangent plane', tangentView),
+    view(follower, 'Profile', profileView, true),
+    view(follower, 'Numbers', numbersView, true),
+    view(follower, 'Algorithm', algorithmView),
     createRestViews(follower),
   );
-  for (const { element: part, draw, isPointed } of parts)
-    effect(() => {
-      const [opened, moment] = [follower.opened.value, follower.moment.value];
-      const hot = isPointed ? follower.hot.value : null;
-      part.hidden = moment === null || follower.rest.status.value !== null;
-      if (opened && moment) draw(opened, hot === null ? moment : pointedAt(moment, hot));
-    });
   linkHover(element, follower);
   return element;
 }
@@ -62,7 +52,7 @@ function linkHover(element, { pointed, hot, opened, moment }) {
   element.addEventListener('pointerleave', () => {
     pointed.value = null;
   });
-  effect(() => {
+  live(element, () => {
     void opened.value;
     void moment.value;
     for (const part of element.querySelectorAll('[data-slot]'))
@@ -71,22 +61,26 @@ function linkHover(element, { pointed, hot, opened, moment }) {
 }
 
 /**
- * @param {string} title @param {(opened: Opened, moment: Moment) => import('../types.js').Children[]} contentOf
+ * @param {Follower} follower
+ * @param {string} title @param {(opened: Opened, moment: Moment) => Children} contentOf
  * @param {boolean} [isPointed]  whether it shows one child, which may be pointed at elsewhere
  */
-function view(title, contentOf, isPointed = false) {
+function view({ opened, moment, hot, rest }, title, contentOf, isPointed = false) {
   const id = uniqueId('view');
-  const body = h('div', { class: 'follow-view' });
-  return {
-    isPointed,
-    element: h(
-      'section',
-      { class: 'section', 'aria-labelledby': id },
-      h('h3', { id, class: 'section-title' }, title),
-      body,
-    ),
-    draw: (/** @type {Opened} */ opened, /** @type {Moment} */ moment) => fill(body, ...contentOf(opened, moment)),
-  };
+  return h(
+    'section',
+    {
+      class: 'section',
+      'aria-labelledby': id,
+      hidden: () => moment.value === null || rest.status.value !== null,
+    },
+    h('h3', { id, class: 'section-title' }, title),
+    h('div', { class: 'follow-view' }, () => {
+      const slot = isPointed ? hot.value : null;
+      if (!opened.value || !moment.value) return null;
+      return contentOf(opened.value, slot === null ? moment.value : pointedAt(moment.value, slot));
+    }),
+  );
 }
 
 /** @param {Opened} opened @param {Moment} moment */

@@ -2,9 +2,9 @@
  * Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded
  * when asked for.
  */
-import { computed, effect, signal } from '@preact/signals-core';
+import { computed, signal } from '@preact/signals-core';
 import { draw, footOf, scaleOf } from '../chart.js';
-import { fill, h } from '../dom.js';
+import { h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { spread as statisticsOf } from '../neighbours.js';
 import { clamp } from '../scale.js';
@@ -83,20 +83,28 @@ export async function createCharts(engine, player) {
     chartOf(() => nearestChart(spread.value), null),
     chartOf(() => degreeChart(degree.value), null),
   ];
-  const twin = h('div', { class: 'charts-tables', role: 'region', 'aria-label': 'Tables of the charts', tabindex: 0 });
-  const details = h('details', { class: 'charts-twin' }, h('summary', null, 'As tables'), twin);
-  const write = () =>
-    details.open &&
-    fill(twin, ...tables(table.value, energy.value, moves.value), ...spreadTables(spread.value, degree.value));
-  details.addEventListener('toggle', write);
-  effect(() => {
-    void table.value;
-    void energy.value;
-    void moves.value;
-    void spread.value;
-    void degree.value;
-    write();
-  });
+  const isOpen = signal(false);
+  const details = h(
+    'details',
+    {
+      class: 'charts-twin',
+      on: {
+        toggle: ({ currentTarget }) => {
+          isOpen.value = currentTarget.open;
+        },
+      },
+    },
+    h('summary', null, 'As tables'),
+    h(
+      'div',
+      { class: 'charts-tables', role: 'region', 'aria-label': 'Tables of the charts', tabindex: 0 },
+      () =>
+        isOpen.value && [
+          ...tables(table.value, energy.value, moves.value),
+          ...spreadTables(spread.value, degree.value),
+        ],
+    ),
+  );
   const bound = h('p', { class: 'charts-bound quiet' }, () => boundWords(engine.report.value, engine.columns.adaptive));
   const element = h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, bound, details);
   return { element, shown };
@@ -269,41 +277,50 @@ const NOTHING =
  * @param {((place: number) => void) | null} seek  null where the places are none of the timeline
  */
 function chartOf(read, seek) {
-  const title = h('span');
-  const value = h('span', { class: 'unit' });
-  const plot = h('div', { class: 'chart-plot', role: 'img', data: { seeks: String(seek !== null) } });
-  const foot = h('div', { class: 'chart-foot', 'aria-hidden': 'true' });
-  const element = h('figure', { class: 'chart' }, h('figcaption', null, title, ' ', value), plot, foot);
-  let [first, places] = [0, 0];
-  effect(() => {
-    const chart = read();
-    places = chart.rows[0]?.counts.length ?? 0;
-    first = chart.first;
-    title.textContent = chart.title;
-    value.textContent = chart.value;
-    plot.setAttribute('aria-label', places > 0 ? chart.label : `${chart.title}: not known`);
-    if (places > 0) {
-      fill(plot, draw(chart), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)));
-      fill(foot, ...footOf(chart));
-    } else {
-      fill(plot, h('p', { class: 'quiet' }, chart.missing ?? NOTHING));
-      fill(foot);
-    }
-  });
-  /** @param {PointerEvent} event */
-  const at = ({ clientX }) => {
-    const { left, width } = plot.getBoundingClientRect();
-    return first + clamp(Math.floor(((clientX - left) / Math.max(1, width)) * places), 0, places - 1);
+  const chart = computed(read);
+  const places = () => chart.value.rows[0]?.counts.length ?? 0;
+  /** @param {PointerEvent & { currentTarget: HTMLElement }} event */
+  const at = ({ clientX, currentTarget }) => {
+    const { left, width } = currentTarget.getBoundingClientRect();
+    const place = Math.floor(((clientX - left) / Math.max(1, width)) * places());
+    return chart.value.first + clamp(place, 0, places() - 1);
   };
-  plot.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0 || places === 0 || !seek) return;
-    plot.setPointerCapture(event.pointerId);
-    seek(at(event));
-  });
-  plot.addEventListener('pointermove', (event) => {
-    if (seek && plot.hasPointerCapture(event.pointerId)) seek(at(event));
-  });
-  return element;
+  const plot = h(
+    'div',
+    {
+      class: 'chart-plot',
+      role: 'img',
+      data: { seeks: String(seek !== null) },
+      'aria-label': () => (places() > 0 ? chart.value.label : `${chart.value.title}: not known`),
+      on: {
+        pointerdown: (event) => {
+          if (event.button !== 0 || places() === 0 || !seek) return;
+          event.currentTarget.setPointerCapture(event.pointerId);
+          seek(at(event));
+        },
+        pointermove: (event) => {
+          if (seek && event.currentTarget.hasPointerCapture(event.pointerId)) seek(at(event));
+        },
+      },
+    },
+    () =>
+      places() > 0
+        ? [draw(chart.value), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart.value))]
+        : h('p', { class: 'quiet' }, chart.value.missing ?? NOTHING),
+  );
+  return h(
+    'figure',
+    { class: 'chart' },
+    h(
+      'figcaption',
+      null,
+      h('span', null, () => chart.value.title),
+      ' ',
+      h('span', { class: 'unit' }, () => chart.value.value),
+    ),
+    plot,
+    h('div', { class: 'chart-foot', 'aria-hidden': 'true' }, () => places() > 0 && footOf(chart.value)),
+  );
 }
 
 /**

@@ -1,4 +1,5 @@
 /** The dialog that takes the picture away: as a file, on paper, as a film or as a sequence of pictures. */
+import { button } from '../button.js';
 import { createDialog } from '../dialog.js';
 import { fill, h, uniqueId } from '../dom.js';
 import { download, stem } from '../share.js';
@@ -86,9 +87,8 @@ function selectOf(read) {
   return { select, update };
 }
 
-/** @param {string} text @param {() => void} act @param {string} [style] */
-const action = (text, act, style = '') =>
-  h('button', { type: 'button', class: `button ${style}`, on: { click: act } }, text);
+/** @param {string} text @param {() => void} press @param {string} [look] */
+const action = (text, press, look = '') => button({ class: look, press }, text);
 
 /** @param {Shared} shared */
 function pictureSection({ engine, page, parts, transparent, close }) {

@@ -1,21 +1,22 @@
 /** The bar that is shown while a film is recorded: for how long, or how much of it, and a button that ends it. */
+import { button } from '../button.js';
 import { h } from '../dom.js';
 import { formatShare } from '../format.js';
 
 /** @param {() => void} stop */
 export function createRecorderBar(stop) {
   const text = h('span', { class: 'recorder-text' });
-  const button = h('button', { type: 'button', class: 'button small', on: { click: stop } }, 'Stop recording');
+  const end = button({ class: 'small', press: stop }, 'Stop recording');
   const element = h(
     'div',
     { class: 'recorder', role: 'group', 'aria-label': 'Recording' },
     h('span', { class: 'recorder-dot', 'aria-hidden': 'true' }),
     text,
-    button,
+    end,
   );
   document.body.append(element);
   const had = document.activeElement;
-  button.focus();
+  end.focus();
   return {
     /** @param {number | null} share @param {number} seconds */
     tell(share, seconds) {

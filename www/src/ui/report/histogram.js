@@ -1,13 +1,14 @@
 /** Shows the distribution of the nearest distances, as a plot and as a table. */
-import { effect } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
 import { draw, footOf } from '../chart.js';
-import { fill, h } from '../dom.js';
+import { h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
 import { coarsen, overDiameters, trim } from './bins.js';
 
 /**
  * @import { Engine, Report } from '../../engine/types.js'
  * @import { Drawn } from '../chart.js'
+ * @import { Bins } from './bins.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
@@ -23,68 +24,59 @@ const IDEAL = 1;
  * @param {Engine} engine
  */
 export function createHistogram(report, { columns }) {
-  const plot = h('div', { class: 'plot', 'aria-hidden': 'true' });
-  const foot = h('div', { class: 'plot-foot', 'aria-hidden': 'true' });
-  const table = h('tbody');
-  const unit = h('span', { class: 'quiet' });
-  const section = h(
-    'div',
-    { class: 'section histogram' },
-    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), unit),
-    plot,
-    foot,
-    h(
-      'details',
-      null,
-      h('summary', { class: 'quiet' }, 'As a table'),
-      h(
-        'table',
-        null,
-        h(
-          'thead',
-          null,
-          h(
-            'tr',
-            null,
-            h('th', { scope: 'col' }, 'From'),
-            h('th', { scope: 'col' }, 'To'),
-            h('th', { scope: 'col' }, 'Particles'),
-          ),
-        ),
-        table,
-      ),
-    ),
-  );
-  effect(() => {
+  const bins = computed(() => {
     const current = report.value;
     // In an adaptive run each distance is relative to the diameter of its particle.
     const bins =
       columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
-    unit.textContent = columns.adaptive ? 'own diameter 1' : 'perfect lattice 1';
-    const usable = Boolean(bins?.bins.length && bins.max > bins.min);
-    section.hidden = !usable;
-    if (!bins || !usable) return;
-    const shown = trim(bins, IDEAL);
-    fill(
-      table,
-      coarsen(shown, TABLE_ROWS).map(({ from, to, count }) =>
+    return bins?.bins.length && bins.max > bins.min ? trim(bins, IDEAL) : null;
+  });
+  const chart = computed(() => bins.value && chartOf(bins.value));
+  const unit = () => (report.value && columns.adaptive ? 'own diameter 1' : 'perfect lattice 1');
+  return h(
+    'div',
+    { class: 'section histogram', hidden: () => !bins.value },
+    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), h('span', { class: 'quiet' }, unit)),
+    h('div', { class: 'plot', 'aria-hidden': 'true' }, () => chart.value && draw(chart.value)),
+    h('div', { class: 'plot-foot', 'aria-hidden': 'true' }, () => chart.value && footOf(chart.value)),
+    h('details', null, h('summary', { class: 'quiet' }, 'As a table'), () => bins.value && tableOfBins(bins.value)),
+  );
+}
+
+/** @param {Bins} bins @returns {Drawn} */
+const chartOf = ({ min, max, bins: counts }) => ({
+  kind: 'bars',
+  rows: [{ fate: 'new', name: 'particles', counts }],
+  first: 0,
+  at: null,
+  format: formatCount,
+  ends: [formatFixed(min, 2), formatFixed(max, 2)],
+  ideal: (IDEAL - min) / (max - min),
+});
+
+/** @param {Bins} bins */
+const tableOfBins = (bins) =>
+  h(
+    'table',
+    null,
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        ['From', 'To', 'Particles'].map((text) => h('th', { scope: 'col' }, text)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      coarsen(bins, TABLE_ROWS).map(({ from, to, count }) =>
         h(
           'tr',
           null,
-          h('td', null, formatFixed(from, 2)),
-          h('td', null, formatFixed(to, 2)),
-          h('td', null, formatCount(count)),
+          [formatFixed(from, 2), formatFixed(to, 2), formatCount(count)].map((text) => h('td', null, text)),
         ),
       ),
-    );
-    const { min, max, bins: counts } = shown;
-    const ends = [formatFixed(min, 2), formatFixed(max, 2)];
-    const ideal = (IDEAL - min) / (max - min);
-    const rows = [{ fate: 'new', name: 'particles', counts }];
-    /** @type {Drawn} */
-    const chart = { kind: 'bars', rows, first: 0, at: null, format: formatCount, ends, ideal };
-    fill(plot, draw(chart));
-    fill(foot, footOf(chart));
-  });
-  return section;
-}
+    ),
+  );

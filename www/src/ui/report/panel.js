@@ -1,7 +1,7 @@
 /** The report panel: the quality figures, the timing, and the distribution of the nearest distances. */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
-import { explain } from '../explain.js';
+import { computed } from '@preact/signals-core';
+import { term } from '../button.js';
+import { fill, h, live } from '../dom.js';
 import { withCounts } from '../format.js';
 import { createHistogram } from './histogram.js';
 import { listOf, placeOf } from './places.js';
@@ -30,19 +30,14 @@ export function mountReport(body, engine, description) {
     return kept;
   });
   const counted = computed(() => (engine.busy.value || !engine.report.value ? engine.progress.value.particles : 0));
-  effect(() => {
+  live(body, () => {
     body.classList.toggle('stale', engine.report.value === null || counted.value > 0);
   });
 
-  const warnings = h('ul', { class: 'section warnings' });
-  effect(() => {
-    const list = report.value?.warnings ?? [];
-    warnings.hidden = list.length === 0;
-    fill(
-      warnings,
-      list.map((text) => h('li', null, withCounts(text))),
-    );
-  });
+  const told = computed(() => report.value?.warnings ?? []);
+  const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, () =>
+    told.value.map((text) => h('li', null, withCounts(text))),
+  );
   const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
   const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
   const waiting = h('p', { class: 'quiet waiting', hidden: () => report.value !== null }, () =>
@@ -50,11 +45,11 @@ export function mountReport(body, engine, description) {
       ? 'Nothing to measure: there is no surface inside the box.'
       : 'The figures appear when a run is done.',
   );
-  const drawn = h('button', { type: 'button', class: 'term' }, () => DRAWN[engine.backend.value]);
-  explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), {
-    tap: true,
-    side: 'left',
-  });
+  const drawn = term(
+    () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }),
+    { side: 'left' },
+    () => DRAWN[engine.backend.value],
+  );
   const said = h('p', { class: 'visually-hidden', role: 'status' });
   const backend = h('p', { class: 'section quiet backend' }, drawn, h('span', null, `Version ${description.version}`));
   fill(

@@ -1,5 +1,6 @@
 /** Shows the report's rows as a table. Every label has an explanation of its figure. */
-import { effect } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
+import { term } from '../button.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { listOf } from './places.js';
@@ -50,66 +51,51 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  * @param {Parameters<typeof createTable>[2]} parts
  */
 function createRow(report, row, { counted, show }) {
-  const term = h(
-    'button',
-    { type: 'button', class: 'term' },
-    row.label,
-    row.unit ? h('span', { class: 'unit' }, `\u00a0${row.unit}`) : null,
-  );
-  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) }), {
-    tap: true,
-    side: 'left',
+  const help = () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) });
+  const figures = computed(() => {
+    const found = report.value && figuresOf(report.value, row.key);
+    return found && row.key === 'count' ? { ...found, now: counted.value || found.now } : found;
   });
-  const before = h('td');
-  const now = h('td', { class: 'now' });
-  const write = createFigure(row, show);
-  effect(() => {
-    const current = report.value;
-    let figures = current ? figuresOf(current, row.key) : null;
-    if (figures && row.key === 'count') figures = { ...figures, now: counted.value || figures.now };
-    // The places are those of the present particles.
-    const has = listOf(current, row.places).length > 0;
-    const is = figures?.now === undefined ? 'before' : 'now';
-    write(before, writeFigure(row, figures?.before), has && is === 'before');
-    write(now, current && row.to ? writeRange(row, current) : writeFigure(row, figures?.now), has && is === 'now');
-    now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
-  });
+  // The places are those of the present particles.
+  const placed = () => {
+    if (listOf(report.value, row.places).length === 0) return null;
+    return figures.value?.now === undefined ? 'before' : 'now';
+  };
+  const change = () => (figures.value ? compare(row, figures.value.before, figures.value.now) : 'same');
   const paired = isPaired(row);
-  const head = h('th', { scope: 'row' }, term);
-  const line = h('tr', null, head, paired ? before : null, now);
-  effect(() => {
-    const current = report.value;
-    line.hidden = !isTold(current, row);
-    if (paired) return;
-    // A range or a word spans both columns.
-    const wide = row.to || (current && typeof figuresOf(current, row.key).now === 'string');
-    head.colSpan = wide ? 1 : 2;
-    now.colSpan = wide ? 2 : 1;
-  });
-  return line;
+  // A range or a word spans both columns.
+  const wide = () => Boolean(row.to || typeof figures.value?.now === 'string');
+  return h(
+    'tr',
+    { hidden: () => !isTold(report.value, row) },
+    h(
+      'th',
+      { scope: 'row', colspan: () => (paired || wide() ? 1 : 2) },
+      term(help, { side: 'left' }, row.label, row.unit && unitOf(row.unit)),
+    ),
+    paired && h('td', null, () => figureOf(writeFigure(row, figures.value?.before), placed() === 'before', row, show)),
+    h('td', { class: 'now', data: { change }, colspan: () => (!paired && wide() ? 2 : 1) }, () => {
+      const text = report.value && row.to ? writeRange(row, report.value) : writeFigure(row, figures.value?.now);
+      return figureOf(text, placed() === 'now', row, show);
+    }),
+  );
 }
 
+/** @param {string} unit */
+const unitOf = (unit) => h('span', { class: 'unit' }, `\u00a0${unit}`);
+
 /**
- * Returns a function that writes a figure into a cell, as a button if it has places in the picture.
- * @param {ReportRow} row
- * @param {(row: ReportRow) => void} show
+ * A figure, as a button if it has places in the picture.
+ * @param {string} text @param {boolean} pressable @param {ReportRow} row @param {(row: ReportRow) => void} show
  */
-function createFigure(row, show) {
-  const button = h('button', { type: 'button', class: 'shows', on: { click: () => show(row) } });
-  explain(
-    button,
+function figureOf(text, pressable, row, show) {
+  if (!pressable) return text;
+  const label = `${row.label} ${text}, show it in the picture`;
+  return explain(
+    h('button', { type: 'button', class: 'shows', 'aria-label': label, on: { click: () => show(row) } }, text),
     () => ({ title: 'Show it in the picture', text: 'The worst place comes first; press again for the next one.' }),
     { side: 'left' },
   );
-  return (/** @type {HTMLElement} */ cell, /** @type {string} */ text, /** @type {boolean} */ pressable) => {
-    if (!pressable) {
-      cell.textContent = text;
-      return;
-    }
-    button.textContent = text;
-    button.setAttribute('aria-label', `${row.label} ${text}, show it in the picture`);
-    if (button.parentElement !== cell) cell.replaceChildren(button);
-  };
 }
 
 const CHANGES = { better: 'Relaxation made it better.', worse: 'Relaxation made it worse.', same: '' };

@@ -1,10 +1,10 @@
 /** Shows the times of the sampling, of each of its phases as figures and bars, and of the measurement. */
-import { effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
 
 /**
- * @import { Engine } from '../../engine/types.js'
+ * @import { Engine, Timing } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
@@ -22,56 +22,55 @@ const capital = (words) => words[0].toUpperCase() + words.slice(1);
  * @param {Engine} engine
  * @param {ReadonlySignal<unknown>} report the report, with which the times appear
  */
-export function createTiming(engine, report) {
-  const section = h('div', { class: 'section timing' });
-  effect(() => {
-    const timing = engine.timing.value;
-    section.hidden = timing === null || timing.particles === 0 || report.value === null;
-    if (!timing || section.hidden) return;
-    const { steps, sampling, seconds, particles } = timing;
-    // Relaxation steps that are made after the sampling have no other phase.
-    const phases = PHASES.filter(([key]) =>
-      steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
-    );
-    const longest = Math.max(...phases.map(([key]) => seconds[key]), 1e-9);
-    fill(
-      section,
+export function createTiming({ timing }, report) {
+  const shown = computed(() => (report.value !== null && timing.value?.particles ? timing.value : null));
+  return h(
+    'div',
+    { class: 'section timing', hidden: () => !shown.value },
+    () => shown.value && [tableOfTimes(shown.value), perParticle(shown.value)],
+  );
+}
+
+/** @param {Timing} timing */
+function tableOfTimes({ steps, sampling, seconds }) {
+  // Relaxation steps that are made after the sampling have no other phase.
+  const phases = PHASES.filter(([key]) =>
+    steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
+  );
+  const longest = Math.max(...phases.map(([key]) => seconds[key]), 1e-9);
+  return h(
+    'table',
+    null,
+    h(
+      'thead',
+      null,
       h(
-        'table',
+        'tr',
         null,
-        h(
-          'thead',
-          null,
-          h(
-            'tr',
-            null,
-            h('th', { scope: 'col' }, steps > 0 ? capital(lastSteps(steps)) : 'Sampling'),
-            h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Share')),
-            h('th', { scope: 'col' }, formatSeconds(sampling)),
-          ),
-        ),
-        h(
-          'tbody',
-          null,
-          phases.map(([key, label]) => {
-            const bar = h('span', { class: 'bar', 'aria-hidden': 'true' });
-            bar.style.width = `${(seconds[key] / longest) * 100}%`;
-            return h(
-              'tr',
-              null,
-              h('th', { scope: 'row' }, label),
-              h('td', { class: 'bar-cell' }, bar),
-              h('td', null, formatSeconds(seconds[key])),
-            );
-          }),
-        ),
+        h('th', { scope: 'col' }, steps > 0 ? capital(lastSteps(steps)) : 'Sampling'),
+        h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Share')),
+        h('th', { scope: 'col' }, formatSeconds(sampling)),
       ),
-      h(
-        'p',
-        { class: 'quiet' },
-        `${formatSignificant((sampling * 1e6) / particles, 3)}\u202fµs per particle; then ${formatSeconds(seconds.quality)} to measure`,
-      ),
-    );
-  });
-  return section;
+    ),
+    h(
+      'tbody',
+      null,
+      phases.map(([key, label]) => {
+        const width = `${(seconds[key] / longest) * 100}%`;
+        return h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, label),
+          h('td', { class: 'bar-cell' }, h('span', { class: 'bar', 'aria-hidden': 'true', style: { width } })),
+          h('td', null, formatSeconds(seconds[key])),
+        );
+      }),
+    ),
+  );
+}
+
+/** @param {Timing} timing */
+function perParticle({ sampling, seconds, particles }) {
+  const each = formatSignificant((sampling * 1e6) / particles, 3);
+  return h('p', { class: 'quiet' }, `${each}\u202fµs per particle; then ${formatSeconds(seconds.quality)} to measure`);
 }

@@ -1,6 +1,7 @@
 /** Shows a card for the particle under the pointer or the tapped one. */
-import { effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+
+import { button } from '../button.js';
+import { h, live, query } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../format.js';
 import { clamp } from '../scale.js';
 
@@ -14,21 +15,24 @@ const OFFSET_PX = 16;
  *   panel covers
  */
 export function mountHover(host, engine, { view, follow }) {
-  const card = h('div', { class: 'hover-card', hidden: true });
+  const { hover } = engine;
   const go = (/** @type {number} */ index) => {
     engine.dismissHover();
     follow(index);
   };
+  const card = h(
+    'div',
+    { class: 'hover-card', hidden: () => hover.value === null, 'data-tapped': () => hover.value?.tapped },
+    () => {
+      const { value: now } = hover;
+      if (!now) return null;
+      const press = () => go(now.index);
+      return [rowsOf(now), now.tapped && button({ class: 'small', press }, 'Follow this particle')];
+    },
+  );
   host.append(card);
-  effect(() => {
-    const hover = engine.hover.value;
-    card.hidden = hover === null;
-    card.toggleAttribute('data-tapped', hover?.tapped ?? false);
-    if (!hover) return;
-    fill(card, rowsOf(hover), hover.tapped ? followButton(() => go(hover.index)) : null);
-  });
   // The card of a pressed particle stays beside it while the picture turns.
-  effect(() => {
+  live(card, () => {
     const hover = engine.hover.value;
     if (!hover) return;
     if (hover.tapped) void engine.frame.value;
@@ -45,7 +49,7 @@ export function mountHover(host, engine, { view, follow }) {
     if (!hover?.tapped) return;
     if (event.key === 'Escape') {
       engine.dismissHover();
-      /** @type {HTMLElement | null} */ (host.querySelector('.canvas-host'))?.focus();
+      query(host, '.canvas-host').focus();
     } else if (event.key === 'Enter' && !(event.target instanceof HTMLButtonElement)) {
       // Enter takes the particle in the middle of the picture. Pressed again, it follows that one.
       const middle = engine.project(engine.state.peek().view.camera.target);
@@ -74,10 +78,6 @@ function put(card, at, { host, within }) {
   const y = clamp(at.y + OFFSET_PX, within.top, Math.max(within.top, within.bottom - height));
   card.style.transform = `translate(${Math.round(x - host.left)}px, ${Math.round(y - Math.min(0, host.top))}px)`;
 }
-
-/** @param {() => void} act */
-const followButton = (act) =>
-  h('button', { type: 'button', class: 'button small', on: { click: act } }, 'Follow this particle');
 
 /** @param {Hover} hover */
 function rowsOf(hover) {

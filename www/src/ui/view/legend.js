@@ -1,6 +1,5 @@
 /** Shows the choice of the colouring and its legend, with range and unit. */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 
@@ -13,40 +12,41 @@ import { formatCount, formatSignificant } from '../format.js';
  * @param {Engine} engine
  * @param {Description} description
  */
-export function createLegend(engine, description) {
+export function createLegend(engine, { colours }) {
+  const colour = () => engine.state.value.view.colour;
   const select = h(
     'select',
     {
       class: 'select',
       'aria-label': 'Colour by',
-      on: { change: () => engine.setView({ colour: /** @type {ColourMode} */ (select.value) }) },
+      prop: { value: colour },
+      on: {
+        change: ({ currentTarget }) => engine.setView({ colour: /** @type {ColourMode} */ (currentTarget.value) }),
+      },
     },
-    description.colours.map(({ id, label }) => h('option', { value: id }, label)),
+    colours.map(({ id, label }) => h('option', { value: id }, label)),
   );
-  const colour = computed(() => engine.state.value.view.colour);
-  effect(() => {
-    select.value = colour.value;
-  });
   explain(select, () => {
-    const entry = description.colours.find(({ id }) => id === colour.peek());
+    const entry = colours.find(({ id }) => id === engine.state.peek().view.colour);
     return entry ? { title: entry.label, text: entry.help } : null;
   });
-  const scale = h('div', { class: 'scale' });
-  effect(() => {
-    const legend = engine.legend.value;
-    scale.hidden = !legend || legend.kind === 'plain';
-    if (legend) fill(scale, SCALES[legend.kind](legend));
-    scale.classList.toggle('pending', legend?.pending === true);
-  });
+  const legend = () => engine.legend.value;
+  const scale = h(
+    'div',
+    {
+      class: () => (legend()?.pending ? 'scale pending' : 'scale'),
+      hidden: () => !legend() || legend()?.kind === 'plain',
+    },
+    () => {
+      const now = legend();
+      return now && SCALES[now.kind](now);
+    },
+  );
   return h('div', { class: 'legend' }, select, scale);
 }
 
 /** @param {string} colour */
-function swatch(colour) {
-  const element = h('span', { class: 'swatch', 'aria-hidden': 'true' });
-  element.style.backgroundColor = colour;
-  return element;
-}
+const swatch = (colour) => h('span', { class: 'swatch', 'aria-hidden': 'true', style: { 'background-color': colour } });
 
 /** @type {Record<Legend['kind'], (legend: Legend) => Child[]>} */
 const SCALES = {
@@ -88,17 +88,13 @@ const SCALES = {
  * @param {(range: [number, number]) => [string, string]} write
  */
 function rampOf({ colours, range, mark, unit, kind }, write) {
-  const ramp = h('div', { class: 'ramp', 'aria-hidden': 'true' });
-  ramp.style.backgroundImage = `linear-gradient(to right, ${colours.join(', ')})`;
+  const style = { 'background-image': `linear-gradient(to right, ${colours.join(', ')})` };
+  const ramp = h('div', { class: 'ramp', 'aria-hidden': 'true', style });
   if (!range) return [ramp];
   const [low, high] = range;
   if (low === high) return [ramp, h('div', { class: 'ends' }, h('span', null, `${formatSignificant(low)} everywhere`))];
   const share = mark === undefined ? NaN : (mark - low) / (high - low);
-  if (share >= 0 && share <= 1) {
-    const tick = h('span', { class: 'tick' });
-    tick.style.left = `${share * 100}%`;
-    ramp.append(tick);
-  }
+  if (share >= 0 && share <= 1) ramp.append(h('span', { class: 'tick', style: { left: `${share * 100}%` } }));
   const [first, last] = write(range);
   // The middle of a diverging ramp shows the zero, so its unit is part of the title.
   const middle = kind === 'diverging' ? h('span', null, '0') : unit ? h('span', { class: 'unit' }, unit) : null;

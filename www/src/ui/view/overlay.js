@@ -1,7 +1,9 @@
 /** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
-import { computed, effect } from '@preact/signals-core';
+
+import { computed } from '@preact/signals-core';
 import { enlarge } from '../box.js';
-import { fill, h } from '../dom.js';
+import { button } from '../button.js';
+import { h, live } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { meshWords, NO_MESH } from './mesh-words.js';
 
@@ -25,7 +27,15 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
   const hint = h('p', { class: 'hint' }, 'Drag to turn');
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
-  const empty = h('div', { class: 'empty', role: 'status' });
+  // An error in the formula is shown beside the formula instead.
+  const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
+  const empty = h('div', { class: 'empty', role: 'status', hidden: () => !lost.value }, () => {
+    if (!lost.value) return null;
+    // The next formula may have no surface for another reason.
+    void engine.field.value;
+    void engine.revision.value;
+    return emptyState(engine);
+  });
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
   const text = computed(() =>
@@ -57,28 +67,11 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   // The poster is shown until the first particles are drawn.
   const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
   const settled = computed(() => drawn.value || engine.empty.value);
-  effect(() => {
-    if (!settled.value) return;
-    poster.classList.add('gone');
-    start.hidden = true;
+  live(poster, () => poster.classList.toggle('gone', poster.matches('.gone') || settled.value));
+  live(start, () => {
+    if (settled.value || engine.description.value || engine.notice.value?.id === 'load') start.hidden = true;
   });
-  effect(() => {
-    if (engine.description.value || engine.notice.value?.id === 'load') start.hidden = true;
-  });
-
   hintUntilUsed(hint, stage, settled);
-
-  // An error in the formula is shown beside the formula instead.
-  const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
-  effect(() => {
-    empty.hidden = !lost.value;
-    if (lost.value) {
-      // The next formula may have no surface for another reason.
-      void engine.field.value;
-      void engine.revision.value;
-      fill(empty, ...emptyState(engine));
-    } else fill(empty);
-  });
 }
 
 /** Returns what is said of the mesh while it is drawn. @param {Engine} engine */
@@ -118,14 +111,8 @@ function emptyState(engine) {
     h(
       'div',
       { class: 'empty-actions' },
-      stop_reason === 'no_surface' && !nowhere
-        ? h('button', { type: 'button', class: 'button', on: { click: () => enlarge(engine) } }, 'Double the box')
-        : null,
-      h(
-        'button',
-        { type: 'button', class: 'button', on: { click: () => engine.setSurface(engine.state.peek().surface) } },
-        'Take the gallery formula back',
-      ),
+      stop_reason === 'no_surface' && !nowhere ? button({ press: () => enlarge(engine) }, 'Double the box') : null,
+      button({ press: () => engine.setSurface(engine.state.peek().surface) }, 'Take the gallery formula back'),
     ),
   ];
 }
@@ -141,11 +128,10 @@ function hintUntilUsed(hint, stage, settled) {
     stage.removeEventListener('pointerdown', end);
   };
   stage.addEventListener('pointerdown', end);
-  const stop = effect(() => {
-    if (!settled.value) return;
+  live(hint, () => {
+    if (!settled.value || hint.matches('.shown')) return;
     hint.classList.add('shown');
     setTimeout(end, HINT_MS);
-    queueMicrotask(() => stop());
   });
 }
 
@@ -162,7 +148,7 @@ function announce(spoken, text, busy) {
     last = performance.now();
     spoken.textContent = text.peek();
   };
-  effect(() => {
+  live(spoken, () => {
     void text.value;
     clearTimeout(timer);
     const wait = busy.value ? Math.max(0, last + ANNOUNCE_MS - performance.now()) : 300;

@@ -1,5 +1,5 @@
 /** Axes with ticks around the particles, and a scale bar. */
-import { computed, effect } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
 import { h } from '../../dom.js';
 import { formatStep } from '../../format.js';
 import { AXES, niceStep, ticksIn } from '../../space.js';
@@ -77,22 +77,25 @@ function drawAxis(pen, engine, edge, axis) {
  * @param {Engine} engine
  */
 export function createScaleBar(engine) {
-  const text = h('span');
-  const bar = h('div', { class: 'scale-bar', role: 'img' }, text, h('span', { class: 'line' }));
-  effect(() => {
-    const { bar: shown, camera } = engine.state.value.view;
-    bar.hidden = !shown;
-    if (!shown) return;
+  const about = computed(() => {
+    const { bar, camera } = engine.state.value.view;
+    if (!bar) return null;
     void engine.frame.value;
     const spot = engine.project(camera.target);
-    if (!spot) return;
+    if (!spot) return null;
     const length = niceStep((BAR_PX * spot.perPx) / 2.5);
-    text.textContent = formatStep(length, length);
-    bar.style.setProperty('--length', `${(length / spot.perPx).toFixed(1)}px`);
-    bar.setAttribute(
-      'aria-label',
-      `Scale bar: ${formatStep(length, length)} units of length in the middle of the picture`,
-    );
+    return { text: formatStep(length, length), px: length / spot.perPx };
   });
-  return bar;
+  return h(
+    'div',
+    {
+      class: 'scale-bar',
+      role: 'img',
+      hidden: () => !about.value,
+      style: { '--length': () => `${(about.value?.px ?? 0).toFixed(1)}px` },
+      'aria-label': () => `Scale bar: ${about.value?.text} units of length in the middle of the picture`,
+    },
+    h('span', null, () => about.value?.text),
+    h('span', { class: 'line' }),
+  );
 }

@@ -2,8 +2,8 @@
  * The layer of marks on the picture: lines and figures that belong to places of the surface, and handles to drag. They
  * are drawn anew after every picture, since places may have moved in it.
  */
-import { computed, effect } from '@preact/signals-core';
-import { h } from '../../dom.js';
+import { computed } from '@preact/signals-core';
+import { h, live } from '../../dom.js';
 import { drawn } from './draw.js';
 
 /**
@@ -32,7 +32,7 @@ export function mountMarks(stage, engine, marks) {
     const handles = mark.handles ?? [];
     layer.append(...handles);
     const shown = computed(() => engine.backend.value !== 'starting' && mark.shown());
-    effect(() => {
+    live(layer, () => {
       for (const handle of handles) handle.hidden = !shown.value;
       pen.begin();
       if (shown.value) {

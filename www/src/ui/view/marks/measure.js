@@ -1,5 +1,7 @@
 /** Measures the distance of two particles: rings on them, a line between them, and a card with the figures. */
+
 import { computed, signal } from '@preact/signals-core';
+import { button } from '../../button.js';
 import { h } from '../../dom.js';
 import { formatCount, formatSignificant } from '../../format.js';
 import { separation } from '../../space.js';
@@ -66,10 +68,6 @@ export function createMeasureCard(engine) {
     const [i, j] = pair.map(formatCount);
     return `${formatSignificant(units, 4)} apart, ${formatSignificant(diameters, 3)} × ${unit} · particles ${i} and ${j}`;
   });
-  const done = h(
-    'button',
-    { type: 'button', class: 'button small', on: { click: () => engine.setView({ measured: null }) } },
-    'Done',
-  );
+  const done = button({ class: 'small', press: () => engine.setView({ measured: null }) }, 'Done');
   return h('div', { class: 'measure-card', hidden: () => engine.state.value.view.measured === null }, text, done);
 }

@@ -1,6 +1,6 @@
 /** Marks of the cutting plane: its outline in the clip box, a knob that moves it and one that turns it. */
-import { effect } from '@preact/signals-core';
 import { along, dot } from '../../../engine/vector.js';
+import { live } from '../../dom.js';
 import { formatSignificant } from '../../format.js';
 import { clamp } from '../../scale.js';
 import { centreOf, directionOnSphere, extentOf, placeAlong, sectionOf } from '../../space.js';
@@ -9,6 +9,7 @@ import { createHandle } from './handle.js';
 
 /**
  * @import { Bounds, CuttingPlane, Engine, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { ReadonlySignal } from '@preact/signals-core'
  * @import { Mark } from './layer.js'
  */
 
@@ -21,90 +22,16 @@ const FINE = 0.1;
 /** @param {Engine} engine @param {HTMLElement} stage @returns {Mark} */
 export function planeMark(engine, stage) {
   const box = boxOf(engine);
-  /** Place near which the knob is, if the plane was turned in the picture. @type {Vec3 | null} */
-  let pivot = null;
-  effect(() => {
-    if (!engine.state.value.plane) pivot = null;
+  const mover = new Mover(engine, box);
+  live(stage, () => {
+    if (!engine.state.value.plane) mover.forget();
   });
-  /** The plane when a drag began, the place of its knob, and where the pointer was along its normal. */
-  const drag = {
-    plane: /** @type {CuttingPlane | null} */ (null),
-    base: /** @type {Vec3} */ ([0, 0, 0]),
-    at: /** @type {number | null} */ (null),
-    radius: 0,
-    far: false,
-  };
-
-  /**
-   * Returns the place of the knob: on the plane, beside the pivot or the middle of the box.
-   * @param {CuttingPlane} plane
-   * @param {Bounds} bounds
-   */
-  const baseOf = ({ normal, offset }, bounds) => {
-    const near = pivot ?? centreOf(bounds);
-    return along(near, normal, offset - dot(normal, near));
-  };
-  const cancel = () => {
-    if (drag.plane) engine.setPlane(drag.plane);
-  };
-  /** @param {Ray} ray */
-  const grab = (ray) => {
-    const [plane, bounds] = [engine.state.peek().plane, box.peek()];
-    drag.plane = plane;
-    if (!plane || !bounds) return;
-    drag.base = baseOf(plane, bounds);
-    drag.at = placeAlong(ray, drag.base, plane.normal);
-  };
-  /** Moves the plane, within the box. @param {number} offset */
-  const move = (offset) => {
-    const [plane, bounds] = [engine.state.peek().plane, box.peek()];
-    if (!plane || !bounds) return;
-    const [low, high] = extentOf(bounds, plane.normal);
-    engine.setPlane({ ...plane, offset: clamp(offset, low, high) });
-  };
-
-  const knob = createHandle(engine, stage, {
-    name: 'Cutting plane',
-    kind: 'plane-knob',
-    grab,
-    drag(ray, fine) {
-      const { plane } = engine.state.peek();
-      if (!plane) return;
-      const at = placeAlong(ray, drag.base, plane.normal);
-      if (at !== null && drag.at !== null) move(plane.offset + (at - drag.at) * (fine ? FINE : 1));
-      drag.at = at;
-    },
-    drop: () => {},
-    cancel,
-    press(presses, fine) {
-      const [plane, bounds] = [engine.state.peek().plane, box.peek()];
-      if (!plane || !bounds) return;
-      const [low, high] = extentOf(bounds, plane.normal);
-      move(plane.offset + presses * KEY_SHARE * (high - low) * (fine ? FINE : 1));
-    },
-  });
+  const knob = createHandle(engine, stage, { name: 'Cutting plane', kind: 'plane-knob', ...mover.sliding() });
   const tip = createHandle(engine, stage, {
     name: 'Direction of the cutting plane',
     kind: 'plane-tip',
-    grab(ray) {
-      grab(ray);
-      const spot = engine.project(drag.base);
-      if (!drag.plane || !spot) return;
-      drag.radius = ARROW_PX * spot.perPx;
-      drag.far = dot(drag.plane.normal, ray.direction) > 0;
-      pivot = drag.base;
-    },
-    drag(ray) {
-      if (!drag.plane || !(drag.radius > 0)) return;
-      const normal = directionOnSphere(ray, drag.base, drag.radius, drag.far);
-      engine.setPlane({ normal, offset: dot(normal, drag.base) });
-    },
-    drop: () => {},
-    cancel,
-    // The panel has sliders for the two angles.
-    press: null,
+    ...mover.turning(),
   });
-
   return {
     handles: [knob.knob, tip.knob],
     shown: () => box.value !== null && engine.state.value.plane !== null,
@@ -113,7 +40,7 @@ export function planeMark(engine, stage) {
       if (!plane || !bounds) return;
       const section = sectionOf(bounds, plane);
       if (section.length) pen.polygon(section, 'section-line');
-      const base = baseOf(plane, bounds);
+      const base = mover.baseOf(plane, bounds);
       const spot = engine.project(base);
       const end = spot && engine.project(along(base, plane.normal, ARROW_PX * spot.perPx));
       if (spot && end) pen.line(spot, end, 'arrow');
@@ -123,4 +50,103 @@ export function planeMark(engine, stage) {
       knob.tell(plane.offset, low, high, `${formatSignificant(plane.offset, 3)} along the normal`);
     },
   };
+}
+
+/** Moves and turns the plane as its handles are dragged. */
+class Mover {
+  #engine;
+  #box;
+  /** Place near which the knob is, if the plane was turned in the picture. @type {Vec3 | null} */
+  #pivot = null;
+  /** The plane when a drag began. @type {CuttingPlane | null} */
+  #before = null;
+  /** The place of its knob then. @type {Vec3} */
+  #base = [0, 0, 0];
+
+  /** @param {Engine} engine @param {ReadonlySignal<Bounds | null>} box */
+  constructor(engine, box) {
+    this.#engine = engine;
+    this.#box = box;
+  }
+
+  /** Forgets about which place a plane was turned that is no longer there. */
+  forget() {
+    this.#pivot = null;
+  }
+
+  /**
+   * Returns the place of the knob: on the plane, beside the pivot or the middle of the box.
+   * @param {CuttingPlane} plane
+   * @param {Bounds} bounds
+   */
+  baseOf({ normal, offset }, bounds) {
+    const near = this.#pivot ?? centreOf(bounds);
+    return along(near, normal, offset - dot(normal, near));
+  }
+
+  /** What the knob does: it moves the plane along its normal, within the box. */
+  sliding() {
+    /** Where the pointer was along the normal. @type {number | null} */
+    let last = null;
+    return {
+      grab: (/** @type {Ray} */ ray) => {
+        const plane = this.#grab();
+        if (plane) last = placeAlong(ray, this.#base, plane.normal);
+      },
+      drag: (/** @type {Ray} */ ray, /** @type {boolean} */ fine) => {
+        const { plane } = this.#engine.state.peek();
+        if (!plane) return;
+        const at = placeAlong(ray, this.#base, plane.normal);
+        if (at !== null && last !== null) this.#move((at - last) * (fine ? FINE : 1));
+        last = at;
+      },
+      drop: () => {},
+      cancel: this.#cancel,
+      press: (/** @type {number} */ presses, /** @type {boolean} */ fine) =>
+        this.#move(presses * KEY_SHARE * (fine ? FINE : 1), { ofBox: true }),
+    };
+  }
+
+  /** What the tip of the arrow does: it turns the plane about its knob. The panel has sliders for the two angles. */
+  turning() {
+    let [radius, isFar] = [0, false];
+    return {
+      grab: (/** @type {Ray} */ { direction }) => {
+        const plane = this.#grab();
+        const spot = this.#engine.project(this.#base);
+        if (!plane || !spot) return;
+        radius = ARROW_PX * spot.perPx;
+        isFar = dot(plane.normal, direction) > 0;
+        this.#pivot = this.#base;
+      },
+      drag: (/** @type {Ray} */ ray) => {
+        if (!this.#before || !(radius > 0)) return;
+        const normal = directionOnSphere(ray, this.#base, radius, isFar);
+        this.#engine.setPlane({ normal, offset: dot(normal, this.#base) });
+      },
+      drop: () => {},
+      cancel: this.#cancel,
+      press: null,
+    };
+  }
+
+  #grab() {
+    const [plane, bounds] = [this.#engine.state.peek().plane, this.#box.peek()];
+    this.#before = plane;
+    if (plane && bounds) this.#base = this.baseOf(plane, bounds);
+    return bounds && plane;
+  }
+
+  #cancel = () => {
+    if (this.#before) this.#engine.setPlane(this.#before);
+  };
+
+  /** @param {number} by  a length, or a share of the way through the box @param {{ ofBox?: boolean }} [unit] */
+  #move(by, { ofBox = false } = {}) {
+    const [plane, bounds] = [this.#engine.state.peek().plane, this.#box.peek()];
+    if (!plane || !bounds) return;
+    const [low, high] = extentOf(bounds, plane.normal);
+    const offset = clamp(plane.offset + by * (ofBox ? high - low : 1), low, high);
+    this.#engine.setPlane({ ...plane, offset });
+  }
 }
