@@ -99,8 +99,8 @@ pub struct BoxFit {
 impl BoxFit {
     /// Begins the search for the box of the surface of a field, whose origin is zero.
     #[must_use]
-    pub fn new<F: Field + 'static>(mut field: F) -> Self {
-        Self { work: Box::pin(async move { fit(&mut field).await }) }
+    pub fn new(mut field: Box<dyn Field>) -> Self {
+        Self { work: Box::pin(async move { fit(&mut *field).await }) }
     }
 
     /// Does up to `budget` slices of the work, of some 32 cells each: the box, once it is found. It must not be called after that.

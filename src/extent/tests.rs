@@ -5,7 +5,7 @@ use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
     let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    let mut fit = BoxFit::new(field.without_powers());
+    let mut fit = BoxFit::new(Box::new(field.without_powers()));
     loop {
         if let Some(extent) = fit.step(u32::MAX) {
             return extent;
@@ -182,7 +182,7 @@ fn the_room_is_a_twentieth_and_three_radii() {
 #[test]
 fn budgets_do_not_change_the_box() {
     let text = "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8";
-    let mut fit = BoxFit::new(Formula::as_written(text, &[]).expect("a formula"));
+    let mut fit = BoxFit::new(Box::new(Formula::as_written(text, &[]).expect("a formula")));
     let mut steps = 0;
     let slowly = loop {
         steps += 1;
@@ -202,7 +202,7 @@ fn a_field_without_bounds_is_looked_at_on_a_grid() {
             (p.length() - 2.5, p.normalize_or_zero())
         }
     }
-    let mut fit = BoxFit::new(Blob);
+    let mut fit = BoxFit::new(Box::new(Blob));
     let extent = fit.step(u32::MAX).expect("no slice is left");
     assert_eq!(extent.reach, Reach::Bounded);
     assert!(extent.bounds.max.iter().all(|end| (2.5..3.0).contains(end)), "{extent:?}");

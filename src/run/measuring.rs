@@ -5,7 +5,7 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
-use crate::slices::{Work, pause, ranges};
+use crate::slices::{self, Work, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
@@ -83,8 +83,19 @@ pub(super) struct Subject {
     pub(super) sampling: Sampling,
 }
 
+// These functions are not generic, so that the measurement is compiled once and not with every type of field.
 impl Subject {
-    pub(super) async fn measure(self, field: &mut dyn Field) -> Measured {
+    /// Measures all at once.
+    pub(super) fn measure(self, field: &mut dyn Field) -> Measured {
+        slices::complete(self.in_slices(field))
+    }
+
+    /// The measurement in slices.
+    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<Measured> {
+        Box::pin(async move { self.in_slices(&mut *field).await })
+    }
+
+    async fn in_slices(self, field: &mut dyn Field) -> Measured {
         let Self { front, now, bounds, sampling } = self;
         let front = match front {
             Some(front) => Some(front.measure(field, &bounds, sampling).await.figures),

@@ -135,7 +135,7 @@ impl<F: Field> Run<F> {
     /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended.
     pub fn report(&mut self) -> Report {
         self.measuring.stop();
-        let measured = slices::complete(self.subject().measure(&mut self.field));
+        let measured = self.subject().measure(&mut self.field);
         self.take(measured)
     }
 
@@ -146,8 +146,7 @@ impl<F: Field> Run<F> {
         F: Clone + 'static,
     {
         if self.measuring.work.is_none() {
-            let (subject, mut field) = (self.subject(), self.field.clone());
-            self.measuring.work = Some(Box::pin(async move { subject.measure(&mut field).await }));
+            self.measuring.work = Some(self.subject().work(Box::new(self.field.clone())));
         }
         let measured = slices::advance(self.measuring.work.as_mut()?.as_mut(), budget)?;
         self.measuring.work = None;

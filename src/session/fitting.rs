@@ -69,7 +69,7 @@ impl Session {
             let search = self.fitting.search.get_or_insert_with(|| {
                 let mut formula = formula.clone();
                 formula.set_origin(DVec3::ZERO);
-                BoxFit::new(formula)
+                BoxFit::new(Box::new(formula))
             });
             self.fitting.found = Some(search.step(budget)?);
             self.fitting.search = None;
