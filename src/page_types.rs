@@ -79,11 +79,11 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Report>();
     declarations.add::<MeshAnswer>();
     declarations.add::<SolvedModel>();
-    declarations.add::<job::Progress>();
+    declarations.add::<job::PointsProgress>();
     declarations.add::<job::Fault>();
     declarations.add::<LessonField>();
     declarations.add::<lesson::Settings>();
-    declarations.add::<lesson::Progress>();
+    declarations.add::<lesson::LessonProgress>();
     declarations.add::<lesson::Chapter>();
     declarations.add::<lesson::Event>();
     declarations.add::<lesson::Life>();

@@ -68,12 +68,12 @@ pub struct Column {
     pub measured: bool,
     /// The value for one particle.
     #[serde(skip)]
-    read: fn(&Particles, &quality::Report, usize) -> Cell,
+    read: fn(&Particles, &quality::Report, usize) -> CellValue,
 }
 
 /// A value of a column.
 #[derive(Clone, Copy)]
-enum Cell {
+enum CellValue {
     Double(f64),
     Float(f32),
     Int(i32),
@@ -81,7 +81,7 @@ enum Cell {
     Uchar(u8),
 }
 
-impl Cell {
+impl CellValue {
     fn write_binary(self, out: &mut dyn Write) -> io::Result<()> {
         match self {
             Self::Double(value) => out.write_all(&value.to_le_bytes()),
@@ -109,15 +109,15 @@ fn is_double(particles: &Particles) -> bool {
 }
 
 /// A coordinate of a particle in those of the formula.
-fn coordinate(particles: &Particles, i: usize, axis: usize) -> Cell {
+fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
     if is_double(particles) {
-        Cell::Double(particles.place(i)[axis])
+        CellValue::Double(particles.place(i)[axis])
     } else {
-        Cell::Float(particles.position[i][axis])
+        CellValue::Float(particles.position[i][axis])
     }
 }
 
-type Read = fn(&Particles, &quality::Report, usize) -> Cell;
+type Read = fn(&Particles, &quality::Report, usize) -> CellValue;
 
 const fn float(name: &'static str, read: Read) -> Column {
     Column { name, kind: ColumnKind::Float, measured: false, read }
@@ -128,34 +128,39 @@ pub const COLUMNS: &[Column] = &[
     Column { kind: ColumnKind::Coordinate, ..float("x", |particles, _, i| coordinate(particles, i, 0)) },
     Column { kind: ColumnKind::Coordinate, ..float("y", |particles, _, i| coordinate(particles, i, 1)) },
     Column { kind: ColumnKind::Coordinate, ..float("z", |particles, _, i| coordinate(particles, i, 2)) },
-    float("nx", |particles, _, i| Cell::Float(particles.normal[i].x)),
-    float("ny", |particles, _, i| Cell::Float(particles.normal[i].y)),
-    float("nz", |particles, _, i| Cell::Float(particles.normal[i].z)),
-    float("radius", |particles, _, i| Cell::Float(particles.radius[i])),
-    Column { kind: ColumnKind::Uint, ..float("level", |particles, _, i| Cell::Uint(particles.level[i])) },
+    float("nx", |particles, _, i| CellValue::Float(particles.normal[i].x)),
+    float("ny", |particles, _, i| CellValue::Float(particles.normal[i].y)),
+    float("nz", |particles, _, i| CellValue::Float(particles.normal[i].z)),
+    float("radius", |particles, _, i| CellValue::Float(particles.radius[i])),
+    Column {
+        kind: ColumnKind::Uint,
+        ..float("level", |particles, _, i| CellValue::Uint(particles.level[i]))
+    },
     // All ones, the mark of a seed, is −1.
     Column {
         kind: ColumnKind::Int,
-        ..float("parent", |particles, _, i| Cell::Int(particles.parent[i].cast_signed()))
+        ..float("parent", |particles, _, i| CellValue::Int(particles.parent[i].cast_signed()))
     },
     Column {
         kind: ColumnKind::Uchar,
         measured: true,
-        ..float("valence", |_, measured, i| Cell::Uchar(measured.valence.get(i).copied().unwrap_or(0)))
+        ..float("valence", |_, measured, i| CellValue::Uchar(measured.valence.get(i).copied().unwrap_or(0)))
     },
     Column {
         measured: true,
-        ..float("nearest", |_, measured, i| Cell::Float(measured.nearest.get(i).copied().unwrap_or(f32::NAN)))
+        ..float("nearest", |_, measured, i| {
+            CellValue::Float(measured.nearest.get(i).copied().unwrap_or(f32::NAN))
+        })
     },
     Column {
         measured: true,
         ..float("residual", |_, measured, i| {
-            Cell::Float(measured.residual.get(i).copied().unwrap_or(f32::NAN))
+            CellValue::Float(measured.residual.get(i).copied().unwrap_or(f32::NAN))
         })
     },
     Column {
         kind: ColumnKind::Uchar,
-        ..float("singular", |particles, _, i| Cell::Uchar(particles.slots[i].is_singular().into()))
+        ..float("singular", |particles, _, i| CellValue::Uchar(particles.slots[i].is_singular().into()))
     },
 ];
 
@@ -266,7 +271,8 @@ fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
             coordinate(particles, i, axis).write_binary(out)?;
         }
         for value in n.to_array() {
-            let cell = if is_double(particles) { Cell::Double(value.into()) } else { Cell::Float(value) };
+            let cell =
+                if is_double(particles) { CellValue::Double(value.into()) } else { CellValue::Float(value) };
             cell.write_binary(out)?;
         }
     }

@@ -14,7 +14,7 @@ use crate::field::Field;
 use crate::math::Bounds;
 use crate::slices::{self, Work, pause};
 use glam::DVec3;
-use scan::{Outcome, Scan};
+use scan::{Scan, ScanOutcome};
 use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first.
@@ -130,22 +130,24 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
         pause().await;
         let is_first = before.is_none();
         match (outcome, hull) {
-            (Outcome::Inside, Some(hull)) => {
+            (ScanOutcome::Inside, Some(hull)) => {
                 let reach = if is_first { Reach::Bounded } else { Reach::Endless };
                 let bounds = placeable(&hull);
                 // What is beyond the box says nothing about the room within.
                 let extent = Extent { bounds, reach: Reach::Bounded };
                 return if is_first { extent } else { Extent { bounds: extent.with_room(0.0), reach } };
             }
-            (Outcome::Empty, _) => {
+            (ScanOutcome::Empty, _) => {
                 return match before {
                     None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Nowhere },
                     Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
                 };
             }
-            (Outcome::Crossing, hull) => bends = bends.or(hull),
-            (Outcome::Undecided | Outcome::Inside, _) if is_first => return sampled::find(field).await,
-            (Outcome::Undecided | Outcome::Inside, _) => {}
+            (ScanOutcome::Crossing, hull) => bends = bends.or(hull),
+            (ScanOutcome::Undecided | ScanOutcome::Inside, _) if is_first => {
+                return sampled::find(field).await;
+            }
+            (ScanOutcome::Undecided | ScanOutcome::Inside, _) => {}
         }
         before = Some(half);
     }

@@ -35,7 +35,7 @@ const BATCH: usize = 32;
 
 /// How a scan ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Outcome {
+pub(super) enum ScanOutcome {
     /// There is no surface in the cube.
     Empty,
     /// The surface in the cube lies in the hull.
@@ -48,7 +48,7 @@ pub(super) enum Outcome {
 
 /// The result of a scan: how it ended, and the box around the surface that it met.
 pub(super) struct Scan {
-    pub(super) outcome: Outcome,
+    pub(super) outcome: ScanOutcome,
     pub(super) hull: Option<Bounds>,
 }
 
@@ -57,7 +57,7 @@ type Place = [u32; 3];
 
 /// A cell that may hold surface.
 #[derive(Clone, Copy)]
-struct Cell {
+struct OpenCell {
     at: Place,
     /// The axes along which the surface may have an extreme in it.
     extremes: [bool; 3],
@@ -65,7 +65,7 @@ struct Cell {
 
 /// The grid of a level.
 #[derive(Clone, Copy)]
-struct Level {
+struct ScanLevel {
     lo: DVec3,
     size: f64,
     /// Cells along a side.
@@ -74,7 +74,7 @@ struct Level {
     depth: u32,
 }
 
-impl Level {
+impl ScanLevel {
     fn cell(&self, at: Place) -> Bounds {
         let [lo, hi] =
             [0, 1].map(|end| self.lo + self.size * DVec3::from_array(at.map(|k| f64::from(k + end))));
@@ -93,13 +93,13 @@ pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -
     let mut places = vec![[0; 3]];
     for depth in 0.. {
         let cells = 1_u32 << depth;
-        let level = Level { lo, size: side / f64::from(cells), cells, depth };
+        let level = ScanLevel { lo, size: side / f64::from(cells), cells, depth };
         let kept = visit(field, &level, &places, left).await;
         if let Some(outcome) = outcome(field, &level, &kept, *left).await {
             let hull = match outcome {
-                Outcome::Inside => Some(hull(&level, &kept)),
-                Outcome::Crossing => bends(field, level, kept, left).await,
-                Outcome::Empty | Outcome::Undecided => None,
+                ScanOutcome::Inside => Some(hull(&level, &kept)),
+                ScanOutcome::Crossing => bends(field, level, kept, left).await,
+                ScanOutcome::Empty | ScanOutcome::Undecided => None,
             };
             return Scan { outcome, hull };
         }
@@ -109,15 +109,21 @@ pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -
 }
 
 /// The places of the eighths of the cells in the next level.
-fn eighths(cells: &[Cell]) -> Vec<Place> {
-    let of = |cell: &Cell, eighth: u32| core::array::from_fn(|axis| 2 * cell.at[axis] + (eighth >> axis & 1));
+fn eighths(cells: &[OpenCell]) -> Vec<Place> {
+    let of =
+        |cell: &OpenCell, eighth: u32| core::array::from_fn(|axis| 2 * cell.at[axis] + (eighth >> axis & 1));
     cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
 }
 
 /// How the scan ends, if a level with these cells is the last one.
-async fn outcome(field: &mut dyn Bounded, level: &Level, kept: &[Cell], left: usize) -> Option<Outcome> {
+async fn outcome(
+    field: &mut dyn Bounded,
+    level: &ScanLevel,
+    kept: &[OpenCell],
+    left: usize,
+) -> Option<ScanOutcome> {
     if kept.is_empty() {
-        return Some(Outcome::Empty);
+        return Some(ScanOutcome::Empty);
     }
     let is_last = level.depth >= DEPTH || left == 0;
     let is_idle =
@@ -127,22 +133,22 @@ async fn outcome(field: &mut dyn Bounded, level: &Level, kept: &[Cell], left: us
             return None;
         }
         let is_crossing = crosses_faces(field, level, kept).await;
-        return Some(if is_crossing { Outcome::Crossing } else { Outcome::Undecided });
+        return Some(if is_crossing { ScanOutcome::Crossing } else { ScanOutcome::Undecided });
     }
     let share = if is_last || kept.len() > MANY_INSIDE { COARSE } else { FINE };
     if is_fine(level, &hull(level, kept), share) {
-        return Some(Outcome::Inside);
+        return Some(ScanOutcome::Inside);
     }
-    (is_last || kept.len() > 4 * MANY_INSIDE).then_some(Outcome::Undecided)
+    (is_last || kept.len() > 4 * MANY_INSIDE).then_some(ScanOutcome::Undecided)
 }
 
 /// Whether the cells of a level are at most this share of a box.
-fn is_fine(level: &Level, hull: &Bounds, share: f64) -> bool {
+fn is_fine(level: &ScanLevel, hull: &Bounds, share: f64) -> bool {
     level.size <= share * hull.size().max_element()
 }
 
 /// The box of the extremes.
-fn hull(level: &Level, kept: &[Cell]) -> Bounds {
+fn hull(level: &ScanLevel, kept: &[OpenCell]) -> Bounds {
     let Bounds { mut min, mut max } = NOWHERE;
     for cell in kept {
         let own = level.cell(cell.at);
@@ -157,8 +163,8 @@ fn hull(level: &Level, kept: &[Cell]) -> Bounds {
 /// The box of the bends of a surface that goes on: of the cells with an extreme, where these are few and none lies at the faces.
 async fn bends(
     field: &mut dyn Bounded,
-    mut level: Level,
-    mut kept: Vec<Cell>,
+    mut level: ScanLevel,
+    mut kept: Vec<OpenCell>,
     left: &mut usize,
 ) -> Option<Bounds> {
     loop {
@@ -171,17 +177,22 @@ async fn bends(
         if is_fine(&level, &hull, FINE) || level.depth >= DEPTH || *left == 0 {
             return Some(hull);
         }
-        level = Level { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
+        level = ScanLevel { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
         kept = visit(field, &level, &eighths(&kept), left).await;
     }
 }
 
 /// The cells that may hold surface, and lie at the faces of the cube or may hold an extreme.
-async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &mut usize) -> Vec<Cell> {
+async fn visit(
+    field: &mut dyn Bounded,
+    level: &ScanLevel,
+    cells: &[Place],
+    left: &mut usize,
+) -> Vec<OpenCell> {
     *left = left.saturating_sub(cells.len());
     let factors = field.factors();
     let mut kept = Vec::new();
-    let mut batch = Batch::default();
+    let mut batch = BoundsBatch::default();
     for chunk in cells.chunks(BATCH) {
         let mut extremes = [None; BATCH];
         for factor in 0..factors {
@@ -191,7 +202,7 @@ async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &m
             if let Some(extremes) = extremes
                 && (extremes != [false; 3] || level.is_at_face(at))
             {
-                kept.push(Cell { at, extremes });
+                kept.push(OpenCell { at, extremes });
             }
         }
         pause().await;
@@ -201,7 +212,7 @@ async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &m
 
 /// Boxes and bounds over them.
 #[derive(Default)]
-struct Batch {
+struct BoundsBatch {
     boxes: Vec<Bounds>,
     known: Vec<Enclosure>,
     /// Indices of the boxes that the bounds of the expression leave open.
@@ -210,13 +221,13 @@ struct Batch {
     at_middle: Vec<Enclosure>,
 }
 
-impl Batch {
+impl BoundsBatch {
     /// Notes the extremes that a factor of the field may have in cells where it may vanish.
     fn enclose(
         &mut self,
         field: &mut dyn Bounded,
         factor: usize,
-        level: &Level,
+        level: &ScanLevel,
         cells: &[Place],
         extremes: &mut [Option<[bool; 3]>; BATCH],
     ) {
@@ -248,7 +259,7 @@ impl Batch {
 }
 
 /// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
-async fn crosses_faces(field: &mut dyn Bounded, level: &Level, kept: &[Cell]) -> bool {
+async fn crosses_faces(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell]) -> bool {
     let factors = field.factors();
     for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {
         let own = level.cell(cell.at);

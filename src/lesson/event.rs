@@ -4,7 +4,7 @@
 //! field's coordinates, angles in radians.
 
 use super::settings::Settings;
-use crate::paper::{ChildSlot, Comparison, Frame, Move, Nearby, Observer, Particle, Trial};
+use crate::paper::{ChildSlot, Comparison, Move, Nearby, Observer, Particle, TangentFrame, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 use glam::DVec3;
@@ -370,7 +370,7 @@ impl Observer for Log {
         self.push(Event::Taken { particle });
     }
 
-    fn frame(&mut self, particle: u32, frame: &Frame, form: Option<[f64; 3]>) {
+    fn frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {
         let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
         self.push(Event::Frame { particle, normal, u, w, form });
     }

@@ -6,8 +6,8 @@
 
 use super::course::{Course, Predicted};
 use crate::paper::{
-    ChildSlot, Circle, Comparison, DIRECTIONS, Frame, Nearby, Observer, REACH, RISE_SLACK, is_same_sheet,
-    predicted_angle,
+    ChildSlot, Circle, Comparison, DIRECTIONS, Nearby, Observer, REACH, RISE_SLACK, TangentFrame,
+    is_same_sheet, predicted_angle,
 };
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -90,7 +90,13 @@ impl Course {
     }
 
     /// Second fundamental form [a, b, c] fitted to the normals around a particle by least squares.
-    fn fitted_form(&self, radius: f64, particle: u32, frame: &Frame, neighbours: &[Nearby]) -> [f64; 3] {
+    fn fitted_form(
+        &self,
+        radius: f64,
+        particle: u32,
+        frame: &TangentFrame,
+        neighbours: &[Nearby],
+    ) -> [f64; 3] {
         let p = self.run.particles[particle as usize].p();
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
         let (mut xa, mut ya, mut xb, mut yb) = (0.0, 0.0, 0.0, 0.0);

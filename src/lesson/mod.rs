@@ -93,8 +93,8 @@ pub struct Chapter {
 
 /// How far a run has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProgress"))]
-pub struct Progress {
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct LessonProgress {
     /// Chapters so far.
     pub chapters: u32,
     /// Events so far.
@@ -206,7 +206,7 @@ impl Lesson {
 
     /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
     /// steps does not change it.
-    pub fn step(&mut self, budget: u32) -> Progress {
+    pub fn step(&mut self, budget: u32) -> LessonProgress {
         let mut left = budget;
         while left > 0 && !self.is_done {
             if !self.course.is_in_chapter() {
@@ -228,8 +228,8 @@ impl Lesson {
 
     /// How far the run has come.
     #[must_use]
-    pub fn progress(&self) -> Progress {
-        Progress {
+    pub fn progress(&self) -> LessonProgress {
+        LessonProgress {
             chapters: self.chapters.len() as u32,
             events: self.events_so_far(),
             particles: self.course.run.particles.len() as u32,

@@ -10,7 +10,7 @@
 use super::Run;
 use super::buckets::Nearby;
 use super::observer::{ChildSlot, Comparison, Observer};
-use super::particle::{Frame, is_same_sheet};
+use super::particle::{TangentFrame, is_same_sheet};
 use super::projection::Circle;
 use super::surface::Landing;
 use crate::particles::SlotFate;
@@ -66,7 +66,7 @@ struct Circumference {
     parent: u32,
     p: DVec3,
     radius: f64,
-    frame: Frame,
+    frame: TangentFrame,
     around: Vec<Around>,
     /// The next slot.
     slot: u32,

@@ -44,7 +44,7 @@ mod uniform;
 
 pub use buckets::Nearby;
 pub use observer::{ChildSlot, Comparison, Move, Observer};
-pub use particle::{Frame, Particle};
+pub use particle::{Particle, TangentFrame};
 pub use relaxation::Push;
 pub use rules::{Matched, Order, Projection, Rules, Sizes, Start, sum_of_curvatures};
 pub use surface::{ImplicitSurface, Sample, Trial};

@@ -1,7 +1,7 @@
 //! Who looks on: what the algorithm tells while it runs.
 
 use super::buckets::Nearby;
-use super::particle::{Frame, Particle};
+use super::particle::{Particle, TangentFrame};
 use super::surface::Trial;
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -49,7 +49,7 @@ pub trait Observer {
     /// A particle that waits is taken.
     fn taken(&mut self, particle: u32) {}
     /// Its children are placed in this frame; `form` is the second fundamental form there, if it was asked for.
-    fn frame(&mut self, particle: u32, frame: &Frame, form: Option<[f64; 3]>) {}
+    fn frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {}
     /// A child begins in a direction, at an angle of the circle there.
     fn proposed(&mut self, child: ChildSlot, direction: DVec3, theta_rad: f64, place: DVec3) {}
     /// The field is evaluated on the child's way to the surface.

@@ -68,7 +68,7 @@ impl Particle {
 
 /// The tangent frame of a particle (Fig. 3).
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct TangentFrame {
     /// Unit normal N̂.
     pub n: DVec3,
     /// V̂⁰: unit tangent vector towards the first child.

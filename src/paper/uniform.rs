@@ -12,7 +12,7 @@
 use super::Run;
 use super::buckets::Nearby;
 use super::observer::{ChildSlot, Comparison, Observer};
-use super::particle::{Frame, is_same_sheet};
+use super::particle::{TangentFrame, is_same_sheet};
 use super::projection::Circle;
 use super::rules::{Matched, Start};
 use super::surface::Landing;
@@ -35,7 +35,7 @@ pub(crate) const RISE_SLACK: f64 = 0.5;
 /// Largest |sin θ₀|.
 const STEEPEST: f64 = 0.9;
 
-impl Frame {
+impl TangentFrame {
     /// V̂ⁱ: direction of a child.
     pub(crate) fn direction(&self, slot: usize) -> DVec3 {
         let [cos, sin] = DIRECTIONS[slot];
@@ -107,7 +107,7 @@ impl<O: Observer> Run<O> {
     }
 
     /// The frame in which the children of a particle are placed. The first one is its father; that of a seed is arbitrary (Fig. 3).
-    pub(crate) fn tangent_frame(&self, particle: u32) -> Frame {
+    pub(crate) fn tangent_frame(&self, particle: u32) -> TangentFrame {
         let own = &self.particles[particle as usize];
         let (p, n) = (own.p(), own.n());
         let towards = own.parent.and_then(|parent| {
@@ -121,7 +121,7 @@ impl<O: Observer> Run<O> {
                 (u.into(), w.into())
             }
         };
-        Frame { n, u, w, is_seed: own.parent.is_none() }
+        TangentFrame { n, u, w, is_seed: own.parent.is_none() }
     }
 
     /// The particles within `reach` of another one.

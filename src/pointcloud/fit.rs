@@ -5,11 +5,11 @@
 //! Functions Implicits", 2011). With −β as unknown the matrix is symmetric. The system is set up in local coordinates,
 //! in which the centres fill a box of about one unit, and solved in double precision.
 
-use super::solve::{Decomposition, Singular};
+use super::solve::{Decomposition, SingularMatrix};
 use super::thin::{check_spread, corners};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
-use crate::field::rbf::{Frame, RbfData, RbfField};
+use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::math::{Bounds, sort_numbers};
 use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
@@ -109,8 +109,8 @@ pub enum FitError {
     },
 }
 
-impl From<Singular> for FitError {
-    fn from(_: Singular) -> Self {
+impl From<SingularMatrix> for FitError {
+    fn from(_: SingularMatrix) -> Self {
         Self::Singular { condition: f64::INFINITY }
     }
 }
@@ -129,7 +129,7 @@ pub async fn interpolate(
     tell: impl Fn(f64),
 ) -> Result<Fit, FitError> {
     let normals = check_numbers(centres)?;
-    let frame = Frame::of(centres.position.iter().copied());
+    let frame = CentredFrame::of(centres.position.iter().copied());
     // The centres are rounded to single precision, so that sampling finds exactly the same ones.
     let local: Vec<DVec3> = centres.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
     check_centres(&local)?;
@@ -175,10 +175,10 @@ fn check_numbers(centres: &Cloud) -> Result<Vec<DVec3>, FitError> {
 /// Solves for the coefficients of the function.
 fn coefficients(
     decomposition: &Decomposition,
-    frame: &Frame,
+    frame: &CentredFrame,
     centres: &[DVec3],
     normals: &[DVec3],
-) -> Result<RbfData, Singular> {
+) -> Result<RbfData, SingularMatrix> {
     let mut x = DVector::zeros(4 * centres.len());
     for (i, normal) in normals.iter().enumerate() {
         for axis in 0..3 {

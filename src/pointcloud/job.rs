@@ -38,8 +38,8 @@ pub enum JobStage {
 
 /// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PointsProgress"))]
-pub struct Progress {
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct PointsProgress {
     /// Current stage.
     pub stage: JobStage,
     /// Current stage in words.
@@ -125,49 +125,49 @@ fn names() -> String {
 
 /// A stage of a job in words, with its begin and length as shares of the whole time for a file of some megabytes. A smaller one is done
 /// at once.
-struct Part {
+struct JobPart {
     stage: JobStage,
     label: &'static str,
     begins: f64,
     length: f64,
 }
 
-const fn part(stage: JobStage, label: &'static str, begins: f64, length: f64) -> Part {
-    Part { stage, label, begins, length }
+const fn part(stage: JobStage, label: &'static str, begins: f64, length: f64) -> JobPart {
+    JobPart { stage, label, begins, length }
 }
 
-const READING: Part = part(JobStage::Reading, "Reading the file", 0.0, 0.4);
-const FACING: Part = part(JobStage::Normals, "Finding normals from the faces", 0.4, 0.05);
-const MERGING: Part = part(JobStage::Thinning, "Joining equal points", 0.45, 0.15);
+const READING: JobPart = part(JobStage::Reading, "Reading the file", 0.0, 0.4);
+const FACING: JobPart = part(JobStage::Normals, "Finding normals from the faces", 0.4, 0.05);
+const MERGING: JobPart = part(JobStage::Thinning, "Joining equal points", 0.45, 0.15);
 /// The number of grids that thinning takes is not known, so its fraction stands still.
-const THINNING: Part = part(JobStage::Thinning, "Thinning out", 0.6, 0.05);
-const ESTIMATING: Part = part(JobStage::Normals, "Estimating normals", 0.65, 0.1);
-const SPREADING: Part = part(JobStage::Thinning, "Choosing centres", 0.75, 0.05);
-const SOLVING: Part = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
-const DONE: Part = part(JobStage::Done, "Done", 1.0, 0.0);
+const THINNING: JobPart = part(JobStage::Thinning, "Thinning out", 0.6, 0.05);
+const ESTIMATING: JobPart = part(JobStage::Normals, "Estimating normals", 0.65, 0.1);
+const SPREADING: JobPart = part(JobStage::Thinning, "Choosing centres", 0.75, 0.05);
+const SOLVING: JobPart = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
+const DONE: JobPart = part(JobStage::Done, "Done", 1.0, 0.0);
 
 /// What a job tells while it runs.
 struct Told {
-    progress: Cell<Progress>,
+    progress: Cell<PointsProgress>,
     centres: OnceCell<Vec<DVec3>>,
 }
 
 impl Told {
-    fn new(first: &Part) -> Rc<Self> {
+    fn new(first: &JobPart) -> Rc<Self> {
         Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
     }
 
     /// Begins a part of the job. The answer takes the fraction of it that is done.
-    fn begin(&self, part: &'static Part) -> impl Fn(f64) {
+    fn begin(&self, part: &'static JobPart) -> impl Fn(f64) {
         self.progress.set(part.at(0.0));
         |share| self.progress.set(part.at(share))
     }
 }
 
-impl Part {
-    fn at(&self, share: f64) -> Progress {
+impl JobPart {
+    fn at(&self, share: f64) -> PointsProgress {
         let fraction = self.begins + share * self.length;
-        Progress { stage: self.stage, label: self.label, fraction, done: self.stage == JobStage::Done }
+        PointsProgress { stage: self.stage, label: self.label, fraction, done: self.stage == JobStage::Done }
     }
 }
 
@@ -218,7 +218,7 @@ impl Job {
 
     /// Current progress.
     #[must_use]
-    pub fn progress(&self) -> Progress {
+    pub fn progress(&self) -> PointsProgress {
         match self.state {
             State::Done(_) => DONE.at(0.0),
             State::Working(_) | State::Failed(_) => self.told.progress.get(),
@@ -233,7 +233,7 @@ impl Job {
     /// # Errors
     ///
     /// What is wrong with the file, the points or the system. Every later call returns the same error.
-    pub fn step(&mut self, budget: u32) -> Result<Progress, JobError> {
+    pub fn step(&mut self, budget: u32) -> Result<PointsProgress, JobError> {
         if let State::Working(work) = &mut self.state
             && let Some(result) = slices::advance(work.as_mut(), budget)
         {

@@ -28,12 +28,12 @@ pub(super) struct Decomposition {
 
 /// Error: a pivot is zero or not finite, so the matrix is singular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Singular;
+pub(super) struct SingularMatrix;
 
 impl Decomposition {
     /// Decomposes a symmetric matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either takes at most 32²
     /// multiplications per row. `tell` gets the fraction of the work done.
-    pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, Singular> {
+    pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, SingularMatrix> {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
         let n = matrix.nrows();
         let mut this = Self { matrix, exchanges: Vec::new(), norm };
@@ -53,7 +53,7 @@ impl Decomposition {
     }
 
     /// Factorises the panel and exchanges whole rows to bring the pivots to the diagonal.
-    fn factorise(&mut self, panel: Range<usize>) -> Result<(), Singular> {
+    fn factorise(&mut self, panel: Range<usize>) -> Result<(), SingularMatrix> {
         let end = panel.end;
         for k in panel {
             let pivot = k + self.matrix.column(k).rows_range(k..).icamax();
@@ -61,7 +61,7 @@ impl Decomposition {
             self.exchanges.push((k, pivot));
             let diagonal = self.matrix[(k, k)];
             if !(diagonal.abs() > 0.0 && diagonal.is_finite()) {
-                return Err(Singular);
+                return Err(SingularMatrix);
             }
             let (mut factors, mut rest) = self.matrix.columns_range_pair_mut(k, k + 1..end);
             let mut factors = factors.rows_range_mut(k + 1..);
@@ -96,20 +96,20 @@ impl Decomposition {
     }
 
     /// Solves A x = `right` in place.
-    pub(super) fn solve(&self, right: &mut DVector<f64>) -> Result<(), Singular> {
+    pub(super) fn solve(&self, right: &mut DVector<f64>) -> Result<(), SingularMatrix> {
         for &(k, pivot) in &self.exchanges {
             right.swap_rows(k, pivot);
         }
         let lower = self.matrix.solve_lower_triangular_with_diag_mut(right, 1.0);
         let upper = self.matrix.solve_upper_triangular_mut(right);
-        if lower && upper && right.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Singular) }
+        if lower && upper && right.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(SingularMatrix) }
     }
 
     /// Lower estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, seldom too small by more than a factor of three (Hager 1984;
     /// Higham, "Accuracy and Stability of Numerical Algorithms", algorithm 15.1).
     ///
     /// The matrix is symmetric, so systems with its transpose need no solver of their own.
-    pub(super) fn condition(&self) -> Result<f64, Singular> {
+    pub(super) fn condition(&self) -> Result<f64, SingularMatrix> {
         let n = self.matrix.nrows();
         let mut x = DVector::from_element(n, 1.0 / n as f64);
         let mut estimate = 0.0;
@@ -139,7 +139,7 @@ fn subtract(target: &mut [f64], [a, b, c, d]: [&[f64]; 4], [p, q, r, s]: &[f64; 
 
 #[cfg(test)]
 mod tests {
-    use super::{Decomposition, PANEL, Singular};
+    use super::{Decomposition, PANEL, SingularMatrix};
     use crate::slices::complete;
     use nalgebra::{DMatrix, DVector};
     use rand_core::Rng;
@@ -151,7 +151,7 @@ mod tests {
         &entries + entries.transpose()
     }
 
-    fn decomposed(matrix: &DMatrix<f64>) -> Result<Decomposition, Singular> {
+    fn decomposed(matrix: &DMatrix<f64>) -> Result<Decomposition, SingularMatrix> {
         complete(Decomposition::new(matrix.clone(), |_| {}))
     }
 

@@ -35,7 +35,7 @@ pub(super) struct OneRings {
 }
 
 /// Buffers that are reused from leaf to leaf.
-struct Scratch {
+struct RingBuffers {
     cell: VoronoiCell,
     nearby: Nearby,
     keys: Vec<u64>,
@@ -52,7 +52,8 @@ impl OneRings {
             nearest: Vec::with_capacity(n),
         };
         rings.start.push(0);
-        let mut scratch = Scratch { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
+        let mut scratch =
+            RingBuffers { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
         for leaf in sheets.tree.leaves() {
             rings.add_leaf(sheets, field, leaf, &mut scratch);
             pause().await;
@@ -66,7 +67,7 @@ impl OneRings {
         sheets: &Sheets,
         field: &mut dyn Field,
         Leaf { range, lo, hi }: Leaf,
-        Scratch { cell, nearby, keys }: &mut Scratch,
+        RingBuffers { cell, nearby, keys }: &mut RingBuffers,
     ) {
         let Sheets { tree, normal, .. } = *sheets;
         let reach = BALL * (hi - lo).length();

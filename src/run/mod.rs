@@ -174,7 +174,7 @@ impl<F: Field> Run<F> {
         self.last = None;
         self.measuring = Measuring::default();
         self.meshing = Meshing::default();
-        let sampler::Start { radius, predicted_count, area } = start;
+        let sampler::Forecast { radius, predicted_count, area } = start;
         let warnings = self.known_at_start(predicted_count, settings.max_particles);
         self.start = Start { radius, predicted_count, area, warnings };
         Ok(self.start.clone())

@@ -25,7 +25,7 @@ mod sizing;
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
-pub use progress::{Counts, Progress, Start};
+pub use progress::{Counts, Forecast, Progress};
 pub use refine::{Refusal, Spot};
 pub use settings::{COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode};
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
@@ -47,7 +47,7 @@ use phase::PhaseState;
 use probe::{Probe, ProbeMemory};
 use refine::CoarseFronts;
 use relaxation::Relaxation;
-use run::Input;
+use run::RunInput;
 use sizing::Sizing;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a front, and most of what its
@@ -227,7 +227,7 @@ impl Sampler {
         field: &mut dyn Field,
         bounds: &Bounds,
         settings: &Settings,
-    ) -> Result<Start, SettingsError> {
+    ) -> Result<Forecast, SettingsError> {
         self.begin(field, bounds, settings, false)
     }
 
@@ -240,7 +240,7 @@ impl Sampler {
         &mut self,
         field: &mut dyn Field,
         settings: &Settings,
-    ) -> Result<Start, SettingsError> {
+    ) -> Result<Forecast, SettingsError> {
         let bounds = self.bounds;
         // A survey that has found nothing by itself is made again: what it was given since depends on the run.
         let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
@@ -253,7 +253,7 @@ impl Sampler {
         bounds: &Bounds,
         settings: &Settings,
         is_known: bool,
-    ) -> Result<Start, SettingsError> {
+    ) -> Result<Forecast, SettingsError> {
         settings.validate()?;
         if !bounds.is_valid() {
             return Err(SettingsError::Box);
@@ -287,12 +287,12 @@ impl Sampler {
             self.settings.max_particles = settings.max_particles.max(room);
         }
         if !self.has_room_for(Attempt::reserved(predicted, &self.settings)) {
-            self.next(Input::Refuse);
+            self.next(RunInput::Refuse);
             return Err(SettingsError::Memory { particles: predicted as u64 });
         }
-        self.next(Input::Start);
+        self.next(RunInput::Start);
         let (radius, area) = (self.attempt.radius, self.survey.area);
-        Ok(Start { radius, predicted_count: predicted as u64, area })
+        Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
 
     /// Surveys the field, unless it `is_known`. Where the survey finds no point, the search is carried to its end at once: the
@@ -352,14 +352,14 @@ impl Sampler {
 
     /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
     pub fn relax(&mut self, steps: u32) {
-        self.next(Input::Relax(steps));
+        self.next(RunInput::Relax(steps));
     }
 
     /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its
     /// budget is 0.
     pub fn cancel(&mut self) {
         self.output.inside = None;
-        self.next(Input::Cancel);
+        self.next(RunInput::Cancel);
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step.
@@ -370,10 +370,10 @@ impl Sampler {
         let mut left = budget;
         let first = self.phase.name();
         while self.is_under_way() && left > 0 && (self.phase.name() == first || !self.is_turning()) {
-            self.next(Input::Work { field, left: &mut left });
+            self.next(RunInput::Work { field, left: &mut left });
         }
         if matches!(self.phase, PhaseState::Marking(_)) {
-            self.next(Input::Work { field, left: &mut left });
+            self.next(RunInput::Work { field, left: &mut left });
         }
         // The refinement makes its particles anew.
         self.output.particles.origin = field.origin();

@@ -12,7 +12,7 @@ const RELAXATION_STEP_COST: f64 = 0.25;
 
 /// What [`Sampler::start`] found out.
 #[derive(Clone, Copy, Debug)]
-pub struct Start {
+pub struct Forecast {
     /// Repulsion radius of the run.
     pub radius: f64,
     /// Particles to expect.

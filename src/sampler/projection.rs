@@ -7,8 +7,8 @@ use crate::math::sort_few;
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
 
-/// Largest number of Newton steps on a circle; a good guess takes two evaluations.
-const MAX_NEWTON_STEPS: u32 = 12;
+/// Largest number of evaluations of Newton's method, on a circle or along the gradient, from a good guess, which takes two.
+pub(crate) const MAX_NEWTON_STEPS: u32 = 12;
 
 /// Largest number of steps of the bracketed search, over all brackets of a circle.
 const MAX_BRACKET_STEPS: u32 = 38;

@@ -4,14 +4,13 @@ use super::Sampler;
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::discovery::audit::holds_any;
-use crate::sampler::discovery::search::Cover;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, Next, Refusal, SurfaceFacts};
-use crate::sampler::relaxation::{Limits, RepulsionLaw};
+use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
 use rand_core::{Rng, SeedableRng};
@@ -26,7 +25,7 @@ const RELAXATION_SLICE: u32 = 16_384;
 const MOST_LONE_SEEDS: usize = 256;
 
 /// The events that change the state.
-pub(super) enum Input<'a> {
+pub(super) enum RunInput<'a> {
     /// A run starts: its field has been surveyed and its radius is known.
     Start,
     /// There is no memory for the run.
@@ -41,18 +40,18 @@ pub(super) enum Input<'a> {
 
 impl Sampler {
     /// Makes the transition that the input asks for: the only place where the phase changes.
-    pub(super) fn next(&mut self, input: Input) {
+    pub(super) fn next(&mut self, input: RunInput) {
         let phase = core::mem::replace(&mut self.phase, PhaseState::Idle);
         self.phase = match input {
-            Input::Start => self.begin_attempt(),
-            Input::Refuse => PhaseState::Idle,
-            Input::Relax(steps) => match phase {
+            RunInput::Start => self.begin_attempt(),
+            RunInput::Refuse => PhaseState::Idle,
+            RunInput::Relax(steps) => match phase {
                 PhaseState::Marking(_) | PhaseState::Done(_) if self.output.particles.len() > 1 => {
                     self.relax_again(steps)
                 }
                 _ => phase,
             },
-            Input::Cancel => match phase {
+            RunInput::Cancel => match phase {
                 PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_) => phase,
                 PhaseState::Seeding(_)
                 | PhaseState::Generation(_)
@@ -77,7 +76,7 @@ impl Sampler {
                     PhaseState::Marking(StopReason::Cancelled)
                 }
             },
-            Input::Work { field, left } => {
+            RunInput::Work { field, left } => {
                 let mut memory = core::mem::take(&mut self.tools.memory);
                 let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
                 self.tools.memory = memory;
@@ -276,15 +275,13 @@ impl Sampler {
                 return self.begin_filling(probe);
             };
             let rule = self.tools.front.active().rule();
-            let mut near = self.components.take_near();
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
-            self.tools.front.active_mut().list_cover(&self.output.particles, point, &mut near);
+            let near = self.tools.front.active_mut().list_cover(&self.output.particles, point);
             let start = probe.evaluations();
-            let cover = self.components.cover(probe, &self.output.particles, seed, near, tolerance, rule);
+            let is_covered =
+                self.components.is_covered(probe, &self.output.particles, seed, &near, tolerance, rule);
             self.counts.seeding_evaluations += probe.evaluations() - start;
-            if cover == Cover::Bare
-                && let Some(next) = self.begin_front(probe, point, None)
-            {
+            if !is_covered && let Some(next) = self.begin_front(probe, point, None) {
                 return next;
             }
         }
@@ -451,7 +448,7 @@ impl Sampler {
         };
         let steps = self.settings.relax_steps;
         let limits =
-            Limits { bounds: self.bounds, largest_lift: self.tools.front.active().rule().largest_lift() };
+            MoveLimits { bounds: self.bounds, largest_lift: self.tools.front.active().rule().largest_lift() };
         self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
         PhaseState::Relaxation
     }

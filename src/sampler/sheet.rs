@@ -73,19 +73,16 @@ impl Pair {
 /// the distance of two neighbours is not resolved by its particles.
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
-/// Slack of [`is_level`] for particles of one size, as a share of their match radius: nearer than half of it two particles are
-/// taken for one whatever the direction between them.
-pub(crate) const UNIFORM_SLACK: f32 = 0.5;
+/// Square of half the match radius: nearer than that two particles are taken for one whatever the direction between them.
+pub(crate) fn level_slack_sq(match_radius: f32) -> f32 {
+    (0.5 * match_radius) * (0.5 * match_radius)
+}
 
-/// Slack of [`is_level`] for particles of many sizes, as a share of r_i + r_j: [`UNIFORM_SLACK`] times the usual match tolerance
-/// of 0.7.
-pub(crate) const ADAPTIVE_SLACK: f32 = 0.35;
-
-/// Whether two points that are `distance_sq` apart face the same way, and the second rises from the tangent plane at the first
-/// by no more than 45°. Below the distance whose square is `slack_sq` the direction between the two tells nothing.
-pub(crate) fn is_level(pair: Pair, distance_sq: f32, slack_sq: f32) -> bool {
+/// Whether two particles that are `distance_sq` apart face the same way, and the second rises from the tangent plane at the first
+/// by no more than 45°, or is too near for that to tell.
+pub(crate) fn is_level(pair: Pair, distance_sq: f32, match_radius: f32) -> bool {
     let rise = pair.offset.dot(pair.normal);
-    pair.faces_one_way() && rise * rise <= MAX_RISE_SQ * (distance_sq + slack_sq)
+    pair.faces_one_way() && rise * rise <= MAX_RISE_SQ * (distance_sq + level_slack_sq(match_radius))
 }
 
 /// Returns the weight of the repulsion of two particles whose unit normals have this cosine: 1 up to 60°, where they are

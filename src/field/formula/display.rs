@@ -5,7 +5,7 @@ use crate::math::shortest_text;
 
 /// Precedence, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(super) enum Precedence {
     Sum,
     /// A leading sign, with the precedence of a product whose first factor it may belong to.
     Sign,
@@ -14,14 +14,14 @@ pub(super) enum Level {
     Atom,
 }
 
-pub(super) fn level(kind: &Kind) -> Level {
+pub(super) fn level(kind: &Kind) -> Precedence {
     match kind {
-        Kind::Sum(_) => Level::Sum,
-        Kind::Negated(_) => Level::Sign,
-        Kind::Product(_) => Level::Product,
-        Kind::Power(_, _) => Level::Power,
+        Kind::Sum(_) => Precedence::Sum,
+        Kind::Negated(_) => Precedence::Sign,
+        Kind::Product(_) => Precedence::Product,
+        Kind::Power(_, _) => Precedence::Power,
         Kind::Number(_) | Kind::Constant(_) | Kind::Coordinate(_) | Kind::Parameter(_) | Kind::Call(_, _) => {
-            Level::Atom
+            Precedence::Atom
         }
     }
 }
@@ -44,7 +44,7 @@ pub(super) fn plain_equation(equation: &Equation) -> String {
 }
 
 /// Writes `expr`, in brackets if its precedence is below `least`.
-fn write_at(out: &mut String, expr: &Expr, least: Level) {
+fn write_at(out: &mut String, expr: &Expr, least: Precedence) {
     if level(&expr.kind) < least {
         out.push('(');
         write(out, expr);
@@ -62,7 +62,7 @@ fn write(out: &mut String, expr: &Expr) {
         Kind::Parameter(name) => out.push_str(name),
         Kind::Negated(inner) => {
             out.push('-');
-            write_at(out, inner, Level::Sign);
+            write_at(out, inner, Precedence::Sign);
         }
         Kind::Sum(terms) => {
             for (index, (sign, term)) in terms.iter().enumerate() {
@@ -71,7 +71,7 @@ fn write(out: &mut String, expr: &Expr) {
                     (_, Sign::Plus) => out.push_str(" + "),
                     (_, Sign::Minus) => out.push_str(" - "),
                 }
-                write_at(out, term, Level::Sign);
+                write_at(out, term, Precedence::Sign);
             }
         }
         Kind::Product(factors) => {
@@ -81,18 +81,18 @@ fn write(out: &mut String, expr: &Expr) {
                     (_, Factor::Times) => out.push('*'),
                     (_, Factor::Over) => out.push('/'),
                 }
-                write_at(out, factor, Level::Power);
+                write_at(out, factor, Precedence::Power);
             }
         }
         Kind::Power(base, exponent) => {
-            write_at(out, base, Level::Atom);
+            write_at(out, base, Precedence::Atom);
             out.push('^');
             let mut exponent = &**exponent;
             while let Kind::Negated(inner) = &exponent.kind {
                 out.push('-');
                 exponent = inner;
             }
-            write_at(out, exponent, Level::Power);
+            write_at(out, exponent, Precedence::Power);
         }
         Kind::Call(function, arguments) => {
             out.push_str(function.name());

@@ -18,7 +18,7 @@ const FILE_BYTES: usize = 16 * 1024;
 
 /// Register file for a block of points, which grows as needed and is reused.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct RegisterFile {
     file: Vec<Lanes>,
 }
 
@@ -46,7 +46,7 @@ impl Outputs<'_> {
 }
 
 /// Evaluates `program` at `points` and passes the results to `sink`, block by block.
-pub(super) fn run(program: &Program, scratch: &mut Scratch, points: &[Vec3], sink: &mut impl Sink) {
+pub(super) fn run(program: &Program, scratch: &mut RegisterFile, points: &[Vec3], sink: &mut impl Sink) {
     let bytes_per_group = size_of::<Lanes>() * program.registers.max(1);
     let stride = (FILE_BYTES / bytes_per_group).clamp(1, BLOCK);
     let needed = stride * program.registers;

@@ -1,7 +1,7 @@
 //! Presentation MathML of a formula, with fractions, roots, powers and Greek letters.
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
-use super::display::{Level, level};
+use super::display::{Precedence, level};
 use crate::math::shortest_text;
 use serde::Serialize;
 
@@ -103,7 +103,7 @@ fn bracketed(inner: MathNode) -> MathNode {
 }
 
 /// `expr` as one element, in brackets if its precedence is below `least`.
-fn at(expr: &Expr, least: Level) -> MathNode {
+fn at(expr: &Expr, least: Precedence) -> MathNode {
     if level(&expr.kind) < least { bracketed(expression(expr)) } else { expression(expr) }
 }
 
@@ -114,7 +114,7 @@ fn expression(expr: &Expr) -> MathNode {
         Kind::Constant(constant) => mi(constant_letter(*constant)),
         Kind::Coordinate(axis) => mi(COORDINATES[usize::from(*axis)]),
         Kind::Parameter(name) => parameter(name),
-        Kind::Negated(inner) => row([mo("−"), at(inner, Level::Product)]),
+        Kind::Negated(inner) => row([mo("−"), at(inner, Precedence::Product)]),
         Kind::Sum(terms) => sum(terms),
         Kind::Product(factors) => product(factors),
         Kind::Power(base, exponent) => power(base, exponent),
@@ -138,7 +138,7 @@ fn sum(terms: &[(Sign, Expr)]) -> MathNode {
         if index > 0 {
             out.push(mo(if *sign == Sign::Plus { "+" } else { "−" }));
         }
-        out.push(at(term, if index == 0 { Level::Sign } else { Level::Product }));
+        out.push(at(term, if index == 0 { Precedence::Sign } else { Precedence::Product }));
     }
     row(out)
 }
@@ -165,7 +165,7 @@ fn side_by_side(factors: &[(Factor, Expr)], before: Option<MathNode>) -> Vec<Mat
         if !out.is_empty() {
             out.push(mo(if starts_with_digit(factor) { "⋅" } else { INVISIBLE_TIMES }));
         }
-        out.push(at(factor, Level::Product));
+        out.push(at(factor, Precedence::Product));
     }
     out
 }
@@ -180,7 +180,8 @@ fn power(base: &Expr, exponent: &Expr) -> MathNode {
     }
     let exponential = matches!(base.kind, Kind::Call(Function::Exp | Function::Log10, _));
     let long_number = matches!(base.kind, Kind::Number(value) if shortest_text(value).contains('e'));
-    let base = if exponential || long_number { bracketed(expression(base)) } else { at(base, Level::Atom) };
+    let base =
+        if exponential || long_number { bracketed(expression(base)) } else { at(base, Precedence::Atom) };
     msup(base, expression(exponent))
 }
 
@@ -193,7 +194,7 @@ fn call(function: Function, inputs: &[Expr]) -> MathNode {
         Function::Floor => fenced(["⌊", "⌋"], first()),
         Function::Exp => msup(mi(constant_letter(Constant::E)), first()),
         Function::Hypot => {
-            let squares = inputs.iter().map(|input| msup(at(input, Level::Atom), mn("2")));
+            let squares = inputs.iter().map(|input| msup(at(input, Precedence::Atom), mn("2")));
             group(MathGroup::Msqrt, separated(squares, "+"))
         }
         _ => {

@@ -137,7 +137,7 @@ pub struct Formula {
     /// Values of `parameters`, as the compiled formula takes them.
     values: Vec<f64>,
     compiled: Compiled,
-    scratch: eval::Scratch,
+    scratch: eval::RegisterFile,
     jets: scalar::JetScratch,
     /// Scratch memory for the values of the nodes in double precision.
     doubles: Vec<f64>,
@@ -199,7 +199,7 @@ impl Formula {
             compiled: Compiled::new(&parsed.equation, &parameters)?,
             equation: parsed.equation,
             parameters,
-            scratch: eval::Scratch::default(),
+            scratch: eval::RegisterFile::default(),
             jets: Vec::new(),
             doubles: Vec::new(),
             double: None,

@@ -10,12 +10,12 @@ const GRID: f64 = 1.0 / 16.0;
 /// The box of the centres is centred at the origin up to a sixteenth, and its longest side is between one and two. s is
 /// a power of two and o is representable in single precision, so the transformation loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct CentredFrame {
     origin: DVec3,
     scale: f64,
 }
 
-impl Frame {
+impl CentredFrame {
     /// Frame of `points`, which must be finite.
     #[must_use]
     pub fn of(points: impl Iterator<Item = DVec3>) -> Self {

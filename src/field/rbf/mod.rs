@@ -12,7 +12,7 @@ mod taylor;
 mod tree;
 
 pub use data::{DataError, RbfData};
-pub use frame::Frame;
+pub use frame::CentredFrame;
 
 use super::{Field, Jet};
 use crate::math::Sym3;

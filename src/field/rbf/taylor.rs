@@ -47,11 +47,11 @@ pub(super) struct Taylor {
     /// For each row of [`Rows`] the indices of its coefficients; [`MORE_TERMS`] beyond the degree.
     rows: Vec<[usize; LANES]>,
     /// Buffer for the coefficients of a group of centres.
-    group: Vec<Group>,
+    group: Vec<CentreGroup>,
 }
 
 /// One number for each of the centres that are expanded together.
-type Group = [f64; TOGETHER];
+type CentreGroup = [f64; TOGETHER];
 /// Length of that buffer: as many entries as a byte can index.
 const PLACES: usize = 256;
 
@@ -111,12 +111,12 @@ impl Taylor {
         &mut self,
         polynomial: &mut Polynomial,
         offset: &[DVec3; TOGETHER],
-        alpha: &Group,
+        alpha: &CentreGroup,
         beta: &[DVec3; TOGETHER],
     ) {
-        let d: [Group; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
-        let beta: [Group; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
-        let inverse: Group = offset.map(|d| 1.0 / d.length_squared());
+        let d: [CentreGroup; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
+        let beta: [CentreGroup; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
+        let inverse: CentreGroup = offset.map(|d| 1.0 / d.length_squared());
         let Some(powers) = self.group.first_chunk_mut::<PLACES>() else {
             unreachable!("the group has its places");
         };
@@ -164,7 +164,7 @@ impl Taylor {
 /// Computes the coefficients of |d + t|³ by the recurrence; the first one is given.
 // Not inlined, as `collect`, for the SIMD registers: inlined, the two take 20 % more instructions.
 #[inline(never)]
-fn recur(a: &mut [Group; PLACES], terms: &[Term], d: &[Group; 3], inverse: &Group) {
+fn recur(a: &mut [CentreGroup; PLACES], terms: &[Term], d: &[CentreGroup; 3], inverse: &CentreGroup) {
     for degree in 1..=DEGREE + 1 {
         let m = degree as f64;
         let [one, two] = [(5.0 - 2.0 * m) / m, (5.0 - m) / m].map(|factor| inverse.map(|i| factor * i));
@@ -172,8 +172,9 @@ fn recur(a: &mut [Group; PLACES], terms: &[Term], d: &[Group; 3], inverse: &Grou
         for (n, term) in range.clone().zip(&terms[range]) {
             let [x, y, z] = term.less.map(|n| &a[usize::from(n)]);
             let [xx, yy, zz] = term.less_two.map(|n| &a[usize::from(n)]);
-            let along: Group = core::array::from_fn(|k| d[0][k] * x[k] + d[1][k] * y[k] + d[2][k] * z[k]);
-            let around: Group = core::array::from_fn(|k| xx[k] + yy[k] + zz[k]);
+            let along: CentreGroup =
+                core::array::from_fn(|k| d[0][k] * x[k] + d[1][k] * y[k] + d[2][k] * z[k]);
+            let around: CentreGroup = core::array::from_fn(|k| xx[k] + yy[k] + zz[k]);
             a[n] = core::array::from_fn(|k| one[k] * along[k] + two[k] * around[k]);
         }
     }
@@ -184,19 +185,20 @@ fn recur(a: &mut [Group; PLACES], terms: &[Term], d: &[Group; 3], inverse: &Grou
 #[inline(never)]
 fn collect(
     polynomial: &mut Polynomial,
-    a: &[Group; PLACES],
+    a: &[CentreGroup; PLACES],
     terms: &[Term],
-    alpha: &Group,
-    beta: &[Group; 3],
+    alpha: &CentreGroup,
+    beta: &[CentreGroup; 3],
 ) {
     // This is β along each axis times the power that a derivative brings down.
-    let weighed =
-        beta.map(|b| -> [Group; POWERS] { core::array::from_fn(|power| b.map(|b| b * (power + 1) as f64)) });
+    let weighed = beta.map(|b| -> [CentreGroup; POWERS] {
+        core::array::from_fn(|power| b.map(|b| b * (power + 1) as f64))
+    });
     for (sum, (a_n, term)) in polynomial.iter_mut().zip(a.iter().zip(terms)) {
         let [x, y, z] = term.more.map(|n| &a[usize::from(n)]);
         let [p, q, r] = [0, 1, 2].map(|axis| &weighed[axis][term.powers[axis]]);
-        let slope: Group = core::array::from_fn(|k| p[k] * x[k] + q[k] * y[k] + r[k] * z[k]);
-        let [e, f, g, h, i, j, k, l]: Group = core::array::from_fn(|k| alpha[k] * a_n[k] + slope[k]);
+        let slope: CentreGroup = core::array::from_fn(|k| p[k] * x[k] + q[k] * y[k] + r[k] * z[k]);
+        let [e, f, g, h, i, j, k, l]: CentreGroup = core::array::from_fn(|k| alpha[k] * a_n[k] + slope[k]);
         *sum += ((e + i) + (g + k)) + ((f + j) + (h + l));
     }
 }

@@ -11,7 +11,7 @@
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use super::data::RbfData;
-use super::frame::Frame;
+use super::frame::CentredFrame;
 use super::kernel::{self, LocalPoint, LocalPoints, Near};
 use super::taylor::{Polynomial, TERMS, Taylor};
 use crate::math::{LANES, Lanes, Sym3};
@@ -83,7 +83,7 @@ pub(super) struct Tree {
 
 impl Tree {
     pub(super) fn new(data: &RbfData) -> Self {
-        let frame = Frame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
+        let frame = CentredFrame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
         // With g the function in local coordinates, f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
         let centres: Vec<Centre> = (0..data.centres.len())

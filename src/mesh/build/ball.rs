@@ -18,7 +18,7 @@ pub(super) const MAX_LIFT: f32 = 0.35;
 
 /// The points of a tree in a box.
 #[derive(Default)]
-pub(super) struct Surroundings {
+pub(super) struct BallPoints {
     index: Vec<u32>,
     /// Positions, by coordinate; the last ones are infinitely far away.
     place: Vec<[[f32; LANES]; 3]>,
@@ -26,7 +26,7 @@ pub(super) struct Surroundings {
     point: Vec<[f32; 6]>,
 }
 
-impl Surroundings {
+impl BallPoints {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(super) fn gather(&mut self, tree: &Tree, normal: &[Vec3], lo: Vec3, hi: Vec3) {
         self.index.clear();
@@ -86,13 +86,13 @@ impl Ball {
     /// Holds the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`; whether there is room for all.
     pub(super) fn take(
         &mut self,
-        surroundings: &Surroundings,
+        surroundings: &BallPoints,
         centre: Vec3,
         bound_sq: f32,
         except: u32,
     ) -> bool {
         self.count = 0;
-        let Surroundings { index, place, point } = surroundings;
+        let BallPoints { index, place, point } = surroundings;
         let mut hits = [0_u32; MOST + LANES];
         let mut count = 0;
         let bound_sq = Vec4::splat(bound_sq);

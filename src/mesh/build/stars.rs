@@ -4,7 +4,7 @@
 //! neighbours in the Delaunay triangulation there are found one after the other, from the nearest one on: the next
 //! neighbour is the point to the left whose circle through the centre and the last neighbour is the smallest on that side.
 
-use super::ball::{Ball, Surroundings};
+use super::ball::{Ball, BallPoints};
 use crate::math::sort_few;
 use crate::slices::pause;
 use crate::spatial::tree::{Leaf, Tree};
@@ -38,8 +38,8 @@ pub(super) struct Stars {
 
 /// What is used again from leaf to leaf.
 #[derive(Default)]
-struct Scratch {
-    surroundings: Surroundings,
+struct StarBuffers {
+    surroundings: BallPoints,
     ball: Ball,
     star: Star,
 }
@@ -69,7 +69,7 @@ impl Stars {
             twins: Vec::new(),
         };
         stars.start.push(0);
-        let mut scratch = Box::<Scratch>::default();
+        let mut scratch = Box::<StarBuffers>::default();
         let mut pause_at = SLICE;
         for Leaf { range, lo, hi } in tree.leaves() {
             if range.start >= pause_at {
@@ -97,8 +97,8 @@ impl Stars {
     }
 
     /// Adds the star of point `i`, of a leaf whose surroundings reach as far as told.
-    fn add(&mut self, tree: &Tree, normal: &[Vec3], i: usize, reach: f32, scratch: &mut Scratch) {
-        let Scratch { surroundings, ball, star } = scratch;
+    fn add(&mut self, tree: &Tree, normal: &[Vec3], i: usize, reach: f32, scratch: &mut StarBuffers) {
+        let StarBuffers { surroundings, ball, star } = scratch;
         let reach_sq = reach * reach;
         let has_all = ball.take(surroundings, tree.position[i], reach_sq, i as u32);
         let mut known_sq = if has_all { reach_sq } else { 0.0 };

@@ -9,7 +9,9 @@ use crate::math::{Bounds, Interval, Sym3, sort_few};
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
 use crate::sampler::discovery::octree::{Region, Seed};
-use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER, value_at};
+use crate::sampler::discovery::sheets::{
+    ExactPoint, MOST_TRIED_BY_SEGMENTS, Prover, Segment, TOGETHER, value_at,
+};
 use crate::sampler::probe::Probe;
 use crate::sampler::sheet::{Pair, SheetRule};
 use crate::spatial::tree::Tree;
@@ -19,8 +21,6 @@ use glam::DVec3;
 const REACH: f32 = 2.5;
 /// Largest number of particles around a witness that are looked at: a few of each of several sheets.
 const MOST_NEAR: usize = 30;
-/// Largest number of particles, and of named witnesses, with which a connection through a chain of segments is tried.
-const MOST_TRIED_BY_SEGMENTS: usize = 3;
 /// Particles that are handed to the witnesses around them, for one unit of work.
 const SCANNED: usize = 8;
 /// Units of work that a witness counts for.
@@ -31,8 +31,9 @@ pub(crate) const MOST_NAMED: usize = 256;
 const MOST_FAILED: u64 = 512;
 /// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0.
 const ROUNDING: f64 = 1e-12;
-/// Distance, in radii, to which a component without a particle is followed.
-const FOLLOWED: f64 = 4.0;
+/// Distance, in radii, to which a component without a particle is followed. A larger one has room for a child: its edge is 2r from
+/// the first particle, and as much again from the next.
+pub(super) const FOLLOWED: f64 = 4.0;
 
 /// A particle near a witness.
 #[derive(Clone, Copy, Debug)]

@@ -32,7 +32,7 @@ pub(super) struct Crossing {
 
 /// The result of an evaluation of f at the bottom of a dip.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Look {
+pub(super) enum Bottom {
     /// f has the other sign there than at the ends, and vanishes on both sides of the bottom.
     Crossed([Crossing; 2]),
     /// f has the sign of the ends, but the part of the edge on one side of it may dip deeper.
@@ -66,16 +66,16 @@ impl Dip {
     }
 
     /// Takes the value and the gradient of f at the bottom, and returns the crossings, or the part of the edge to look at next.
-    pub(super) fn look(&self, value: f32, gradient: Vec3) -> Look {
+    pub(super) fn look(&self, value: f32, gradient: Vec3) -> Bottom {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;
         if !value.is_finite() || (from.value < 0.0) == (value < 0.0) {
             let part =
                 Self::along(self.axis, [from, bottom]).or_else(|| Self::along(self.axis, [bottom, to]));
-            return Look::SameSign(part);
+            return Bottom::SameSign(part);
         }
         // From the bottom to each end f is taken for a parabola whose vertex is there.
-        Look::Crossed(self.ends.map(|end| {
+        Bottom::Crossed(self.ends.map(|end| {
             let share = (value / (value - end.value)).sqrt();
             Crossing {
                 place: bottom.place.lerp(end.place, share),
@@ -103,7 +103,7 @@ mod tests {
                 let dip = Dip::along(0, edge(f, slope)).expect("a parabola has a bottom");
                 let x = dip.bottom().x;
                 assert!((x - 0.5 * (first + second)).abs() < 1e-5, "{first}, {second}: {x}");
-                let Look::Crossed(found) = dip.look(f(x), Vec3::new(slope(x), 0.5, 0.0)) else {
+                let Bottom::Crossed(found) = dip.look(f(x), Vec3::new(slope(x), 0.5, 0.0)) else {
                     panic!("{first}, {second}: {x}")
                 };
                 for (crossing, zero) in found.into_iter().zip([first, second]) {
@@ -124,8 +124,8 @@ mod tests {
         let slope = |x: f32| 2.0 * (1.0 + x) * (2.0 * (1.0 + x) * (1.0 + x) - 3.382);
         let look = |dip: Dip| dip.look(f(dip.bottom().x), Vec3::X * slope(dip.bottom().x));
         let dip = Dip::along(0, edge(f, slope)).expect("the cubic has a bottom");
-        let Look::SameSign(Some(part)) = look(dip) else { panic!("{dip:?}") };
-        let Look::Crossed(places) = look(part) else { panic!("{part:?}") };
+        let Bottom::SameSign(Some(part)) = look(dip) else { panic!("{dip:?}") };
+        let Bottom::Crossed(places) = look(part) else { panic!("{part:?}") };
         let [first, second] = places.map(|crossing| crossing.place.x);
         assert!((first - 0.3).abs() < 3e-4 && (second - 0.300_769).abs() < 3e-4, "{first}, {second}");
     }
@@ -136,7 +136,7 @@ mod tests {
         let f = |x: f32| (x - 0.5) * (x - 0.5);
         let dip = Dip::along(0, edge(f, |x| 2.0 * (x - 0.5))).expect("it comes near zero");
         for value in [f(dip.bottom().x), f32::NAN] {
-            assert!(matches!(dip.look(value, Vec3::Y), Look::SameSign(None)), "{value}");
+            assert!(matches!(dip.look(value, Vec3::Y), Bottom::SameSign(None)), "{value}");
         }
         // It stays far from zero, falls to one end, differs in sign, or has no value at one end.
         assert!(Dip::along(0, edge(|x| 1.0 + (x - 0.5) * (x - 0.5), |x| 2.0 * (x - 0.5))).is_none());

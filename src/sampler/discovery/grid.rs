@@ -44,12 +44,12 @@ impl Grid {
 }
 
 /// The nodes of the grid that have one third coordinate.
-pub(super) struct Layer {
+pub(super) struct GridLayer {
     pub(super) value: Vec<f32>,
     gradient: Vec<Vec3>,
 }
 
-impl Layer {
+impl GridLayer {
     pub(super) fn new(grid: &Grid) -> Self {
         Self { value: vec![f32::NAN; grid.layer()], gradient: vec![Vec3::ZERO; grid.layer()] }
     }

@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Rounds of narrowing.
 const ROUNDS: u32 = 2;
 /// Bound of the rounding error of one step, relative to its operands.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
 fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval> {

@@ -5,25 +5,19 @@ use crate::field::descent::Descent;
 use crate::field::{Bounded, Field};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::sampler::discovery::audit::{Audit, Audited, follow};
+use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, follow};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
-use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
+use crate::sampler::discovery::sheets::{ExactPoint, MOST_TRIED_BY_SEGMENTS, Prover, Segment, TOGETHER};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::Tolerance;
+use crate::sampler::projection::{MAX_NEWTON_STEPS, Tolerance};
 use crate::sampler::sheet::{Pair, SheetRule};
 use glam::{DVec3, Vec3};
 
 /// Units of work that a witness counts for.
 const UNITS: u32 = 16;
-/// Largest number of particles with which a connection is tried.
-const MOST_TRIED: usize = 6;
-/// Largest number of particles with which a connection through a chain of segments is tried.
-const MOST_TRIED_BY_SEGMENTS: usize = 2;
-/// Largest number of evaluations in the projection of a witness onto the surface as single precision computes it.
-const MAX_STEPS: u32 = 12;
 
 /// The search, its witnesses and what became of them.
 #[derive(Clone, Debug, Default)]
@@ -40,17 +34,6 @@ pub(crate) struct ComponentSearch {
     first_lost: DVec3,
     /// The nearest sheet beside a witness, if it is nearer than particles tell apart.
     unresolved: Option<Nearness>,
-    /// Scratch: particles near a witness.
-    near: Vec<u32>,
-}
-
-/// Whether a witness needs a front of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cover {
-    /// It lies on a component that has particles near it.
-    Covered,
-    /// A front has to start there.
-    Bare,
 }
 
 impl ComponentSearch {
@@ -132,7 +115,7 @@ impl ComponentSearch {
                 &mut ok,
                 tolerance.min_gradient,
                 &mut Descent { residual: tolerance.residual, reach, trust: 0.0 },
-                MAX_STEPS,
+                MAX_NEWTON_STEPS,
             );
             for (k, &position) in points.iter().enumerate() {
                 let Witness { position: exact, factor } = starts[k];
@@ -163,29 +146,24 @@ impl ComponentSearch {
         &self.points
     }
 
-    /// Room for the particles near a witness.
-    pub(crate) fn take_near(&mut self) -> Vec<u32> {
-        core::mem::take(&mut self.near)
-    }
-
     /// Whether the witness lies on the component of one of the particles `near` it, the nearest first. By proof; or, where the
     /// bounds are too wide for one, by the field at a point between the two. The [audit](super::audit) asks again.
-    pub(crate) fn cover(
-        &mut self,
+    pub(crate) fn is_covered(
+        &self,
         probe: &mut Probe,
         particles: &Particles,
         seed: Seed,
-        near: Vec<u32>,
+        near: &[u32],
         tolerance: Tolerance,
         rule: SheetRule,
-    ) -> Cover {
+    ) -> bool {
         // Without bounds there is no witness.
-        let Some(field) = probe.field.bounded() else { return Cover::Covered };
+        let Some(field) = probe.field.bounded() else { return true };
         let Seed { position, normal, factor, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let mut prover = Prover { field, factor, slack, region: self.octree.region };
         let from = ExactPoint { position: position.as_dvec3(), normal: normal.as_dvec3() };
-        let tried = near.iter().take(MOST_TRIED);
+        let tried = near.iter().take(TOGETHER);
         let segments: Vec<Segment> =
             tried.map(|&j| Segment { from, to: particles.position[j as usize].as_dvec3() }).collect();
         let is_proven = prover.are_connected(&segments, None).contains(&true)
@@ -193,20 +171,16 @@ impl ComponentSearch {
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
                 .any(|&segment| prover.is_connected_by_segments(segment));
-        let is_covered = is_proven
-            || near.iter().take(MOST_TRIED).any(|&j| {
+        is_proven
+            || near.iter().take(TOGETHER).any(|&j| {
                 let j = j as usize;
                 let offset = particles.position[j] - position;
                 rule.is_one_sheet(probe, position, Pair { offset, normal, other: particles.normal[j] })
-            });
-        self.near = near;
-        if is_covered { Cover::Covered } else { Cover::Bare }
+            })
     }
 
     /// The piece of the surface around the last witness, if it is small and closed in itself.
     pub(crate) fn small_piece(&self, field: &mut dyn Bounded, radius: f32) -> Option<(Seed, f64)> {
-        /// Distance to which the piece is followed, in radii of a particle. Larger pieces have room for a child.
-        const FOLLOWED: f64 = 4.0;
         let seed = *self.points.get(self.next.checked_sub(1)?)?;
         let piece = follow(field, seed.factor, seed.exact, FOLLOWED * f64::from(radius));
         (!piece.goes_on).then_some((seed, piece.reach))

@@ -9,6 +9,8 @@ use glam::DVec3;
 
 /// Segments that are tested in one call: a segment needs three boxes, and a chunk of the field holds 32.
 pub(crate) const TOGETHER: usize = 10;
+/// Largest number of particles, and of named witnesses, with which a connection through a chain of segments is tried.
+pub(super) const MOST_TRIED_BY_SEGMENTS: usize = 3;
 
 /// A point of the surface in double precision, and the unit normal there.
 #[derive(Clone, Copy, Debug)]

@@ -15,6 +15,7 @@
 use crate::field::{Bounded, Enclosure, Field};
 use crate::math::{Bounds, Interval, Sym3};
 use crate::particles::{Particles, Slots};
+use crate::sampler::discovery::interval_newton::ROUNDING;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
@@ -234,8 +235,6 @@ fn extreme_directions(second: &Sym3<f64>) -> Option<[DVec3; 2]> {
 
 /// Bounds of the second derivative along a direction, from bounds of the six second derivatives.
 fn along(second: &Sym3<Interval>, d: DVec3) -> Interval {
-    /// Bound of the relative rounding error of the operations here.
-    const ROUNDING: f64 = 32.0 * f64::EPSILON;
     let factors = [d.x * d.x, 2.0 * d.x * d.y, 2.0 * d.x * d.z, d.y * d.y, 2.0 * d.y * d.z, d.z * d.z];
     let (mut sum, mut size) = (Interval::new(0.0, 0.0), 0.0);
     for (factor, bounds) in factors.into_iter().zip(second.entries()) {

@@ -5,15 +5,13 @@ use crate::field::Field;
 use crate::field::descent::Descent;
 use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
-use crate::sampler::discovery::dips::{Crossing, Dip, End, Look};
-use crate::sampler::discovery::grid::{Dense, Grid, Layer};
+use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
+use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
 use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
+use crate::sampler::projection::{Accuracy, MAX_NEWTON_STEPS, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
-/// Largest number of evaluations in the Newton projection of a candidate.
-const MAX_STEPS: u32 = 12;
 /// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
 /// apart is missed.
 const LOOKS: usize = 3;
@@ -121,8 +119,8 @@ impl Candidates {
         grid: &Grid,
         dense: Option<&Dense>,
         z: usize,
-        lower: &Layer,
-        upper: Option<&Layer>,
+        lower: &GridLayer,
+        upper: Option<&GridLayer>,
     ) {
         let [nx, ny, _] = grid.nodes;
         for j in 0..ny {
@@ -186,12 +184,12 @@ impl Candidates {
                 let (value, gradient) = probe.gradients(&bottoms);
                 for ((dip, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
                     match dip.look(value, gradient) {
-                        Look::Crossed(places) => {
+                        Bottom::Crossed(places) => {
                             for Crossing { place, gradient } in places {
                                 self.cross(grid, dip.axis, place, gradient);
                             }
                         }
-                        Look::SameSign(part) => self.dips.extend(part),
+                        Bottom::SameSign(part) => self.dips.extend(part),
                     }
                 }
             }
@@ -226,7 +224,7 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Surv
     let grid = Grid::over(bounds, is_dense);
     let dense = is_dense.then(|| Dense::new(probe, &grid));
     let mut found = Candidates::new();
-    let [mut lower, mut upper] = [0, 1].map(|_| Layer::new(&grid));
+    let [mut lower, mut upper] = [0, 1].map(|_| GridLayer::new(&grid));
     let layers = grid.nodes[2];
     for k in 0..=layers {
         // The layer above; the last round only closes the layer below.
@@ -275,7 +273,7 @@ fn project(
             &mut ok,
             coarse.min_gradient,
             &mut Descent { residual: coarse.residual, reach: 2.0 * spacing, trust: 0.0 },
-            MAX_STEPS,
+            MAX_NEWTON_STEPS,
         );
         for i in 0..chunk.len() {
             if ok[i] && bounds.contains(chunk[i]) {
@@ -375,8 +373,8 @@ const RESOLUTION_SAMPLES: usize = 48;
 const TOUCH_PROBE: f32 = 0.02;
 /// Number of points at which near sheets are looked for.
 const SAMPLES: usize = 256;
-/// Distance, in resolutions, below which rounding may decide the sign of f.
-const NOISE: f32 = 16.0;
+/// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets are told apart.
+const NOISE: f32 = UNRESOLVED[0] as f32;
 
 /// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
 fn ulps(bounds: &Bounds) -> f32 {
@@ -420,7 +418,7 @@ fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -
 /// Moves the points to where near sheets are told apart, and drops those that find none.
 fn land_anew(probe: &mut Probe, out: &mut Survey) {
     /// Far from several sheets at once each step goes only a part of the way.
-    const STEPS: u32 = 3 * MAX_STEPS;
+    const STEPS: u32 = 3 * MAX_NEWTON_STEPS;
     /// Longest way of a point, in residuals of the survey.
     const REACH: f32 = 8.0;
     let residual = out.accuracy().residual(f32::INFINITY);
@@ -488,7 +486,7 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
         let batch = first..points.len().min(first + BATCH);
         let (normals, ok) = (&mut normals[batch.clone()], &mut ok[batch.clone()]);
         let least = survey.tolerance().min_gradient;
-        probe.land_along_gradient(&mut points[batch], normals, ok, least, &mut { limits }, MAX_STEPS);
+        probe.land_along_gradient(&mut points[batch], normals, ok, least, &mut { limits }, MAX_NEWTON_STEPS);
     }
     for (k, (&p, &n)) in points.iter().zip(&normals).enumerate() {
         if !ok[k] {

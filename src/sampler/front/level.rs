@@ -67,7 +67,7 @@ enum LevelStage {
 
 /// How far a front has come, and its limits.
 #[derive(Clone, Debug)]
-pub(crate) struct Level {
+pub(crate) struct FrontLevel {
     stage: LevelStage,
     /// Next parent of the stage, or next child.
     next: usize,
@@ -82,7 +82,7 @@ pub(crate) struct Level {
     pub(crate) capped: bool,
 }
 
-impl Level {
+impl FrontLevel {
     pub(crate) fn new(bounds: Bounds, max_particles: usize) -> Self {
         Self {
             stage: LevelStage::Place,
@@ -147,10 +147,10 @@ pub(crate) trait LevelFront {
     fn release(&mut self);
 
     /// How far the front has come.
-    fn level(&self) -> &Level;
+    fn level(&self) -> &FrontLevel;
 
     /// How far the front has come, to be changed.
-    fn level_mut(&mut self) -> &mut Level;
+    fn level_mut(&mut self) -> &mut FrontLevel;
 
     /// Number of parents in the level; none if the front has come to its end.
     fn parents(&self) -> usize;
@@ -209,7 +209,7 @@ pub(crate) trait LevelFront {
     /// left.
     fn step(&mut self, context: &mut FrontContext, mut budget: u32) -> u32 {
         while budget > 0 && !self.is_done() {
-            let &Level { stage, next, .. } = self.level();
+            let &FrontLevel { stage, next, .. } = self.level();
             let count = match stage {
                 LevelStage::Place => (self.parents() - next).min(1),
                 LevelStage::Project => (self.children() - next).min(BATCH).min(budget as usize),
@@ -281,12 +281,11 @@ pub(crate) trait LevelFront {
         rule.is_near_own(probe, particles, point, found, spacing)
     }
 
-    /// Writes the particles that [`Self::gather_cover`] finds around a `point` to `near`, the nearest first.
-    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint, near: &mut Vec<u32>) {
+    /// The particles that [`Self::gather_cover`] finds around a `point`, the nearest first.
+    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint) -> Vec<u32> {
         let found = self.gather_cover(particles, point);
         sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
-        near.clear();
-        near.extend(found.iter().map(|found| found.index));
+        found.iter().map(|found| found.index).collect()
     }
 }
 

@@ -14,6 +14,12 @@ use crate::sampler::settings::Sampling;
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
 const UNCOVERED: f32 = 2.0;
 
+/// Largest sine of the angle by which the way to a child is predicted to dip below the tangent plane, or to rise above it. Beyond
+/// it the radius does not resolve the curvature.
+const MAX_DIP: f32 = 0.9;
+
+const SIN_60: f32 = 0.866_025_4;
+
 /// The fronts of both kinds, of which one works. The other one keeps its memory.
 #[derive(Clone)]
 pub(crate) struct Front {

@@ -19,14 +19,14 @@ pub(crate) const OVERLAP_RANGE: f32 = 2.0 * OVERLAP_REACH;
 pub(crate) const OVERLAP_SKIN: f32 = 0.8;
 
 /// Length of the change of a particle's unit normal at which its list becomes stale.
-pub(crate) const MAX_TURN: f32 = 0.1;
+pub(crate) const STALE_TURN: f32 = 0.1;
 
 /// Pairs whose normals have a cosine above this have the weight 1 until one of their lists is stale.
-pub(crate) const FULL_COSINE: f32 = 0.5 + 2.0 * MAX_TURN;
+pub(crate) const FULL_COSINE: f32 = 0.5 + 2.0 * STALE_TURN;
 
 /// Pairs whose normals have a cosine below this have the weight 0 until one of their lists is stale, and are not
 /// listed.
-pub(crate) const LISTED_COSINE: f32 = -0.5 - 2.0 * MAX_TURN;
+pub(crate) const LISTED_COSINE: f32 = -0.5 - 2.0 * STALE_TURN;
 
 /// Side of a grid's cells over the radius of the usual query. Instruction counts hardly change from 1.2 to 2.5; larger
 /// cells fill their blocks better and so take less memory.

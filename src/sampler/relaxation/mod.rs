@@ -46,7 +46,7 @@ const RENEWAL_UNITS: u32 = 10;
 
 /// What a relaxation does next, particle by particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Stage {
+enum RelaxationStage {
     /// Put all particles into the grid.
     FillGrid,
     /// Renew the stale neighbour lists.
@@ -101,7 +101,7 @@ impl RepulsionLaw {
 
 /// What keeps particles where they belong.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
+pub(crate) struct MoveLimits {
     /// The box.
     pub(crate) bounds: Bounds,
     /// Lift of a move above which a particle has left its sheet; infinite where no others are near.
@@ -114,7 +114,7 @@ pub(crate) struct Relaxation {
     law: RepulsionLaw,
     /// Steps to be done in all.
     target: u32,
-    stage: Stage,
+    stage: RelaxationStage,
     purpose: Purpose,
     /// The next particle in this stage.
     next: usize,
@@ -131,7 +131,7 @@ impl Relaxation {
         Self {
             law: RepulsionLaw::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
             target: 0,
-            stage: Stage::Done,
+            stage: RelaxationStage::Done,
             purpose: Purpose::End,
             next: 0,
             debt: 0,
@@ -143,7 +143,7 @@ impl Relaxation {
 
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.stage = Stage::Done;
+        self.stage = RelaxationStage::Done;
         self.stepper.clear();
     }
 
@@ -152,7 +152,7 @@ impl Relaxation {
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
-        limits: Limits,
+        limits: MoveLimits,
         target: u32,
         particles: &Particles,
         pairs: &mut PackedNeighbours,
@@ -181,12 +181,12 @@ impl Relaxation {
         } else {
             pairs.extend_to(particles);
             self.lists.make_all_stale();
-            Stage::FillGrid
+            RelaxationStage::FillGrid
         };
     }
 
     pub(crate) fn is_done(&self) -> bool {
-        self.stage == Stage::Done
+        self.stage == RelaxationStage::Done
     }
 
     pub(crate) fn steps_done(&self) -> u32 {
@@ -201,14 +201,14 @@ impl Relaxation {
     /// Takes back a step that is only half made, and ends. Returns whether positions changed.
     pub(crate) fn abandon(&mut self, particles: &mut Particles) -> bool {
         let moved = match self.stage {
-            Stage::Move => 0..self.next,
-            Stage::TakeBack => self.next..particles.len(),
+            RelaxationStage::Move => 0..self.next,
+            RelaxationStage::TakeBack => self.next..particles.len(),
             _ => 0..0,
         };
         for i in moved.clone() {
             self.stepper.restore(particles, i);
         }
-        self.stage = Stage::Done;
+        self.stage = RelaxationStage::Done;
         !moved.is_empty()
     }
 
@@ -253,29 +253,29 @@ impl Relaxation {
         self.debt -= paid;
         budget -= paid;
         let steps = self.stepper.done();
-        while budget > 0 && self.stage != Stage::Done && self.stepper.done() == steps {
+        while budget > 0 && self.stage != RelaxationStage::Done && self.stepper.done() == steps {
             let (last, units) = self.affordable::<L>(budget, n);
             let range = self.next..last;
             self.debt = units.saturating_sub(budget);
             budget = budget.saturating_sub(units);
             self.next = last;
             match &mut self.stage {
-                Stage::FillGrid => self.fill_grid(law, particles, range),
-                Stage::RenewLists => self.renew_lists(pairs, particles, range),
-                Stage::Grade { has_lowered } => {
+                RelaxationStage::FillGrid => self.fill_grid(law, particles, range),
+                RelaxationStage::RenewLists => self.renew_lists(pairs, particles, range),
+                RelaxationStage::Grade { has_lowered } => {
                     *has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
                 }
-                Stage::SumForces { energy } => {
+                RelaxationStage::SumForces { energy } => {
                     for first in range.step_by(BATCH_PARTICLES) {
                         let few = first..last.min(first + BATCH_PARTICLES);
                         self.stepper.forces.add_near(law, pairs, particles, few, energy);
                     }
                 }
-                Stage::Move | Stage::TakeBack | Stage::Polish => {
+                RelaxationStage::Move | RelaxationStage::TakeBack | RelaxationStage::Polish => {
                     has_moved |= !range.is_empty();
                     self.displace(law, probe, pairs, particles, range);
                 }
-                Stage::Done => {}
+                RelaxationStage::Done => {}
             }
             if last == n {
                 self.next = 0;
@@ -289,8 +289,8 @@ impl Relaxation {
     /// budget.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
         let cost = |i: usize| match self.stage {
-            Stage::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
-            Stage::Polish => L::POLISH_UNITS,
+            RelaxationStage::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
+            RelaxationStage::Polish => L::POLISH_UNITS,
             _ => 1,
         };
         let (mut last, mut units) = (self.next, 0);
@@ -341,8 +341,10 @@ impl Relaxation {
             // short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
             match stage {
-                Stage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
-                Stage::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),
+                RelaxationStage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
+                RelaxationStage::TakeBack => {
+                    stepper.take_back(law, lists, particles, range.clone(), &mut landing)
+                }
                 _ => {
                     (landing.trust, landing.renews_radii) = (0.0, true);
                     landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
@@ -358,76 +360,76 @@ impl Relaxation {
         law: &L,
         pairs: &PackedNeighbours,
         particles: &mut Particles,
-    ) -> Stage {
+    ) -> RelaxationStage {
         match self.stage {
-            Stage::FillGrid => Stage::RenewLists,
-            Stage::RenewLists => {
+            RelaxationStage::FillGrid => RelaxationStage::RenewLists,
+            RelaxationStage::RenewLists => {
                 self.lists.end_renewal();
                 self.after_lists()
             }
-            Stage::Grade { mut has_lowered } => {
+            RelaxationStage::Grade { mut has_lowered } => {
                 has_lowered |= grading::grade_far(law.slope(), pairs, particles);
                 self.is_steep |= has_lowered;
                 match self.purpose {
-                    _ if has_lowered => Stage::Grade { has_lowered: false },
-                    Purpose::End => Stage::Done,
-                    Purpose::Step | Purpose::Judge => Stage::SumForces { energy: 0.0 },
+                    _ if has_lowered => RelaxationStage::Grade { has_lowered: false },
+                    Purpose::End => RelaxationStage::Done,
+                    Purpose::Step | Purpose::Judge => RelaxationStage::SumForces { energy: 0.0 },
                 }
             }
-            Stage::SumForces { mut energy } => {
+            RelaxationStage::SumForces { mut energy } => {
                 self.stepper.forces.add_far(law, pairs, particles, &mut energy);
                 self.after_forces::<L>(energy / particles.len() as f64)
             }
-            Stage::Move => self.after_moving(law, particles),
-            Stage::TakeBack => {
+            RelaxationStage::Move => self.after_moving(law, particles),
+            RelaxationStage::TakeBack => {
                 self.purpose = Purpose::Step;
                 self.after_moving(law, particles)
             }
-            Stage::Polish if L::RESIZES => {
+            RelaxationStage::Polish if L::RESIZES => {
                 // The grading is a promise about all pairs: none may be missing that the front or a change of radii has
                 // left out.
                 self.purpose = Purpose::End;
                 self.lists.make_all_stale();
-                Stage::FillGrid
+                RelaxationStage::FillGrid
             }
-            Stage::Polish | Stage::Done => Stage::Done,
+            RelaxationStage::Polish | RelaxationStage::Done => RelaxationStage::Done,
         }
     }
 
     /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
-    fn after_lists(&self) -> Stage {
+    fn after_lists(&self) -> RelaxationStage {
         let is_uneven = self.is_steep || self.purpose == Purpose::End || !self.stepper.has_begun();
         if self.law.resizes() && is_uneven {
-            Stage::Grade { has_lowered: false }
+            RelaxationStage::Grade { has_lowered: false }
         } else {
-            Stage::SumForces { energy: 0.0 }
+            RelaxationStage::SumForces { energy: 0.0 }
         }
     }
 
     /// Returns what follows a move: first the renewal of the stale lists, if there are any.
-    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> Stage {
+    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> RelaxationStage {
         let grid_serves = self.lists.end_move(L::SLACK * law.radius(particles, 0));
         if !self.lists.has_stale() {
             self.after_lists()
         } else if grid_serves {
-            Stage::RenewLists
+            RelaxationStage::RenewLists
         } else {
-            Stage::FillGrid
+            RelaxationStage::FillGrid
         }
     }
 
     /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the
     /// energy.
-    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> Stage {
+    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> RelaxationStage {
         if self.purpose != Purpose::Judge {
             self.stepper.record_first(energy);
         } else if !self.stepper.judge(energy, L::STEP) {
-            return Stage::TakeBack;
+            return RelaxationStage::TakeBack;
         }
         if self.stepper.done() >= self.target || self.stepper.is_stuck() {
-            return Stage::Polish;
+            return RelaxationStage::Polish;
         }
         self.purpose = Purpose::Judge;
-        Stage::Move
+        RelaxationStage::Move
     }
 }

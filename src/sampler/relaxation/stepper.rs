@@ -2,10 +2,10 @@
 
 use crate::math::{Bounds, larger, refill};
 use crate::particles::Particles;
-use crate::sampler::neighbours::constants::MAX_TURN;
+use crate::sampler::neighbours::constants::STALE_TURN;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::relaxation::Limits;
+use crate::sampler::relaxation::MoveLimits;
 use crate::sampler::relaxation::forces::Forces;
 use crate::sampler::relaxation::repulsion::{LandingBatch, MAX_MOVE, Repulsion};
 use crate::sampler::sheet::OrientedPoint;
@@ -22,7 +22,7 @@ const MAX_FAILURES: u32 = 6;
 /// The step size and the state of every particle that a step changes.
 #[derive(Clone)]
 pub(super) struct Stepper {
-    limits: Limits,
+    limits: MoveLimits,
     pub(super) forces: Forces,
     /// Positions before the step under judgement.
     previous: Vec<Vec3>,
@@ -43,7 +43,7 @@ pub(super) struct Stepper {
 impl Stepper {
     pub(super) fn new() -> Self {
         Self {
-            limits: Limits { bounds: Bounds::cube(1.0), largest_lift: f32::INFINITY },
+            limits: MoveLimits { bounds: Bounds::cube(1.0), largest_lift: f32::INFINITY },
             forces: Forces::new(),
             previous: Vec::new(),
             previous_radius: Vec::new(),
@@ -62,7 +62,7 @@ impl Stepper {
     }
 
     /// Prepares for more steps; `first_size` is the size of the first step of a run.
-    pub(super) fn begin(&mut self, limits: Limits, particles: usize, first_size: f32, resizes: bool) {
+    pub(super) fn begin(&mut self, limits: MoveLimits, particles: usize, first_size: f32, resizes: bool) {
         self.limits = limits;
         self.failures = 0;
         if self.done == 0 {
@@ -209,7 +209,7 @@ impl Stepper {
             if landing.ok[k] && self.limits.bounds.contains(position) && cosine > 0.0 {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
-                let per_turn = 0.5 * L::SKIN / MAX_TURN * law.radius(particles, i);
+                let per_turn = 0.5 * L::SKIN / STALE_TURN * law.radius(particles, i);
                 let distance_sq = (position - particles.position[i]).length_squared();
                 let distance = larger(distance_sq, turn_sq * (per_turn * per_turn)).sqrt();
                 let mut grown = 0.0;

@@ -18,13 +18,13 @@ use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
 use glam::Vec3;
 
-/// Attempts at a predicted count. Each scales the radii by the square root of the ratio of the counts; more than one is
+/// Rounds towards a predicted count. Each scales the radii by the square root of the ratio of the counts; more than one is
 /// necessary only because of the clamps and the slope.
-const MAX_ATTEMPTS: u32 = 6;
+const MAX_ROUNDS: u32 = 6;
 /// Relative error at which a predicted count counts as met; the prediction itself is not more accurate.
-const COUNT_TOLERANCE: f64 = 2e-3;
+const PREDICTION_TOLERANCE: f64 = 2e-3;
 /// Area of the hexagonal Voronoi cell of a particle over r².
-const CELL_AREA: f64 = 2.0 * SQRT_3;
+pub(crate) const CELL_AREA: f64 = 2.0 * SQRT_3;
 
 /// The radius field of a run.
 #[derive(Clone, Debug)]
@@ -131,9 +131,9 @@ impl Sizing {
 
     /// Scales the law until the predicted count is `count`.
     pub(crate) fn scale_to(&mut self, count: f64) {
-        for _ in 0..MAX_ATTEMPTS {
+        for _ in 0..MAX_ROUNDS {
             let off = self.predicted / count;
-            if !(off > 0.0 && (off - 1.0).abs() > COUNT_TOLERANCE) {
+            if !(off > 0.0 && (off - 1.0).abs() > PREDICTION_TOLERANCE) {
                 break;
             }
             self.scale(off.sqrt());

@@ -15,6 +15,7 @@
 
 use crate::math::functions::{acos, asin, atan2, cos, sin};
 use crate::math::{LANES, Lanes};
+use crate::sampler::front::{MAX_DIP, SIN_60};
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
@@ -108,9 +109,6 @@ impl ParentFrame {
         wedge(d, e, r + q, s, t)
     }
 }
-
-/// Largest sine of a predicted dip. Beyond it the radius does not resolve the curvature.
-const MAX_DIP: f32 = 0.9;
 
 /// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`, with the sines `s` and
 /// `t` of their dips.
@@ -414,8 +412,6 @@ impl Ring {
         (least(room), least(largest))
     }
 }
-
-const SIN_60: f32 = 0.866_025_4;
 
 /// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances.
 const SLOPE_PULL: f32 = 0.02;

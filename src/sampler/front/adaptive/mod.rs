@@ -24,13 +24,13 @@ use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shap
 use crate::sampler::front::adaptive::placement::{DirectLanding, DirectPlacement, Proposal, SurfacePoint};
 use crate::sampler::front::adaptive::vicinity::Vicinity;
 use crate::sampler::front::level::{
-    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame,
+    FrontContext, FrontLevel, FrontSetup, LevelFront, ProvisionalChildren, SlotFrame,
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
-use crate::sampler::sheet::{ADAPTIVE_SLACK, OrientedPoint, Pair, SheetRule, is_level};
+use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, is_level};
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
@@ -69,7 +69,7 @@ struct AdaptiveChild {
 
 /// The settings of a run and what its survey found, as far as the front needs them.
 #[derive(Clone, Copy, Debug)]
-struct Rules {
+struct FrontRules {
     /// Largest change of the radius per unit of length.
     grading: f32,
     /// Least distance of two particles, as a share of r_i + r_j.
@@ -81,7 +81,7 @@ struct Rules {
     sheets: SheetRule,
 }
 
-impl Rules {
+impl FrontRules {
     /// What counts as being on the surface for a particle of this radius.
     fn tolerance(&self, radius: f32) -> Tolerance {
         tolerance(radius, self.accuracy, self.gradient_scale)
@@ -91,8 +91,8 @@ impl Rules {
 /// The front of particles of different radii.
 #[derive(Clone)]
 pub(crate) struct AdaptiveFront {
-    rules: Rules,
-    level: Level,
+    rules: FrontRules,
+    level: FrontLevel,
     parents: Parents,
     children: ProvisionalChildren<AdaptiveChild, Proposal, DirectLanding>,
     /// Most by which a radius grew in this level when its child was projected.
@@ -112,7 +112,7 @@ pub(crate) struct AdaptiveFront {
 impl AdaptiveFront {
     pub(crate) fn new() -> Self {
         Self {
-            rules: Rules {
+            rules: FrontRules {
                 grading: 0.2,
                 match_tolerance: 0.7,
                 reach: REACH,
@@ -120,7 +120,7 @@ impl AdaptiveFront {
                 gradient_scale: 1.0,
                 sheets: SheetRule::default(),
             },
-            level: Level::new(Bounds::cube(1.0), 0),
+            level: FrontLevel::new(Bounds::cube(1.0), 0),
             parents: Parents::default(),
             children: ProvisionalChildren::new(),
             growth: 0.0,
@@ -180,7 +180,7 @@ impl AdaptiveFront {
             let pair = Pair { offset: near.offset, normal: spot.normal, other: particles.normal[j] };
             j < settled
                 && near.distance_sq <= limit * limit
-                && is_level_by_size(pair, near.distance_sq, both)
+                && is_level(pair, near.distance_sq, limit)
                 && (!sheets.is_fine() || is_on_sheet(sheets, probe, spot.position, pair))
         })
     }
@@ -211,7 +211,7 @@ impl LevelFront for AdaptiveFront {
         let grading = settings.grading as f32;
         // Neighbours that touch differ by this factor at most.
         let ratio = (1.0 + grading) / (1.0 - grading);
-        self.rules = Rules {
+        self.rules = FrontRules {
             grading,
             match_tolerance: settings.match_tolerance as f32,
             reach: REACH.max(LISTED * (1.0 + ratio)),
@@ -219,7 +219,7 @@ impl LevelFront for AdaptiveFront {
             gradient_scale: survey.gradient_scale,
             sheets: setup.rule(radii),
         };
-        self.level = Level::new(*bounds, settings.max_particles as usize);
+        self.level = FrontLevel::new(*bounds, settings.max_particles as usize);
         self.parents.clear();
         self.children.clear();
         self.growth = 0.0;
@@ -232,11 +232,11 @@ impl LevelFront for AdaptiveFront {
         self.parents = Parents::default();
     }
 
-    fn level(&self) -> &Level {
+    fn level(&self) -> &FrontLevel {
         &self.level
     }
 
-    fn level_mut(&mut self) -> &mut Level {
+    fn level_mut(&mut self) -> &mut FrontLevel {
         &mut self.level
     }
 
@@ -266,7 +266,7 @@ impl LevelFront for AdaptiveFront {
         debug_assert_eq!(has_placed, context.neighbours.len() > parent, "particle {parent}");
         let lists = (!has_placed).then_some(&mut *context.neighbours);
         let alone_on_sheet =
-            self.around.read(&found, lists, particles, parent, self.level.settled) && !is_fine;
+            self.around.read(&found, lists, particles, parent, &self.rules, self.level.settled) && !is_fine;
 
         let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent);
         let inherited = Vec2::new(local.slope.dot(u), local.slope.dot(w));
@@ -408,10 +408,4 @@ impl LevelFront for AdaptiveFront {
 /// between them says so.
 fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
     pair.lift() <= sheets.suspicious(0.0) || sheets.is_one_sheet(probe, position, pair)
-}
-
-/// [`is_level`] for particles whose radii add up to `both`.
-fn is_level_by_size(pair: Pair, distance_sq: f32, both: f32) -> bool {
-    let slack = ADAPTIVE_SLACK * both;
-    is_level(pair, distance_sq, slack * slack)
 }

@@ -1,11 +1,11 @@
 //! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
 
-use super::{LISTED, RING, TOUCHING, is_level_by_size};
+use super::{FrontRules, LISTED, RING, TOUCHING};
 use crate::particles::Particles;
 use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::sheet::Pair;
+use crate::sampler::sheet::{Pair, is_level};
 use crate::spatial::Neighbour;
 use core::f32::consts::TAU;
 
@@ -54,6 +54,7 @@ impl Vicinity {
         lists: Option<&mut PackedNeighbours>,
         particles: &Particles,
         parent: usize,
+        rules: &FrontRules,
         settled: usize,
     ) -> bool {
         let (normal, radius) = (particles.normal[parent], particles.radius[parent]);
@@ -69,7 +70,8 @@ impl Vicinity {
                 return (near.index, false);
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
-            if is_level_by_size(Pair { offset: near.offset, normal, other }, near.distance_sq, both) {
+            let pair = Pair { offset: near.offset, normal, other };
+            if is_level(pair, near.distance_sq, rules.match_tolerance * both) {
                 if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
                     self.touching.push(self.ring.len() as u32);
                 }

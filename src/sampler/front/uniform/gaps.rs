@@ -31,7 +31,7 @@ const CAPACITY: usize = 24;
 
 /// The pass over the seams and its result.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Gaps {
+pub(crate) struct SeamPass {
     /// Particles on a seam, in the order of the front; the pass has visited those before `next`.
     pub(crate) seams: Vec<u32>,
     next: usize,
@@ -39,7 +39,7 @@ pub(crate) struct Gaps {
     pub(crate) filled: u64,
 }
 
-impl Gaps {
+impl SeamPass {
     pub(crate) fn clear(&mut self) {
         self.seams.clear();
         self.next = 0;

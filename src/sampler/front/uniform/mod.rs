@@ -17,12 +17,12 @@ mod surroundings;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::level::{
-    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, initial_slots,
+    FrontContext, FrontLevel, FrontSetup, LevelFront, ProvisionalChildren, SlotFrame, initial_slots,
 };
-use crate::sampler::front::uniform::gaps::{Gaps, SEAM};
+use crate::sampler::front::uniform::gaps::{SEAM, SeamPass};
 use crate::sampler::front::uniform::surroundings::{SecondForm, Surroundings};
+use crate::sampler::front::{MAX_DIP, SIN_60, UNCOVERED};
 use crate::sampler::neighbours::constants::{
     CELL_PER_REACH, FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE,
 };
@@ -30,16 +30,14 @@ use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{Circle, Landing, Tolerance, tolerance};
-use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, UNIFORM_SLACK, is_level};
+use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, is_level, level_slack_sq};
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use core::ops::Range;
 use glam::Vec3;
 
 /// Directions of the six slots in the frame (V̂⁰, N̂ × V̂⁰): paper §4.2.
-const SLOT_DIRECTION: [[f32; 2]; 6] = {
-    const SIN_60: f32 = 0.866_025_4;
-    [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
-};
+const SLOT_DIRECTION: [[f32; 2]; 6] =
+    [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]];
 
 /// Allowance for the distance between a provisional and a final place, in r. Children of smooth surfaces move by a hundredth
 /// of it; those that move farther are compared again.
@@ -62,7 +60,7 @@ pub(crate) struct UniformFront {
     match_radius: f32,
     tolerance: Tolerance,
     rule: SheetRule,
-    level: Level,
+    level: FrontLevel,
     /// Particles of the level, which place children.
     parents: Range<usize>,
     children: ProvisionalChildren<UniformChild, Circle, Landing>,
@@ -72,7 +70,7 @@ pub(crate) struct UniformFront {
     /// The particles that the last query of the grid found.
     found: Vec<Neighbour>,
     around: Surroundings,
-    gaps: Gaps,
+    gaps: SeamPass,
 }
 
 impl UniformFront {
@@ -82,14 +80,14 @@ impl UniformFront {
             match_radius: 1.0,
             tolerance: Tolerance::default(),
             rule: SheetRule::default(),
-            level: Level::new(Bounds::cube(1.0), 0),
+            level: FrontLevel::new(Bounds::cube(1.0), 0),
             parents: 0..0,
             children: ProvisionalChildren::new(),
             grid: CellGrid::new(1.0),
             seed: CellHandle::default(),
             found: Vec::new(),
             around: Surroundings::default(),
-            gaps: Gaps::default(),
+            gaps: SeamPass::default(),
         }
     }
 
@@ -117,7 +115,7 @@ impl UniformFront {
         // The surface falls away by κ d²/2 in a distance d, hence sin θ = −κ_V r at d = 2r.
         let (su, sw) = (form.a * cos + form.b * sin, form.b * cos + form.c * sin);
         let curvature = su * cos + sw * sin;
-        let sin_theta = (-curvature * self.radius).clamp(-0.9, 0.9);
+        let sin_theta = (-curvature * self.radius).clamp(-MAX_DIP, MAX_DIP);
         let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
         let offset = ((u * cos + w * sin) * cos_theta + n * sin_theta) * distance;
         // The turn is tangential, so the sum is never shorter than n.
@@ -187,19 +185,13 @@ impl UniformFront {
         }
     }
 
-    /// The slack of the sheet test, squared.
-    fn slack_sq(&self) -> f32 {
-        (UNIFORM_SLACK * self.match_radius) * (UNIFORM_SLACK * self.match_radius)
-    }
-
     /// Whether a final particle of the same sheet is within the match radius.
     fn collides(&mut self, probe: &mut Probe, particles: &Particles, point: OrientedPoint) -> bool {
         self.grid.gather(point.position, self.match_radius, &mut self.found);
-        let slack_sq = self.slack_sq();
         self.found.retain(|near| {
             let pair = point.pair(near.offset, particles.normal[near.index as usize]);
             (near.index as usize) < self.level.settled
-                && is_level(pair, near.offset.length_squared(), slack_sq)
+                && is_level(pair, near.offset.length_squared(), self.match_radius)
         });
         let spacing = 2.0 * self.radius;
         self.rule.is_near_own(probe, particles, point, &self.found, |_| spacing)
@@ -217,7 +209,7 @@ impl LevelFront for UniformFront {
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
         self.tolerance = tolerance(radius, survey.accuracy(), survey.gradient_scale);
         self.rule = setup.rule(RadiusRange::of(radius));
-        self.level = Level::new(*bounds, settings.max_particles as usize);
+        self.level = FrontLevel::new(*bounds, settings.max_particles as usize);
         self.parents = 0..0;
         self.children.clear();
         self.grid.reserve(setup.expected);
@@ -229,11 +221,11 @@ impl LevelFront for UniformFront {
         self.grid.release();
     }
 
-    fn level(&self) -> &Level {
+    fn level(&self) -> &FrontLevel {
         &self.level
     }
 
-    fn level_mut(&mut self) -> &mut Level {
+    fn level_mut(&mut self) -> &mut FrontLevel {
         &mut self.level
     }
 
@@ -265,7 +257,7 @@ impl LevelFront for UniformFront {
         } else {
             self.around.fit_second_form(self.radius, n, u, w)
         };
-        let (distance, slack_sq) = (2.0 * self.radius, self.slack_sq());
+        let (distance, slack_sq) = (2.0 * self.radius, level_slack_sq(self.match_radius));
         let mut slots = particles.slots[parent];
         let mut is_seam = false;
         // Slot 0 of every particle but a seed is its parent.
