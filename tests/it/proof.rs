@@ -1,7 +1,7 @@
 //! A property of random surfaces whose components are known: where the search says `proven`, every component holds particles
 //! or is named in the report, with its place and its size. Where it does not say so, the report says why.
 //!
-//! `PROOF_CASES` sets the number of cases of each family, 400 by default, fewer where a case takes long.
+//! `PROOF_CASES` sets the number of cases of each family, 150 by default, fewer where a case takes long.
 
 use glam::DVec3;
 use marching_particles::Warning;
@@ -216,7 +216,7 @@ fn holds(case: &Case, context: &str) -> bool {
 /// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must be proven. The search takes the
 /// factors of a formula one by one.
 fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>) {
-    family_of(name, share, (400, TINY_SHARE), |factors| factors.join("*"), make);
+    family_of(name, share, (150, TINY_SHARE), |factors| factors.join("*"), make);
 }
 
 /// The same, of formulas made from their factors by `join`; of so many cases by default, with tiny gaps for so large a share.
