@@ -1,5 +1,4 @@
 /** What the browser tests of the lesson share. */
-import AxeBuilder from '@axe-core/playwright';
 import { expect } from '@playwright/test';
 import { packCarried } from '../../src/ui/surface-link.js';
 
@@ -53,12 +52,6 @@ export async function live(page, name) {
 /** The width by which the page can be scrolled sideways. @param {Page} page */
 export const overflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-
-/** @param {Page} page */
-export const scan = (page) =>
-  new AxeBuilder({ page })
-    .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'])
-    .analyze();
 
 /** A number that stands for what a picture shows. @param {Locator} picture */
 export const fingerprint = (picture) =>

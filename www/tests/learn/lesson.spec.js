@@ -2,20 +2,27 @@
  * The lesson as an article: its figures, its questions, its comparisons, and what it does where something is missing.
  */
 import { expect, test } from '@playwright/test';
+import { axe } from '../axe.js';
 import { createSite } from '../server.js';
-import { fingerprint, live, openLesson, overflow, scan, settled, TORUS } from './helpers.js';
+import { fingerprint, live, openLesson, overflow, settled, TORUS } from './helpers.js';
 
 /** @import { AddressInfo } from 'node:net' */
 
 const FIGURES = ['why', 'cost', 'six', 'circle', 'first', 'rings', 'order', 'seams', 'rest', 'sizes'];
 
-test('every chapter has a live figure, in a folder of a host, too', async ({ page }) => {
+test('every chapter has a live figure, in a folder of a host, too, and is accessible, also in the dark', async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { place: './sub/path/' });
   await expect(page.locator('.chapter h2')).toHaveCount(12);
   for (const name of FIGURES) await live(page, name);
   expect(
     await page.locator('canvas').evaluateAll((all) => all.every((one) => /** @type {any} */ (one).getContext('2d'))),
   ).toBe(true);
+  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
+    await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
+    expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+  }
   clean();
 });
 
@@ -61,18 +68,6 @@ test('a figure keeps the answer to itself until the question is revealed', async
   await expect(rings.locator('.chart')).toBeVisible();
   await rings.getByRole('slider', { name: 'Level' }).fill('12');
   await expect(rings.locator('.chart')).toContainText(`Level 12: ${told} new particles.`);
-});
-
-test('every question is answered by the run, or skipped', async ({ page }) => {
-  const { clean } = await openLesson(page);
-  const questions = page.locator('.predict');
-  await expect(questions).toHaveCount(9);
-  for (const question of await questions.all()) {
-    await question.getByRole('button', { name: 'Skip' }).click();
-    await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
-    await expect(question.locator('.predict-result')).toContainText(/\w{4}/);
-  }
-  clean();
 });
 
 test('a question is answered from the keyboard alone, by a press on the picture, too', async ({ page }) => {
@@ -198,27 +193,25 @@ test.describe('stored', () => {
   });
 });
 
-for (const width of [390, 320]) {
-  test(`at ${width} px nothing is wider than the page`, async ({ page }) => {
-    await openLesson(page, { width, height: 760 });
-    for (const name of FIGURES) await live(page, name);
-    for (const question of await page.locator('.predict').all()) {
-      await question.getByRole('button', { name: 'Skip' }).click();
-      await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
-    }
-    await page.locator('#what-if').scrollIntoViewIfNeeded();
-    await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-    expect(await overflow(page)).toBe(0);
-  });
-}
-
-test('the lesson is accessible, live and in the dark', async ({ page }) => {
-  await openLesson(page);
-  for (const name of ['why', 'six', 'first', 'rest']) await live(page, name);
-  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
-    await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
-    expect((await scan(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+test('every question is answered by the run, or skipped, and on a phone nothing is wider than the page', async ({
+  page,
+}) => {
+  const { clean } = await openLesson(page, { width: 390, height: 760 });
+  for (const name of FIGURES) await live(page, name);
+  const questions = page.locator('.predict');
+  await expect(questions).toHaveCount(9);
+  for (const question of await questions.all()) {
+    await question.getByRole('button', { name: 'Skip' }).click();
+    await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(question.locator('.predict-result')).toContainText(/\w{4}/);
   }
+  await page.locator('#what-if').scrollIntoViewIfNeeded();
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  for (const width of [390, 320]) {
+    await page.setViewportSize({ width, height: 760 });
+    expect(await overflow(page)).toBe(0);
+  }
+  clean();
 });
 
 test('the front grows by itself, but not under reduced motion', async ({ page }) => {

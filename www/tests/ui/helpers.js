@@ -1,6 +1,6 @@
 /** What the interface's browser tests share. */
-import AxeBuilder from '@axe-core/playwright';
 import { expect } from '@playwright/test';
+import { axe } from '../axe.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -69,9 +69,7 @@ export async function atRest(page) {
 /** What axe has to say; nothing is scanned half-way through a fade. @param {Page} page */
 export async function scan(page) {
   await atRest(page);
-  return new AxeBuilder({ page })
-    .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'])
-    .analyze();
+  return axe(page);
 }
 
 /** @param {Page} page @returns {Promise<any>} */
