@@ -42,7 +42,9 @@ class FakeWorker {
 
   /** @param {URL | string} url @param {{name: string}} options */
   constructor(url, { name }) {
-    this.thread = new Thread(new URL('./thread.js', import.meta.url), { workerData: { url: String(url), answers } });
+    this.thread = new Thread(new URL('./thread.js', import.meta.url), {
+      workerData: { url: String(url), answers, navigator: wishes },
+    });
     this.thread.on('message', (data) => this.onmessage?.({ data }));
     this.thread.on('error', ({ message }) => this.onerror?.({ message }));
     workers[name] = [...(workers[name] ?? []), this];
@@ -90,8 +92,8 @@ export function hide(hidden) {
   page.dispatchEvent(new Event('visibilitychange'));
 }
 
-/** What the user asks of the system. */
-export const wishes = { reducedMotion: true };
+/** What the browser says of the user and of itself. */
+export const wishes = { reducedMotion: true, userAgent: 'Node' };
 const media = (/** @type {string} */ query) =>
   Object.assign(new EventTarget(), { matches: query.includes('motion') && wishes.reducedMotion, onchange: null });
 
@@ -107,7 +109,7 @@ for (const [name, value] of Object.entries({
   IntersectionObserver: Observer,
   ImageData: FakeImage,
   devicePixelRatio: 1,
-  navigator: { userAgent: 'Node' },
+  navigator: wishes,
   location: { origin: 'http://localhost', pathname: '/' },
   requestAnimationFrame: (/** @type {() => void} */ draw) => setTimeout(draw, 4),
   cancelAnimationFrame: clearTimeout,
@@ -122,7 +124,7 @@ afterEach(() => {
   workers = {};
   fetched = [];
   answers.clear();
-  wishes.reducedMotion = true;
+  Object.assign(wishes, { reducedMotion: true, userAgent: 'Node' });
   hide(false);
 });
 

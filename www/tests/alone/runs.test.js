@@ -1,7 +1,7 @@
 /** Runs: what starts, stops and replaces them, and what the page has of the surface meanwhile. */
 import { readFile } from 'node:fs/promises';
 import { describe, expect, test } from 'vitest';
-import { eventually, expectSurface, open, pause, picture, until } from './engine.js';
+import { eventually, expectSurface, link, open, pause, picture, until, wishes } from './engine.js';
 
 const golden = new URL('../../../tests/golden/digests.json', import.meta.url);
 
@@ -146,4 +146,70 @@ test('PLY and CSV hold every particle', async () => {
   expect(names.split(',')).toEqual(columns);
   expect(first.split(',').filter((cell) => cell !== '' && Number.isFinite(Number(cell)))).toHaveLength(columns.length);
   expect(rows.length + 1).toBe(count);
+});
+
+for (const [device, userAgent] of /** @type {const} */ ([
+  ['desk', 'Linux'],
+  ['phone', 'Android 14; Mobile'],
+])) {
+  test(`more particles than the memory of a ${device} holds are refused in words, and fewer are sampled`, async () => {
+    wishes.userAgent = userAgent;
+    const p = await open();
+    const count = (/** @type {number} */ n) => {
+      p.engine.setSetting('max_particles', n);
+      p.engine.setSetting('size_mode', 'count');
+      p.engine.setSetting('count', n);
+    };
+    const isRefused = (/** @type {number} */ n) =>
+      until(p.engine.notice, (now) => now?.text.includes(`There is not enough memory for about ${n} particles`));
+    // 512 MB on a desk, 256 MB on a phone: about 1.4 and 0.7 million.
+    count(1_000_000);
+    if (device === 'desk') {
+      await until(p.engine.progress, ({ particles }) => particles > 200_000);
+      count(2_000_000);
+      await isRefused(2_000_000);
+    } else {
+      await isRefused(1_000_000);
+    }
+    count(5000);
+    await until(p.engine.notice, (notice) => notice === null);
+    await until(p.engine.report, (report) => report && report.count > 4500);
+  });
+}
+
+test('the mesh that is exported is byte for byte that of the command line', async () => {
+  const [{ field, settings, files }] = JSON.parse(
+    await readFile(new URL('../../../tests/golden/meshes.json', import.meta.url), 'utf8'),
+  ).runs;
+  const p = await open(link({ surface: field.surface, settings }));
+  for (const format of /** @type {const} */ (['glb', 'obj', 'stl', 'ply'])) {
+    const bytes = new Uint8Array(await (await p.engine.exportMesh(format)).arrayBuffer());
+    expect(digestOf(bytes), format).toBe(files[format]);
+  }
+});
+
+/** FNV-1a, 64 bits. @param {Uint8Array} bytes */
+function digestOf(bytes) {
+  let hash = 0xcbf29ce484222325n;
+  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
+  return hash.toString(16).padStart(16, '0');
+}
+
+test('a refined surface shows its coarse level while a slider is dragged', async () => {
+  const p = await open(link({ surface: 'torus', settings: { method: 'refined', size_mode: 'count', count: 20_000 } }));
+  /** @type {Set<number>} */
+  const seen = new Set();
+  p.engine.progress.subscribe(({ live, phase }) => {
+    if (live && phase === 'done' && p.engine.columns.count > 0) seen.add(p.engine.columns.count);
+  });
+  const [{ name, value }] = p.engine.field.value?.parameters ?? [];
+  // A busy machine may not finish the first ones. The pause is shorter than that after which a drag counts as over.
+  for (let k = 1; k <= 30 && seen.size === 0; k += 1) {
+    p.engine.setParameter(name, value * (1 + k / 600), { live: true });
+    await pause(200);
+  }
+  expect(seen.size).toBeGreaterThan(0);
+  for (const count of seen) expect(count).toBeLessThan(8000);
+  p.engine.setParameter(name, value * 1.04);
+  await until(p.engine.report, (report) => report && report.count > 19_000);
 });

@@ -9,7 +9,7 @@ const worker = globalThis;
 worker.self = worker;
 worker.postMessage = (/** @type {unknown} */ message, /** @type {{transfer: any}} */ { transfer }) =>
   parentPort?.postMessage(message, transfer);
-worker.navigator ??= { userAgent: 'Node' };
+Object.defineProperty(worker, 'navigator', { value: workerData.navigator });
 worker.fetch = (/** @type {string} */ url) => fileAt(url, workerData.answers);
 
 // A file that is imported with `?url` is its address, as Vite has it.

@@ -1,258 +1,177 @@
 import { expect, test } from '@playwright/test';
-import { atRest, open, report, settled, state, typeFormula } from './helpers.js';
+import { afresh, open, report, settled, state, typeFormula } from './helpers.js';
 
-test('a typed formula gets sliders for its unknown names, and dragging one samples anew', async ({ page }) => {
+test('a formula is typed, and mended', async ({ page }) => {
+  test.slow();
   const { clean } = await open(page);
-  await typeFormula(page, 'x^2 + y^2 + k z^2 = 1');
-  const slider = page.getByRole('slider', { name: /k$/ });
-  await expect(slider).toBeVisible();
-  await settled(page);
-  const before = await report(page);
-  const box = await slider.boundingBox();
-  if (!box) throw new Error('the slider has no box');
-  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-  await page.mouse.down();
-  await page.mouse.move(box.x + box.width * 0.9, box.y + box.height / 2, { steps: 4 });
-  await page.mouse.up();
-  await settled(page);
-  expect((await state(page)).parameters.k).toBeGreaterThan(1);
-  expect((await report(page)).digest).not.toBe(before.digest);
-  await slider.dblclick();
-  await settled(page);
-  expect((await state(page)).parameters.k).toBeUndefined();
-  await clean();
-});
-
-test('an error names its place, the last surface stays, and a press on the suggestion mends it', async ({ page }) => {
-  const { clean } = await open(page);
-  const before = await report(page);
-  await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
-  const editor = page.getByRole('textbox', { name: 'Formula' });
-  await expect(editor).toHaveAttribute('aria-invalid', 'true');
-  await expect(page.locator('.cm-fault')).toHaveText('sqr');
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(before.count);
-  await page.getByRole('button', { name: 'Change to sqrt' }).click();
-  await expect(editor).toHaveAttribute('aria-invalid', 'false');
-  await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + sqrt(z) = 1');
-  await clean();
-});
-
-for (const phase of ['relaxation', 'quality']) {
-  test(`a mistake typed during the ${phase === 'quality' ? 'measurement' : 'run'} leaves the surface whole, with its own figures, in the middle of the picture`, async ({
-    page,
-  }) => {
-    const { clean } = await open(page, { width: 390, height: 844 });
+  await test.step('a typed formula gets sliders for its unknown names, and dragging one samples anew', async () => {
+    await typeFormula(page, 'x^2 + y^2 + k z^2 = 1');
+    const slider = page.getByRole('slider', { name: /k$/ });
+    await expect(slider).toBeVisible();
+    await settled(page);
     const before = await report(page);
-    const camera = async () => (await state(page)).view.camera;
-    const old = await camera();
-    await page.evaluate(async (wanted) => {
+    const box = await slider.boundingBox();
+    if (!box) throw new Error('the slider has no box');
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.9, box.y + box.height / 2, { steps: 4 });
+    await page.mouse.up();
+    await settled(page);
+    expect((await state(page)).parameters.k).toBeGreaterThan(1);
+    expect((await report(page)).digest).not.toBe(before.digest);
+    await slider.dblclick();
+    await settled(page);
+    expect((await state(page)).parameters.k).toBeUndefined();
+  });
+
+  await test.step('an error names its place, the last surface stays, and a press on the suggestion mends it', async () => {
+    await afresh(page);
+    const before = await report(page);
+    await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+    const editor = page.getByRole('textbox', { name: 'Formula' });
+    await expect(editor).toHaveAttribute('aria-invalid', 'true');
+    await expect(page.locator('.cm-fault')).toHaveText('sqr');
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(
+      before.count,
+    );
+    await page.getByRole('button', { name: 'Change to sqrt' }).click();
+    await expect(editor).toHaveAttribute('aria-invalid', 'false');
+    await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + sqrt(z) = 1');
+  });
+
+  await test.step('beside a mistake the typeset formula is said to be the last one that could be read', async () => {
+    await afresh(page);
+    const said = page.getByText('The last formula that could be read:');
+    const preview = page.getByRole('group', { name: 'The formula as mathematics' });
+    await expect(said).toBeHidden();
+    await typeFormula(page, 'x^2 + y^2 +');
+    await expect(said).toBeVisible();
+    await expect(preview).toHaveAccessibleDescription('The last formula that could be read:');
+    await typeFormula(page, 'x^2 + y^2 + z^2 = 1');
+    await expect(said).toBeHidden();
+    await expect(preview).toHaveAccessibleDescription('');
+  });
+
+  await test.step('in an own formula a parameter is no longer what it was in the surface of the gallery', async () => {
+    await afresh(page);
+    await expect(page.getByRole('slider', { name: 'Semi-axis along x a' })).toBeVisible();
+    await typeFormula(page, 'x^2 + y^2 + a z^2 = 1');
+    await expect(page.getByRole('slider', { name: 'Parameter a' })).toBeVisible();
+    await expect(page.getByRole('slider', { name: /Semi-axis/ })).toHaveCount(0);
+  });
+
+  await test.step('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async () => {
+    await afresh(page);
+    await typeFormula(page, 'x^2 + y^2 + z^2 = ');
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
+    // Within one task's microtasks, so that no clock decides how fast the keys come.
+    const seen = await page.evaluate(async () => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
-      engine.setSetting('radius_share', 0.003);
-      engine.setFormula('x^2');
-      await new Promise((/** @type {(value?: unknown) => void} */ resolve) => {
-        engine.progress.subscribe((/** @type {any} */ now) => {
-          if (now.phase === wanted && engine.field.value.formula === 'x^2') resolve();
+      const names = /** @type {string[]} */ ([]);
+      const off = engine.field.subscribe((/** @type {any} */ field) =>
+        names.push(...field.parameters.map((/** @type {any} */ p) => p.name)),
+      );
+      names.length = 0;
+      for (const letter of 'sqr') {
+        document.execCommand('insertText', false, letter);
+        await Promise.resolve();
+      }
+      const { formula } = engine.state.value;
+      const busy = engine.busy.value;
+      document.execCommand('insertText', false, 't(1)');
+      await new Promise((resolve) => {
+        const stop = engine.fieldError.subscribe((/** @type {any} */ error) => {
+          if (!error) setTimeout(() => resolve(stop()));
         });
       });
-      engine.setFormula('x^2 + sqr(y) + z^2 = k');
-    }, phase);
-    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
-    await settled(page);
-    const after = await report(page);
-    expect(after.digest).not.toBe(before.digest);
-    const { count, positions } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles());
-    expect(after.count).toBe(count);
-    expect(
-      Math.max(
-        ...Object.values(positions)
-          .filter((_, i) => i % 3 === 0)
-          .map(Math.abs),
-      ),
-    ).toBeLessThan(1e-3);
-    await expect(page.locator('#report .figures, .figures').first()).toBeAttached();
-    await expect(page.locator('.stale .figures')).toHaveCount(0);
-    // The camera comes once the typing rests: where it then stands is where a fit would put it.
-    await expect.poll(camera).not.toEqual(old);
-    await atRest(page);
-    const { distance, target } = await camera();
-    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
-    await atRest(page);
-    expect(await camera()).toMatchObject({
-      distance: expect.closeTo(distance, 2),
-      target: target.map((/** @type {number} */ v) => expect.closeTo(v, 2)),
+      off();
+      return { names, formula, busy };
     });
-    await clean();
+    expect(seen).toEqual({ names: [], formula: 'x^2 + y^2 + z^2 = sqr', busy: false });
+    await expect.poll(async () => (await state(page)).formula).toContain('sqrt(1)');
   });
-}
 
-test('where a formula on its way has no surface, the camera stays with the last one, and comes to the next', async ({
-  page,
-}) => {
-  await open(page, { width: 390, height: 844 });
-  // The longest pause in typing after which the camera moves, and what it takes to move.
-  const pause = () => page.waitForTimeout(1200);
-  await pause();
-  await atRest(page);
-  const { camera } = (await state(page)).view;
-  for (const text of ['x^2 + 1', 'x^2 + y^2 + z^2 = -9']) {
-    await typeFormula(page, text);
-    await expect(page.locator('.empty')).toBeVisible();
-    await pause();
-    await atRest(page);
-    expect((await state(page)).view.camera).toEqual(camera);
-  }
-  await typeFormula(page, 'x^2 + y^2 + z^2 = 9');
-  await settled(page);
-  await expect.poll(async () => (await state(page)).view.camera.distance).toBeGreaterThan(1.5 * camera.distance);
-});
+  await test.step('a parameter named like the beginning of a function gets its slider after a pause', async () => {
+    await afresh(page);
+    await typeFormula(page, 'x^2 + y^2 + z^2 = s');
+    await expect(page.locator('.row[data-parameter="s"]').getByRole('slider')).toBeVisible();
+  });
 
-test('Fit shows the last surface together with the box in which there is none', async ({ page }) => {
-  await open(page);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('box_mode', 'fixed'));
-  await settled(page);
-  const { distance } = (await state(page)).view.camera;
-  await typeFormula(page, 'x^2 + y^2 + (z - 60)^2 = 1');
-  await expect(page.locator('.empty')).toBeVisible();
-  await page.locator('#canvas-host').focus();
-  await page.keyboard.press('f');
-  await atRest(page);
-  expect((await state(page)).view.camera.distance).toBeGreaterThan(distance);
-});
+  await test.step('beyond four unknown names a slider is added on request', async () => {
+    await afresh(page);
+    await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');
+    const add = page.getByRole('button', { name: /^Add slider/ });
+    await expect(add.first()).toBeVisible();
+    await add.first().click();
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+    await expect(page.locator('.row[data-parameter]')).toHaveCount(5);
+  });
 
-test('beside a mistake the typeset formula is said to be the last one that could be read', async ({ page }) => {
-  const { clean } = await open(page);
-  const said = page.getByText('The last formula that could be read:');
-  const preview = page.getByRole('group', { name: 'The formula as mathematics' });
-  await expect(said).toBeHidden();
-  await typeFormula(page, 'x^2 + y^2 +');
-  await expect(said).toBeVisible();
-  await expect(preview).toHaveAccessibleDescription('The last formula that could be read:');
-  await typeFormula(page, 'x^2 + y^2 + z^2 = 1');
-  await expect(said).toBeHidden();
-  await expect(preview).toHaveAccessibleDescription('');
-  await clean();
-});
-
-test('in an own formula a parameter is no longer what it was in the surface of the gallery', async ({ page }) => {
-  await open(page);
-  await expect(page.getByRole('slider', { name: 'Semi-axis along x a' })).toBeVisible();
-  await typeFormula(page, 'x^2 + y^2 + a z^2 = 1');
-  await expect(page.getByRole('slider', { name: 'Parameter a' })).toBeVisible();
-  await expect(page.getByRole('slider', { name: /Semi-axis/ })).toHaveCount(0);
-});
-
-test('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async ({
-  page,
-}) => {
-  await open(page);
-  await typeFormula(page, 'x^2 + y^2 + z^2 = ');
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
-  // Within one task's microtasks, so that no clock decides how fast the keys come.
-  const seen = await page.evaluate(async () => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    const names = /** @type {string[]} */ ([]);
-    const off = engine.field.subscribe((/** @type {any} */ field) =>
-      names.push(...field.parameters.map((/** @type {any} */ p) => p.name)),
+  await test.step('an empty formula is met with a hint, not an error, and the surface stays', async () => {
+    await afresh(page);
+    const before = await report(page);
+    await typeFormula(page, '');
+    const message = page.locator('#formula-fault');
+    await expect(message).toContainText('Type a formula');
+    await expect(message).toHaveAttribute('data-tone', 'hint');
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+    await expect(page.locator('.editor')).not.toHaveClass(/has-fault/);
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(
+      before.count,
     );
-    names.length = 0;
-    for (const letter of 'sqr') {
-      document.execCommand('insertText', false, letter);
-      await Promise.resolve();
-    }
-    const { formula } = engine.state.value;
-    const busy = engine.busy.value;
-    document.execCommand('insertText', false, 't(1)');
-    await new Promise((resolve) => {
-      const stop = engine.fieldError.subscribe((/** @type {any} */ error) => {
-        if (!error) setTimeout(() => resolve(stop()));
-      });
+  });
+
+  await test.step('markup in a formula stays text', async () => {
+    await afresh(page);
+    await typeFormula(page, '<img src=x onerror=alert(1)>');
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
+    expect(await page.evaluate(() => document.querySelectorAll('img[onerror], [onerror]').length)).toBe(0);
+    expect(
+      await page.evaluate(() => document.querySelector('.code-host')?.shadowRoot?.querySelectorAll('img').length),
+    ).toBe(0);
+  });
+
+  await test.step('the formula is shown as mathematics', async () => {
+    await afresh(page);
+    await typeFormula(page, 'x^2 + y^2/4 + z^2 = 1');
+    await expect(page.locator('.preview math mfrac, .preview math msup').first()).toBeVisible();
+  });
+
+  await test.step('on a phone a mistake is read and mended without scrolling for it', async () => {
+    await afresh(page, { width: 390, height: 844 });
+    await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+    const repair = page.getByRole('button', { name: 'Change to sqrt' });
+    await expect(repair).toBeInViewport({ ratio: 1 });
+    await repair.click();
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+  });
+
+  await test.step('a surface of the gallery is chosen by a press and by the arrow keys', async () => {
+    await afresh(page);
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    expect((await state(page)).surface).toBe('torus');
+    await expect(page.getByRole('heading', { name: 'Torus', exact: true })).toBeVisible();
+    await expect(page.getByRole('radio', { name: 'Torus', exact: true })).toBeChecked();
+    await page.keyboard.press('ArrowLeft');
+    await expect.poll(async () => (await state(page)).surface).not.toBe('torus');
+  });
+
+  await test.step('the clip box is edited axis by axis and taken back', async () => {
+    await afresh(page);
+    await page.locator('.clip summary', { hasText: 'Clip box' }).click();
+    const high = page.getByRole('spinbutton', { name: 'x to' });
+    await high.fill('0.25');
+    await high.press('Tab');
+    await settled(page);
+    expect((await state(page)).bounds.max[0]).toBe(0.25);
+    const xs = await page.evaluate(() => {
+      const { positions, count } = /** @type {any} */ (window).marchingParticles.particles();
+      return Math.max(...Array.from({ length: count }, (_, i) => positions[3 * i]));
     });
-    off();
-    return { names, formula, busy };
+    expect(xs).toBeLessThanOrEqual(0.25 + 1e-6);
+    await page.locator('.clip').getByRole('button', { name: 'Reset' }).click();
+    await expect.poll(async () => (await state(page)).bounds).toBeNull();
   });
-  expect(seen).toEqual({ names: [], formula: 'x^2 + y^2 + z^2 = sqr', busy: false });
-  await expect.poll(async () => (await state(page)).formula).toContain('sqrt(1)');
-});
-
-test('a parameter named like the beginning of a function gets its slider after a pause', async ({ page }) => {
-  await open(page);
-  await typeFormula(page, 'x^2 + y^2 + z^2 = s');
-  await expect(page.locator('.row[data-parameter="s"]').getByRole('slider')).toBeVisible();
-});
-
-test('on a phone a mistake is read and mended without scrolling for it', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
-  await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
-  const repair = page.getByRole('button', { name: 'Change to sqrt' });
-  await expect(repair).toBeInViewport({ ratio: 1 });
-  await repair.click();
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
-});
-
-test('beyond four unknown names a slider is added on request', async ({ page }) => {
-  await open(page);
-  await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');
-  const add = page.getByRole('button', { name: /^Add slider/ });
-  await expect(add.first()).toBeVisible();
-  await add.first().click();
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
-  await expect(page.locator('.row[data-parameter]')).toHaveCount(5);
-});
-
-test('an empty formula is met with a hint, not an error, and the surface stays', async ({ page }) => {
-  await open(page);
-  const before = await report(page);
-  await typeFormula(page, '');
-  const message = page.locator('#formula-fault');
-  await expect(message).toContainText('Type a formula');
-  await expect(message).toHaveAttribute('data-tone', 'hint');
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
-  await expect(page.locator('.editor')).not.toHaveClass(/has-fault/);
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(before.count);
-});
-
-test('markup in a formula stays text', async ({ page }) => {
-  const { faults } = await open(page);
-  await typeFormula(page, '<img src=x onerror=alert(1)>');
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
-  expect(await page.evaluate(() => document.querySelectorAll('img[onerror], [onerror]').length)).toBe(0);
-  expect(
-    await page.evaluate(() => document.querySelector('.code-host')?.shadowRoot?.querySelectorAll('img').length),
-  ).toBe(0);
-  expect(faults).toEqual([]);
-});
-
-test('the formula is shown as mathematics', async ({ page }) => {
-  await open(page);
-  await typeFormula(page, 'x^2 + y^2/4 + z^2 = 1');
-  await expect(page.locator('.preview math mfrac, .preview math msup').first()).toBeVisible();
-});
-
-test('a surface of the gallery is chosen by a press and by the arrow keys', async ({ page }) => {
-  const { clean } = await open(page);
-  await page.locator('.tile[data-surface="torus"]').click();
-  await settled(page);
-  expect((await state(page)).surface).toBe('torus');
-  await expect(page.getByRole('heading', { name: 'Torus', exact: true })).toBeVisible();
-  await expect(page.getByRole('radio', { name: 'Torus', exact: true })).toBeChecked();
-  await page.keyboard.press('ArrowLeft');
-  await expect.poll(async () => (await state(page)).surface).not.toBe('torus');
   await clean();
-});
-
-test('the clip box is edited axis by axis and taken back', async ({ page }) => {
-  await open(page);
-  await page.locator('.clip summary', { hasText: 'Clip box' }).click();
-  const high = page.getByRole('spinbutton', { name: 'x to' });
-  await high.fill('0.25');
-  await high.press('Tab');
-  await settled(page);
-  expect((await state(page)).bounds.max[0]).toBe(0.25);
-  const xs = await page.evaluate(() => {
-    const { positions, count } = /** @type {any} */ (window).marchingParticles.particles();
-    return Math.max(...Array.from({ length: count }, (_, i) => positions[3 * i]));
-  });
-  expect(xs).toBeLessThanOrEqual(0.25 + 1e-6);
-  await page.locator('.clip').getByRole('button', { name: 'Reset' }).click();
-  await expect.poll(async () => (await state(page)).bounds).toBeNull();
 });

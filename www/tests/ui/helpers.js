@@ -38,6 +38,27 @@ export async function open(page, { width = 1280, height = 800, hash = '' } = {})
   };
 }
 
+/**
+ * Brings a page back to the state in which it opens, or to that of a link, for the next step of a test.
+ * @param {Page} page
+ * @param {{ width?: number, height?: number, hash?: string }} [options]
+ */
+export async function afresh(page, { width = 1280, height = 800, hash = '' } = {}) {
+  await page.setViewportSize({ width, height });
+  await page.mouse.move(0, 0);
+  // A layer that is open, or its explanation.
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('Escape');
+  await page.evaluate(async (link) => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.dismissNotice();
+    engine.dismissHover();
+    const { run } = engine.progress.value;
+    await engine.openLink(link);
+    while (engine.progress.value.run === run) await new Promise((go) => setTimeout(go, 10));
+  }, hash);
+  await settled(page);
+}
+
 /** Waits until nothing runs and the figures are there. @param {Page} page */
 export async function settled(page) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);

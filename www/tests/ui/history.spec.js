@@ -1,82 +1,81 @@
 import { expect, test } from '@playwright/test';
-import { open, settled, state, typeFormula } from './helpers.js';
+import { afresh, open, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
 const undo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Undo', exact: true });
 const redo = (/** @type {Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
 
-test('surface, formula and settings are undone and redone, by buttons and by keys', async ({ page }) => {
+test('the history', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  await expect(undo(page)).toHaveAttribute('aria-disabled', 'true');
-  const { formula } = await state(page);
-  await page.locator('.tile[data-surface="torus"]').click();
-  await settled(page);
-  await page.getByRole('radio', { name: 'Adaptive' }).check();
-  await typeFormula(page, 'x^2 + y^2 + z^2 = 0.3');
-  await undo(page).click();
-  await expect.poll(async () => (await state(page)).surface).toBe('torus');
-  expect((await state(page)).settings.sampling).toBe('adaptive');
-  await expect(page.getByRole('textbox', { name: 'Formula' })).toContainText('sqrt');
-  await page.locator('#canvas-host').focus();
-  await page.keyboard.press('Control+z');
-  await expect.poll(async () => (await state(page)).settings.sampling).toBeUndefined();
-  await page.keyboard.press('Control+z');
-  await expect.poll(async () => (await state(page)).formula).toBe(formula);
-  await expect(undo(page)).toHaveAttribute('aria-disabled', 'true');
-  await page.keyboard.press('Control+Shift+z');
-  await expect.poll(async () => (await state(page)).surface).toBe('torus');
-  await redo(page).click();
-  await redo(page).click();
-  await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + z^2 = 0.3');
-  await settled(page);
-  await clean();
-});
-
-test('another surface that comes back is seen with all its levels', async ({ page }) => {
-  await open(page);
-  await page.locator('.tile[data-surface="torus"]').click();
-  await settled(page);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 3 }));
-  await undo(page).click();
-  await settled(page);
-  expect((await state(page)).view.level).toBe(null);
-});
-
-test('in a text field the keys undo the typing, not the page', async ({ page }) => {
-  await open(page);
-  await page.locator('.tile[data-surface="sphere"]').click();
-  await settled(page);
-  const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
-  await box.focus();
-  await page.keyboard.press('Control+z');
-  expect((await state(page)).surface).toBe('sphere');
-});
-
-test('five hundred steps back end at the first state and harm nothing; Back leaves the page as ever', async ({
-  page,
-}) => {
-  const { clean } = await open(page);
-  const first = await state(page);
-  await page.evaluate(async () => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    for (let i = 1; i <= 30; i += 1) engine.setSetting(i % 2 ? 'relax_steps' : 'seed', i);
+  await test.step('surface, formula and settings are undone and redone, by buttons and by keys', async () => {
+    await expect(undo(page)).toHaveAttribute('aria-disabled', 'true');
+    const { formula } = await state(page);
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    await page.getByRole('radio', { name: 'Adaptive' }).check();
+    await typeFormula(page, 'x^2 + y^2 + z^2 = 0.3');
+    await undo(page).click();
+    await expect.poll(async () => (await state(page)).surface).toBe('torus');
+    expect((await state(page)).settings.sampling).toBe('adaptive');
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toContainText('sqrt');
+    await page.locator('#canvas-host').focus();
+    await page.keyboard.press('Control+z');
+    await expect.poll(async () => (await state(page)).settings.sampling).toBeUndefined();
+    await page.keyboard.press('Control+z');
+    await expect.poll(async () => (await state(page)).formula).toBe(formula);
+    await expect(undo(page)).toHaveAttribute('aria-disabled', 'true');
+    await page.keyboard.press('Control+Shift+z');
+    await expect.poll(async () => (await state(page)).surface).toBe('torus');
+    await redo(page).click();
+    await redo(page).click();
+    await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + z^2 = 0.3');
+    await settled(page);
   });
-  await page.evaluate(() => {
-    const press = (/** @type {boolean} */ shiftKey) =>
-      document.body.dispatchEvent(
-        new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, shiftKey, bubbles: true, cancelable: true }),
-      );
-    for (let i = 0; i < 500; i += 1) press(false);
-    for (let i = 0; i < 500; i += 1) press(true);
-    for (let i = 0; i < 500; i += 1) press(false);
+
+  await test.step('another surface that comes back is seen with all its levels', async () => {
+    await afresh(page);
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 3 }));
+    await undo(page).click();
+    await settled(page);
+    expect((await state(page)).view.level).toBe(null);
   });
-  await settled(page);
-  expect((await state(page)).settings).toEqual(first.settings);
-  expect((await state(page)).surface).toBe(first.surface);
-  const length = await page.evaluate(() => history.length);
-  await page.locator('.tile[data-surface="torus"]').click();
-  await settled(page);
-  expect(await page.evaluate(() => history.length)).toBe(length);
+
+  await test.step('in a text field the keys undo the typing, not the page', async () => {
+    await afresh(page);
+    await page.locator('.tile[data-surface="sphere"]').click();
+    await settled(page);
+    const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
+    await box.focus();
+    await page.keyboard.press('Control+z');
+    expect((await state(page)).surface).toBe('sphere');
+  });
+
+  await test.step('five hundred steps back end at the first state and harm nothing; Back leaves the page as ever', async () => {
+    await afresh(page);
+    const first = await state(page);
+    await page.evaluate(async () => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      for (let i = 1; i <= 30; i += 1) engine.setSetting(i % 2 ? 'relax_steps' : 'seed', i);
+    });
+    await page.evaluate(() => {
+      const press = (/** @type {boolean} */ shiftKey) =>
+        document.body.dispatchEvent(
+          new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, shiftKey, bubbles: true, cancelable: true }),
+        );
+      for (let i = 0; i < 500; i += 1) press(false);
+      for (let i = 0; i < 500; i += 1) press(true);
+      for (let i = 0; i < 500; i += 1) press(false);
+    });
+    await settled(page);
+    expect((await state(page)).settings).toEqual(first.settings);
+    expect((await state(page)).surface).toBe(first.surface);
+    const length = await page.evaluate(() => history.length);
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    expect(await page.evaluate(() => history.length)).toBe(length);
+  });
   await clean();
 });

@@ -325,25 +325,3 @@ test('in a large window everything grows with it, in a usual one it has the size
     expect(large[part], part).toBeGreaterThan(1.7 * usual[part]);
   await clean();
 });
-
-for (const [width, height] of /** @type {const} */ ([
-  [1440, 900],
-  [390, 844],
-])) {
-  test(`what is said where there is no surface leaves the box whole, at ${width} by ${height}`, async ({ page }) => {
-    const wanted = { formula: 'x^2 + (y - 30)^2 + z^2 = 1', settings: { box_mode: 'fixed' } };
-    await open(page, { width, height, hash: `#v1.j.${Buffer.from(JSON.stringify(wanted)).toString('base64url')}` });
-    const said = page.locator('.empty');
-    await expect(said).toBeVisible();
-    await atRest(page);
-    const [lowest, top] = await page.evaluate(() => {
-      const { engine } = /** @type {any} */ (window).marchingParticles;
-      const { min, max } = engine.field.value.bounds;
-      const corners = Array.from({ length: 8 }, (_, k) => [0, 1, 2].map((axis) => ((k >> axis) & 1 ? max : min)[axis]));
-      const said = /** @type {Element} */ (document.querySelector('.empty')).getBoundingClientRect();
-      return [Math.max(...corners.map((corner) => engine.project(corner).y)), said.top];
-    });
-    expect(lowest).toBeGreaterThan(100);
-    expect(lowest).toBeLessThan(top);
-  });
-}

@@ -2,7 +2,7 @@
 import { readFile } from 'node:fs/promises';
 import { expect, test } from '@playwright/test';
 import { unzipSync } from 'fflate';
-import { atRest, open, report, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, report, scan, settled, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -48,175 +48,175 @@ async function fileOf(page, press) {
   return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
 }
 
-test('a picture is saved in a chosen size, without ground, and with legend and caption', async ({ page }) => {
+test('the picture and what moves in it', async ({ page }) => {
+  test.slow();
   const { clean } = await open(page);
-  const save = async (/** @type {string} */ size, /** @type {string[]} */ checks) => {
-    const dialog = await openDialog(page);
-    await dialog.getByRole('combobox', { name: 'Size' }).first().selectOption({ label: size });
-    for (const name of ['No ground', 'Legend', 'Caption'])
-      await dialog.getByRole('checkbox', { name }).setChecked(checks.includes(name));
-    const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Save PNG' }).click());
-    expect(name).toMatch(/^ellipsoid-\d+\.png$/);
-    await expect(dialog).toBeHidden();
-    return look(page, bytes);
-  };
-  const plain = await save('Square, 2048\u202f×\u202f2048', []);
-  expect([plain.width, plain.height, plain.alpha]).toEqual([2048, 2048, 255]);
-  // The surface fills a square as it fills the height of the window.
-  const fills = Math.max(plain.box.right - plain.box.left, plain.box.bottom - plain.box.top) / 2048;
-  expect(fills).toBeGreaterThan(0.6);
-  const told = await save('Square, 2048\u202f×\u202f2048', ['Legend', 'Caption']);
-  // The legend is at the top, the caption at the bottom.
-  expect(told.box.top).toBeLessThan(plain.box.top);
-  expect(told.box.bottom).toBeGreaterThan(plain.box.bottom);
-  expect(told.count).toBeGreaterThan(plain.count);
-  const bare = await save('Screen, 1280\u202f×\u202f800', ['No ground']);
-  expect([bare.width, bare.height, bare.alpha]).toEqual([1280, 800, 0]);
-  await clean();
-});
-
-test('the dialog is operated by keys, and is accessible', async ({ page }) => {
-  const { clean } = await open(page, { width: 390, height: 844 });
-  await page.getByRole('button', { name: 'Save picture' }).focus();
-  await page.keyboard.press('Enter');
-  const dialog = page.getByRole('dialog', { name: 'Take the picture away' });
-  await expect(dialog).toBeVisible();
-  expect((await scan(page)).violations).toEqual([]);
-  await page.keyboard.press('Escape');
-  await expect(dialog).toBeHidden();
-  await expect(page.getByRole('button', { name: 'Save picture' })).toBeFocused();
-  await clean();
-});
-
-test('a film of what the user does is recorded until it is stopped', async ({ page }) => {
-  const { clean } = await open(page, { width: 900, height: 700 });
-  const dialog = await openDialog(page);
-  await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('What I do');
-  await dialog.getByRole('button', { name: 'Record film' }).click();
-  const bar = page.getByRole('group', { name: 'Recording' });
-  await expect(bar.getByText(/^[1-9]/)).toBeVisible();
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.orbit(1, 0));
-  const { name, bytes } = await fileOf(page, () => bar.getByRole('button', { name: 'Stop recording' }).click());
-  expect(name).toMatch(/\.webm$/);
-  await expect(bar).toHaveCount(0);
-  const film = await page.evaluate(async (base64) => {
-    const video = document.createElement('video');
-    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-    // The page's policy allows no films in it: what the file holds is read without playing it.
-    const { type } = new Blob([bytes], { type: 'video/webm' });
-    return { type, playable: video.canPlayType(type), head: [...bytes.subarray(0, 4)], size: bytes.length };
-  }, bytes.toString('base64'));
-  // The head of a Matroska file.
-  expect(film).toMatchObject({ playable: 'maybe', head: [0x1a, 0x45, 0xdf, 0xa3] });
-  expect(film.size).toBeGreaterThan(5000);
-  await clean();
-});
-
-test('a sequence has a picture of full quality for every place of a parameter, which is put back', async ({ page }) => {
-  const { clean } = await open(page, { width: 480, height: 360 });
-  const before = await report(page);
-  const dialog = await openDialog(page);
-  await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Parameter a');
-  await dialog.getByRole('combobox', { name: 'Size' }).nth(1).selectOption({ label: 'HD, 1280\u202f×\u202f720' });
-  const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Picture sequence' }).click());
-  expect(name).toMatch(/\.zip$/);
-  const files = unzipSync(bytes);
-  const names = Object.keys(files);
-  expect(names).toHaveLength(60);
-  expect([names[0], names[59]]).toEqual(['frame-0001.png', 'frame-0060.png']);
-  // From the narrowest ellipsoid to the widest and back.
-  const [first, middle] = await Promise.all([0, 30].map((i) => look(page, Buffer.from(files[names[i]]))));
-  expect([first.width, first.height]).toEqual([1280, 720]);
-  expect(middle.count).toBeGreaterThan(1.5 * first.count);
-  await settled(page);
-  expect((await state(page)).parameters).toEqual({});
-  expect((await report(page)).digest).toBe(before.digest);
-  // What moved by itself is no step of the history.
-  await expect(page.getByRole('button', { name: 'Undo' })).toHaveAttribute('aria-disabled', 'true');
-  await clean();
-});
-
-test('a sequence can be given up', async ({ page }) => {
-  await open(page, { width: 480, height: 360 });
-  const dialog = await openDialog(page);
-  await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Turntable');
-  await dialog.getByRole('button', { name: 'Picture sequence' }).click();
-  await page.getByRole('button', { name: 'Stop recording' }).click();
-  await expect(page.getByRole('group', { name: 'Recording' })).toHaveCount(0);
-  const { yaw } = (await state(page)).view.camera;
-  await atRest(page);
-  expect((await state(page)).view.camera.yaw).toBeCloseTo(yaw, 4);
-});
-
-test('a printed page has the picture, the formula and the figures, and nothing else', async ({ page }) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
-  await page.evaluate(() => {
-    const store = /** @type {any} */ (window);
-    store.printed = new Promise((resolve) => {
-      window.print = () => resolve(undefined);
-    });
+  await test.step('a picture is saved in a chosen size, without ground, and with legend and caption', async () => {
+    const save = async (/** @type {string} */ size, /** @type {string[]} */ checks) => {
+      const dialog = await openDialog(page);
+      await dialog.getByRole('combobox', { name: 'Size' }).first().selectOption({ label: size });
+      for (const name of ['No ground', 'Legend', 'Caption'])
+        await dialog.getByRole('checkbox', { name }).setChecked(checks.includes(name));
+      const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Save PNG' }).click());
+      expect(name).toMatch(/^ellipsoid-\d+\.png$/);
+      await expect(dialog).toBeHidden();
+      return look(page, bytes);
+    };
+    const plain = await save('Square, 2048\u202f×\u202f2048', []);
+    expect([plain.width, plain.height, plain.alpha]).toEqual([2048, 2048, 255]);
+    // The surface fills a square as it fills the height of the window.
+    const fills = Math.max(plain.box.right - plain.box.left, plain.box.bottom - plain.box.top) / 2048;
+    expect(fills).toBeGreaterThan(0.6);
+    const told = await save('Square, 2048\u202f×\u202f2048', ['Legend', 'Caption']);
+    // The legend is at the top, the caption at the bottom.
+    expect(told.box.top).toBeLessThan(plain.box.top);
+    expect(told.box.bottom).toBeGreaterThan(plain.box.bottom);
+    expect(told.count).toBeGreaterThan(plain.count);
+    const bare = await save('Screen, 1280\u202f×\u202f800', ['No ground']);
+    expect([bare.width, bare.height, bare.alpha]).toEqual([1280, 800, 0]);
   });
-  await page.keyboard.press('ControlOrMeta+p');
-  await page.evaluate(() => /** @type {any} */ (window).printed);
-  await page.emulateMedia({ media: 'print' });
-  const sheet = page.locator('.sheet');
-  await expect(sheet.getByRole('heading', { level: 1 })).toContainText('Ellipsoid');
-  await expect(sheet.locator('math')).toBeVisible();
-  await expect(sheet.locator('img')).toBeVisible();
-  expect(
-    await sheet.locator('img').evaluate((img) => /** @type {HTMLImageElement} */ (img).naturalWidth),
-  ).toBeGreaterThan(1000);
-  await expect(sheet.locator('.figures tr:visible').nth(5)).toBeVisible();
-  await expect(page.locator('.panel:visible, .toolbar:visible, .canvas-host:visible')).toHaveCount(0);
-  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
-  await expect(sheet).toHaveCount(0);
-  await page.emulateMedia({ media: 'screen' });
-  await expect(page.locator('.toolbar')).toBeVisible();
-  await clean();
-});
 
-test('a parameter is played, in one step of the history, and stops where it is', async ({ page }) => {
-  const { clean } = await open(page);
-  const value = async () => (await state(page)).parameters.a;
-  await page.getByRole('button', { name: 'Play a' }).click();
-  const course = page.getByRole('radiogroup', { name: 'Course' });
-  await course.getByRole('radio', { name: 'Loop' }).check();
-  await page.getByRole('combobox', { name: 'Speed', exact: true }).selectOption('4\u202f×');
-  await expect.poll(value).not.toBe(undefined);
-  const first = await value();
-  await expect.poll(value).not.toBe(first);
-  await page.getByRole('button', { name: 'Pause a' }).click();
-  await settled(page);
-  const last = await value();
-  expect((await report(page)).stop_reason).toBe('complete');
-  await expect(course).toBeHidden();
-  expect(await value()).toBe(last);
-  await page.getByRole('button', { name: 'Undo' }).click();
-  await settled(page);
-  expect((await state(page)).parameters).toEqual({});
-  await clean();
-});
+  await test.step('a film of what the user does is recorded until it is stopped', async () => {
+    await afresh(page, { width: 900, height: 700 });
+    const dialog = await openDialog(page);
+    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('What I do');
+    await dialog.getByRole('button', { name: 'Record film' }).click();
+    const bar = page.getByRole('group', { name: 'Recording' });
+    await expect(bar.getByText(/^[1-9]/)).toBeVisible();
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.orbit(1, 0));
+    const { name, bytes } = await fileOf(page, () => bar.getByRole('button', { name: 'Stop recording' }).click());
+    expect(name).toMatch(/\.webm$/);
+    await expect(bar).toHaveCount(0);
+    const film = await page.evaluate(async (base64) => {
+      const video = document.createElement('video');
+      const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+      // The page's policy allows no films in it: what the file holds is read without playing it.
+      const { type } = new Blob([bytes], { type: 'video/webm' });
+      return { type, playable: video.canPlayType(type), head: [...bytes.subarray(0, 4)], size: bytes.length };
+    }, bytes.toString('base64'));
+    // The head of a Matroska file.
+    expect(film).toMatchObject({ playable: 'maybe', head: [0x1a, 0x45, 0xdf, 0xa3] });
+    expect(film.size).toBeGreaterThan(5000);
+  });
 
-test('the turntable turns until it is pressed again, or Escape', async ({ page }) => {
-  const { clean } = await open(page);
-  const yaw = async () => (await state(page)).view.camera.yaw;
-  const before = await yaw();
-  await page.getByRole('button', { name: 'View options' }).click();
-  const button = page.locator('[aria-label="Turntable"]');
-  await button.click();
-  await expect(button).toHaveAttribute('aria-pressed', 'true');
-  await expect.poll(yaw).not.toBe(before);
-  // Before the motion, Escape ends what lies over the page: the menu, and the explanation of its button.
-  await expect(async () => {
+  await test.step('a printed page has the picture, the formula and the figures, and nothing else', async () => {
+    await afresh(page, { width: 1440, height: 900 });
+    await page.evaluate(() => {
+      const store = /** @type {any} */ (window);
+      store.printed = new Promise((resolve) => {
+        window.print = () => resolve(undefined);
+      });
+    });
+    await page.keyboard.press('ControlOrMeta+p');
+    await page.evaluate(() => /** @type {any} */ (window).printed);
+    await page.emulateMedia({ media: 'print' });
+    const sheet = page.locator('.sheet');
+    await expect(sheet.getByRole('heading', { level: 1 })).toContainText('Ellipsoid');
+    await expect(sheet.locator('math')).toBeVisible();
+    await expect(sheet.locator('img')).toBeVisible();
+    expect(
+      await sheet.locator('img').evaluate((img) => /** @type {HTMLImageElement} */ (img).naturalWidth),
+    ).toBeGreaterThan(1000);
+    await expect(sheet.locator('.figures tr:visible').nth(5)).toBeVisible();
+    await expect(page.locator('.panel:visible, .toolbar:visible, .canvas-host:visible')).toHaveCount(0);
+    await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+    await expect(sheet).toHaveCount(0);
+    await page.emulateMedia({ media: 'screen' });
+    await expect(page.locator('.toolbar')).toBeVisible();
+  });
+
+  await test.step('a parameter is played, in one step of the history, and stops where it is', async () => {
+    await afresh(page);
+    const value = async () => (await state(page)).parameters.a;
+    await page.getByRole('button', { name: 'Play a' }).click();
+    const course = page.getByRole('radiogroup', { name: 'Course' });
+    await course.getByRole('radio', { name: 'Loop' }).check();
+    await page.getByRole('combobox', { name: 'Speed', exact: true }).selectOption('4\u202f×');
+    await expect.poll(value).not.toBe(undefined);
+    const first = await value();
+    await expect.poll(value).not.toBe(first);
+    await page.getByRole('button', { name: 'Pause a' }).click();
+    await settled(page);
+    const last = await value();
+    expect((await report(page)).stop_reason).toBe('complete');
+    await expect(course).toBeHidden();
+    expect(await value()).toBe(last);
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await settled(page);
+    expect((await state(page)).parameters).toEqual({});
+  });
+
+  await test.step('the turntable turns until it is pressed again, or Escape', async () => {
+    await afresh(page);
+    const yaw = async () => (await state(page)).view.camera.yaw;
+    const before = await yaw();
+    await page.getByRole('button', { name: 'View options' }).click();
+    const button = page.locator('[aria-label="Turntable"]');
+    await button.click();
+    await expect(button).toHaveAttribute('aria-pressed', 'true');
+    await expect.poll(yaw).not.toBe(before);
+    // Before the motion, Escape ends what lies over the page: the menu, and the explanation of its button.
+    await expect(async () => {
+      await page.keyboard.press('Escape');
+      await expect(button).toHaveAttribute('aria-pressed', 'false', { timeout: 200 });
+    }).toPass();
+    await atRest(page);
+    const rest = await yaw();
+    await page.waitForTimeout(300);
+    expect(await yaw()).toBe(rest);
+    await page.keyboard.press('o');
+    await expect.poll(yaw).not.toBe(rest);
+    await page.keyboard.press('o');
+  });
+
+  await test.step('the dialog is operated by keys, and is accessible', async () => {
+    await afresh(page, { width: 390, height: 844 });
+    await page.getByRole('button', { name: 'Save picture' }).focus();
+    await page.keyboard.press('Enter');
+    const dialog = page.getByRole('dialog', { name: 'Take the picture away' });
+    await expect(dialog).toBeVisible();
+    expect((await scan(page)).violations).toEqual([]);
     await page.keyboard.press('Escape');
-    await expect(button).toHaveAttribute('aria-pressed', 'false', { timeout: 200 });
-  }).toPass();
-  await atRest(page);
-  const rest = await yaw();
-  await page.waitForTimeout(300);
-  expect(await yaw()).toBe(rest);
-  await page.keyboard.press('o');
-  await expect.poll(yaw).not.toBe(rest);
-  await page.keyboard.press('o');
+    await expect(dialog).toBeHidden();
+    await expect(page.getByRole('button', { name: 'Save picture' })).toBeFocused();
+  });
+  await clean();
+});
+
+test('a sequence of pictures', async ({ page }) => {
+  const { clean } = await open(page, { width: 480, height: 360 });
+  await test.step('a sequence can be given up', async () => {
+    const dialog = await openDialog(page);
+    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Turntable');
+    await dialog.getByRole('button', { name: 'Picture sequence' }).click();
+    await page.getByRole('button', { name: 'Stop recording' }).click();
+    await expect(page.getByRole('group', { name: 'Recording' })).toHaveCount(0);
+    const { yaw } = (await state(page)).view.camera;
+    await atRest(page);
+    expect((await state(page)).view.camera.yaw).toBeCloseTo(yaw, 4);
+  });
+
+  await test.step('a sequence has a picture of full quality for every place of a parameter, which is put back', async () => {
+    await afresh(page, { width: 480, height: 360 });
+    const before = await report(page);
+    const dialog = await openDialog(page);
+    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Parameter a');
+    await dialog.getByRole('combobox', { name: 'Size' }).nth(1).selectOption({ label: 'HD, 1280\u202f×\u202f720' });
+    const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Picture sequence' }).click());
+    expect(name).toMatch(/\.zip$/);
+    const files = unzipSync(bytes);
+    const names = Object.keys(files);
+    expect(names).toHaveLength(60);
+    expect([names[0], names[59]]).toEqual(['frame-0001.png', 'frame-0060.png']);
+    // From the narrowest ellipsoid to the widest and back.
+    const [first, middle] = await Promise.all([0, 30].map((i) => look(page, Buffer.from(files[names[i]]))));
+    expect([first.width, first.height]).toEqual([1280, 720]);
+    expect(middle.count).toBeGreaterThan(1.5 * first.count);
+    await settled(page);
+    expect((await state(page)).parameters).toEqual({});
+    expect((await report(page)).digest).toBe(before.digest);
+    // What moved by itself is no step of the history.
+    await expect(page.getByRole('button', { name: 'Undo' })).toHaveAttribute('aria-disabled', 'true');
+  });
   await clean();
 });

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, report, scan, settled, state } from './helpers.js';
+import { afresh, open, report, scan, settled, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -44,44 +44,101 @@ const dropped = async (
   await drag(page, 'drop', file);
 };
 
-test('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async ({
-  page,
-}) => {
-  await page.emulateMedia({ reducedMotion: 'reduce' });
+test('files: dropped, chosen, refused, given up', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  const overlay = page.locator('.drop');
-  await expect(overlay).toBeHidden();
-  await drag(page, 'dragenter', null);
-  expect(await drag(page, 'dragover', null)).toBe(false);
-  await expect(overlay).toBeHidden();
-  await drag(page, 'dragenter', { name: 'a.ply' });
-  expect(await drag(page, 'dragover', { name: 'a.ply' })).toBe(true);
-  await expect(overlay).toBeVisible();
-  for (const word of ['PLY', 'OBJ', 'STL', 'XYZ', '50']) await expect(overlay).toContainText(word);
-  expect((await scan(page)).violations).toEqual([]);
-  await drag(page, 'dragleave', { name: 'a.ply' });
-  await expect(overlay).toBeHidden();
-  await clean();
-});
+  await test.step('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async () => {
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    const overlay = page.locator('.drop');
+    await expect(overlay).toBeHidden();
+    await drag(page, 'dragenter', null);
+    expect(await drag(page, 'dragover', null)).toBe(false);
+    await expect(overlay).toBeHidden();
+    await drag(page, 'dragenter', { name: 'a.ply' });
+    expect(await drag(page, 'dragover', { name: 'a.ply' })).toBe(true);
+    await expect(overlay).toBeVisible();
+    for (const word of ['PLY', 'OBJ', 'STL', 'XYZ', '50']) await expect(overlay).toContainText(word);
+    expect((await scan(page)).violations).toEqual([]);
+    await drag(page, 'dragleave', { name: 'a.ply' });
+    await expect(overlay).toBeHidden();
+  });
 
-test('a file too large is refused at once, with the reason and what to do, and the surface stays', async ({ page }) => {
-  await page.emulateMedia({ reducedMotion: 'reduce' });
-  await open(page, { width: 1440, height: 900 });
-  const { digest } = await report(page);
-  await dropped(page, { name: 'statue.ply', bytes: 51_000_000 });
-  const box = page.locator('.refused');
-  await expect(box).toContainText('statue.ply could not be used');
-  await expect(box).toContainText('50');
-  await expect(
-    page.locator('.loading ~ [role=status], [role=status].visually-hidden', {
-      hasText: 'statue.ply could not be used',
-    }),
-  ).toHaveCount(1);
-  await expect(page.locator('.toast')).toHaveCount(0);
-  expect((await report(page)).digest).toBe(digest);
-  expect((await scan(page)).violations).toEqual([]);
-  await page.locator('.tile[data-surface="sphere"]').click();
-  await expect(box).toBeHidden();
+  await test.step('a file too large is refused at once, with the reason and what to do, and the surface stays', async () => {
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    await afresh(page, { width: 1440, height: 900 });
+    const { digest } = await report(page);
+    await dropped(page, { name: 'statue.ply', bytes: 51_000_000 });
+    const box = page.locator('.refused');
+    await expect(box).toContainText('statue.ply could not be used');
+    await expect(box).toContainText('50');
+    await expect(
+      page.locator('.loading ~ [role=status], [role=status].visually-hidden', {
+        hasText: 'statue.ply could not be used',
+      }),
+    ).toHaveCount(1);
+    await expect(page.locator('.toast')).toHaveCount(0);
+    expect((await report(page)).digest).toBe(digest);
+    expect((await scan(page)).violations).toEqual([]);
+    await page.locator('.tile[data-surface="sphere"]').click();
+    await expect(box).toBeHidden();
+  });
+
+  await test.step('what is on its way shows its stage', async () => {
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    await afresh(page, { width: 1440, height: 900 });
+    await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.loading.value = { id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.42 };
+    });
+    const bar = page.getByRole('progressbar', { name: 'Loading Bunny' });
+    await expect(bar).toHaveAttribute('aria-valuenow', '42');
+    await expect(page.locator('.loading')).toContainText('Solving');
+    await expect(page.getByRole('button', { name: 'Cancel' })).toBeVisible();
+    expect((await scan(page)).violations).toEqual([]);
+    await page.evaluate(() => {
+      /** @type {any} */ (window).marchingParticles.engine.loading.value = null;
+    });
+  });
+
+  await test.step('a model given up on its way leaves the surface as it was', async () => {
+    await afresh(page);
+    const before = await state(page);
+    const { digest } = await report(page);
+    await page.evaluate(
+      () =>
+        new Promise((/** @type {(done: void) => void} */ resolve) => {
+          const { engine } = /** @type {any} */ (window).marchingParticles;
+          // Pressed in the page itself: from here a press could come late.
+          engine.loading.subscribe((/** @type {any} */ loading) => {
+            if (loading)
+              setTimeout(() => {
+                /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click();
+                resolve();
+              });
+          });
+          /** @type {HTMLElement} */ (document.querySelector('.tile[data-surface="bunny"]')).click();
+        }),
+    );
+    await expect(page.locator('.loading')).toBeHidden();
+    await settled(page);
+    expect((await state(page)).surface).toBe(before.surface);
+    expect((await report(page)).digest).toBe(digest);
+    await expect(page.locator('.refused')).toBeHidden();
+  });
+
+  await test.step('a fault in a file is told with its line, in the open and to a screen reader', async () => {
+    await afresh(page, { width: 390, height: 844 });
+    const lines = spherePly(300).split('\n');
+    lines[20] = '0.1 nan 0.3 0 0 1';
+    await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
+    const box = page.locator('.refused');
+    await expect(box).toContainText(/line 21/i);
+    await expect(box).toContainText('The surface before it stays');
+    await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: 'Sampling' }).click();
+    await dropped(page, { name: 'empty.ply', text: '' });
+    // The panel that would say it is not in sight: a notice does.
+    await expect(page.locator('.toast')).toContainText('empty.ply');
+  });
+  await clean();
 });
 
 test('keys alone open the chooser for files', async ({ page }) => {
@@ -93,48 +150,6 @@ test('keys alone open the chooser for files', async ({ page }) => {
   const chooser = await chosen;
   expect(chooser.isMultiple()).toBe(false);
   expect(await page.locator('input[type=file]').getAttribute('accept')).toContain('.ply');
-});
-
-test('what is on its way shows its stage', async ({ page }) => {
-  await page.emulateMedia({ reducedMotion: 'reduce' });
-  const { clean } = await open(page, { width: 1440, height: 900 });
-  await page.evaluate(() => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    engine.loading.value = { id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.42 };
-  });
-  const bar = page.getByRole('progressbar', { name: 'Loading Bunny' });
-  await expect(bar).toHaveAttribute('aria-valuenow', '42');
-  await expect(page.locator('.loading')).toContainText('Solving');
-  await expect(page.getByRole('button', { name: 'Cancel' })).toBeVisible();
-  expect((await scan(page)).violations).toEqual([]);
-  await clean();
-});
-
-test('a model given up on its way leaves the surface as it was', async ({ page }) => {
-  const { clean } = await open(page);
-  const before = await state(page);
-  const { digest } = await report(page);
-  await page.evaluate(
-    () =>
-      new Promise((/** @type {(done: void) => void} */ resolve) => {
-        const { engine } = /** @type {any} */ (window).marchingParticles;
-        // Pressed in the page itself: from here a press could come late.
-        engine.loading.subscribe((/** @type {any} */ loading) => {
-          if (loading)
-            setTimeout(() => {
-              /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click();
-              resolve();
-            });
-        });
-        /** @type {HTMLElement} */ (document.querySelector('.tile[data-surface="bunny"]')).click();
-      }),
-  );
-  await expect(page.locator('.loading')).toBeHidden();
-  await settled(page);
-  expect((await state(page)).surface).toBe(before.surface);
-  expect((await report(page)).digest).toBe(digest);
-  await expect(page.locator('.refused')).toBeHidden();
-  await clean();
 });
 
 for (const [width, height] of /** @type {const} */ ([
@@ -178,81 +193,66 @@ for (const [width, height] of /** @type {const} */ ([
   });
 }
 
-test('another number of points is fitted on request, kept in links, and taken back', async ({ page }) => {
+test('a file and the number of its points', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  await dropped(page, { name: 'ball.ply', text: spherePly(900) });
-  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
-  await settled(page);
-  const fitted = page.locator('.model > .quiet');
-  await expect(fitted).toContainText('f interpolates 200 of 900 points');
-  await expect(page.locator('.story')).toContainText('The surface through 200 of the points of this file.');
-  const slider = page.getByRole('slider', { name: 'Points fitted' });
-  const number = page.getByRole('spinbutton', { name: 'Points fitted, number' });
-  await number.fill('350');
-  await number.press('Enter');
-  await expect(fitted).toContainText('f interpolates 350 of 900 points');
-  await settled(page);
-  expect((await state(page)).centres).toBe(350);
-  // Changes of one value within 0.8 s are one step of the history.
-  await page.waitForTimeout(900);
-  await slider.press('Home');
-  await expect(fitted).toContainText('f interpolates 100 of 900 points');
-  await page.getByRole('button', { name: 'Undo', exact: true }).click();
-  await expect(fitted).toContainText('f interpolates 350 of 900 points');
-  await settled(page);
-  // Of a model there are no more than it has, and a link holds the number.
-  await page.getByRole('button', { name: 'Points', exact: true }).click();
-  await page.locator('.tile[data-surface="bunny"]').click();
-  await expect(fitted).toContainText('f interpolates all 200 points');
-  await settled(page);
-  expect(await number.getAttribute('max')).toBe('200');
-  await number.fill('120');
-  await number.press('Enter');
-  await expect(fitted).toContainText('f interpolates 120 of 200 points');
-  await settled(page);
-  // The address bar follows after a pause.
-  const isInAddress = () =>
-    page.evaluate(async () => {
-      const shared = await /** @type {any} */ (window).marchingParticles.link();
-      return new URL(shared).hash === location.hash;
-    });
-  await expect.poll(isInAddress).toBe(true);
-  await page.reload();
-  await settled(page);
-  await expect(fitted).toContainText('f interpolates 120 of 200 points');
-  await clean();
-});
+  await test.step('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async () => {
+    await dropped(page, { name: 'ball.ply', text: spherePly(300) });
+    await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+    await settled(page);
+    const { quality } = await report(page);
+    expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
+    await expect(page.locator('.facts')).toContainText('given');
+    await page.getByRole('button', { name: 'Closed', exact: true }).click();
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    await page.getByRole('button', { name: 'Points', exact: true }).click();
+    await page.locator('.tile[data-surface="file"]').click();
+    await settled(page);
+    await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+  });
 
-test('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async ({
-  page,
-}) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
-  await dropped(page, { name: 'ball.ply', text: spherePly(300) });
-  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
-  await settled(page);
-  const { quality } = await report(page);
-  expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
-  await expect(page.locator('.facts')).toContainText('given');
-  await page.getByRole('button', { name: 'Closed', exact: true }).click();
-  await page.locator('.tile[data-surface="torus"]').click();
-  await settled(page);
-  await page.getByRole('button', { name: 'Points', exact: true }).click();
-  await page.locator('.tile[data-surface="file"]').click();
-  await settled(page);
-  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+  await test.step('another number of points is fitted on request, kept in links, and taken back', async () => {
+    await afresh(page, { width: 1440, height: 900 });
+    await dropped(page, { name: 'ball.ply', text: spherePly(900) });
+    await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+    await settled(page);
+    const fitted = page.locator('.model > .quiet');
+    await expect(fitted).toContainText('f interpolates 200 of 900 points');
+    await expect(page.locator('.story')).toContainText('The surface through 200 of the points of this file.');
+    const slider = page.getByRole('slider', { name: 'Points fitted' });
+    const number = page.getByRole('spinbutton', { name: 'Points fitted, number' });
+    await number.fill('350');
+    await number.press('Enter');
+    await expect(fitted).toContainText('f interpolates 350 of 900 points');
+    await settled(page);
+    expect((await state(page)).centres).toBe(350);
+    // Changes of one value within 0.8 s are one step of the history.
+    await page.waitForTimeout(900);
+    await slider.press('Home');
+    await expect(fitted).toContainText('f interpolates 100 of 900 points');
+    await page.getByRole('button', { name: 'Undo', exact: true }).click();
+    await expect(fitted).toContainText('f interpolates 350 of 900 points');
+    await settled(page);
+    // Of a model there are no more than it has, and a link holds the number.
+    await page.getByRole('button', { name: 'Points', exact: true }).click();
+    await page.locator('.tile[data-surface="bunny"]').click();
+    await expect(fitted).toContainText('f interpolates all 200 points');
+    await settled(page);
+    expect(await number.getAttribute('max')).toBe('200');
+    await number.fill('120');
+    await number.press('Enter');
+    await expect(fitted).toContainText('f interpolates 120 of 200 points');
+    await settled(page);
+    // The address bar follows after a pause.
+    const isInAddress = () =>
+      page.evaluate(async () => {
+        const shared = await /** @type {any} */ (window).marchingParticles.link();
+        return new URL(shared).hash === location.hash;
+      });
+    await expect.poll(isInAddress).toBe(true);
+    await page.reload();
+    await settled(page);
+    await expect(fitted).toContainText('f interpolates 120 of 200 points');
+  });
   await clean();
-});
-
-test('a fault in a file is told with its line, in the open and to a screen reader', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
-  const lines = spherePly(300).split('\n');
-  lines[20] = '0.1 nan 0.3 0 0 1';
-  await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
-  const box = page.locator('.refused');
-  await expect(box).toContainText(/line 21/i);
-  await expect(box).toContainText('The surface before it stays');
-  await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: 'Sampling' }).click();
-  await dropped(page, { name: 'empty.ply', text: '' });
-  // The panel that would say it is not in sight: a notice does.
-  await expect(page.locator('.toast')).toContainText('empty.ply');
 });

@@ -1,32 +1,97 @@
 import { expect, test } from '@playwright/test';
-import { atRest, open, settled, state } from './helpers.js';
+import { afresh, atRest, open, settled, state } from './helpers.js';
 
-test('a particle under the pointer tells what it is', async ({ page }) => {
+test('the view', async ({ page }) => {
+  test.slow();
   const { clean } = await open(page);
-  const view = await page.locator('#view').boundingBox();
-  if (!view) throw new Error('the view has no box');
-  await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2 + 3, { steps: 3 });
-  const card = page.locator('.hover-card');
-  await expect(card).toBeVisible();
-  for (const row of ['Particle', 'Level', 'Parent', 'Position', 'Neighbours', 'Residual'])
-    await expect(card).toContainText(row);
-  await page.mouse.move(view.x + 4, view.y + view.height / 2, { steps: 3 });
-  await expect(card).toBeHidden();
-  await clean();
-});
+  await test.step('a particle under the pointer tells what it is', async () => {
+    const view = await page.locator('#view').boundingBox();
+    if (!view) throw new Error('the view has no box');
+    await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2 + 3, { steps: 3 });
+    const card = page.locator('.hover-card');
+    await expect(card).toBeVisible();
+    for (const row of ['Particle', 'Level', 'Parent', 'Position', 'Neighbours', 'Residual'])
+      await expect(card).toContainText(row);
+    await page.mouse.move(view.x + 4, view.y + view.height / 2, { steps: 3 });
+    await expect(card).toBeHidden();
+  });
 
-test('the legend shows what the chosen colours mean', async ({ page }) => {
-  await open(page);
-  const choose = page.getByRole('combobox', { name: 'Colour by' });
-  await expect(page.locator('.legend .cycle .swatch')).toHaveCount(12);
-  await choose.selectOption('valence');
-  await expect(page.locator('.categories li').first()).toBeVisible();
-  const counted = await page.locator('.categories .count').allTextContents();
-  const total = counted.reduce((sum, text) => sum + Number(text.replace(/\D/g, '')), 0);
-  expect(total).toBe(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count));
-  await choose.selectOption('nearest');
-  await expect(page.locator('.ramp')).toBeVisible();
-  await expect(page.locator('.ends')).toHaveText(/\d.*\d/);
+  await test.step('the legend shows what the chosen colours mean', async () => {
+    await afresh(page);
+    const choose = page.getByRole('combobox', { name: 'Colour by' });
+    await expect(page.locator('.legend .cycle .swatch')).toHaveCount(12);
+    await choose.selectOption('valence');
+    await expect(page.locator('.categories li').first()).toBeVisible();
+    const counted = await page.locator('.categories .count').allTextContents();
+    const total = counted.reduce((sum, text) => sum + Number(text.replace(/\D/g, '')), 0);
+    expect(total).toBe(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count));
+    await choose.selectOption('nearest');
+    await expect(page.locator('.ramp')).toBeVisible();
+    await expect(page.locator('.ends')).toHaveText(/\d.*\d/);
+  });
+
+  await test.step('buttons zoom, turn and fit for those who cannot drag', async () => {
+    await afresh(page);
+    await atRest(page);
+    const camera = async () => (await state(page)).view.camera;
+    const first = await camera();
+    await page.getByRole('button', { name: 'Zoom in' }).click();
+    await expect.poll(async () => (await camera()).distance).toBeLessThan(first.distance);
+    await page.getByRole('button', { name: 'View options' }).click();
+    await page.getByRole('button', { name: 'Turn right' }).click();
+    await expect.poll(async () => (await camera()).yaw).not.toBe(first.yaw);
+    await page.keyboard.press('Escape');
+    await page.getByRole('button', { name: 'Fit', exact: true }).click();
+    await expect.poll(async () => Math.abs((await camera()).distance / first.distance - 1)).toBeLessThan(0.01);
+  });
+
+  await test.step('a menu opened by the pointer and closed by Escape gives the focus back without an error', async () => {
+    await afresh(page);
+    for (const name of ['View options', 'Export']) {
+      const button = page.getByRole('button', { name, exact: true });
+      await button.click();
+      await expect(button).toHaveAttribute('aria-expanded', 'true');
+      await page.keyboard.press('Escape');
+      await expect(button).toHaveAttribute('aria-expanded', 'false');
+      await expect(button).toBeFocused();
+      // The explanation of the button, which has the focus by the keyboard now.
+      await expect(page.getByRole('tooltip')).toBeVisible();
+      await page.keyboard.press('Escape');
+    }
+  });
+
+  await test.step('on a phone the tabs open one sheet at a time, and the run is always in reach', async () => {
+    await afresh(page, { width: 390, height: 844 });
+    const tabs = page.getByRole('navigation', { name: 'Panels' });
+    await expect(page.locator('#panel-field')).toBeVisible();
+    await tabs.getByRole('button', { name: 'Report' }).click();
+    await expect(page.locator('#panel-field')).toBeHidden();
+    await expect(page.locator('.figures')).toBeVisible();
+    await tabs.getByRole('button', { name: 'Report' }).click();
+    await expect(page.locator('#panel-report')).toBeHidden();
+    await tabs.getByRole('button', { name: 'Run' }).dblclick();
+    await settled(page);
+    expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(false);
+  });
+
+  await test.step('panels fold, and hide all together', async () => {
+    await afresh(page, { width: 1440, height: 900 });
+    await page.getByRole('button', { name: 'Fold report' }).click();
+    await expect(page.locator('#report-body')).toBeHidden();
+    await page.getByRole('button', { name: 'Unfold report' }).click();
+    await expect(page.locator('#report-body')).toBeVisible();
+    await page.getByRole('button', { name: 'View options' }).click();
+    await page.getByRole('button', { name: 'Hide the panels' }).click();
+    await expect(page.locator('.panel:visible')).toHaveCount(1);
+    await expect(page.getByRole('slider', { name: 'Timeline' })).toBeVisible();
+    await expect(page.locator('.caption')).toBeVisible();
+    await page.keyboard.press('h');
+    await expect(page.locator('.panel:visible')).toHaveCount(0);
+    await expect(page.locator('.caption')).toBeHidden();
+    await page.getByRole('button', { name: 'Show the panels' }).click();
+    await expect(page.locator('.panel:visible')).toHaveCount(4);
+  });
+  await clean();
 });
 
 for (const width of [1280, 320]) {
@@ -53,66 +118,3 @@ for (const width of [1280, 320]) {
     }
   });
 }
-
-test('buttons zoom, turn and fit for those who cannot drag', async ({ page }) => {
-  await open(page);
-  await atRest(page);
-  const camera = async () => (await state(page)).view.camera;
-  const first = await camera();
-  await page.getByRole('button', { name: 'Zoom in' }).click();
-  await expect.poll(async () => (await camera()).distance).toBeLessThan(first.distance);
-  await page.getByRole('button', { name: 'View options' }).click();
-  await page.getByRole('button', { name: 'Turn right' }).click();
-  await expect.poll(async () => (await camera()).yaw).not.toBe(first.yaw);
-  await page.keyboard.press('Escape');
-  await page.getByRole('button', { name: 'Fit', exact: true }).click();
-  await expect.poll(async () => Math.abs((await camera()).distance / first.distance - 1)).toBeLessThan(0.01);
-});
-
-test('on a phone the tabs open one sheet at a time, and the run is always in reach', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
-  const tabs = page.getByRole('navigation', { name: 'Panels' });
-  await expect(page.locator('#panel-field')).toBeVisible();
-  await tabs.getByRole('button', { name: 'Report' }).click();
-  await expect(page.locator('#panel-field')).toBeHidden();
-  await expect(page.locator('.figures')).toBeVisible();
-  await tabs.getByRole('button', { name: 'Report' }).click();
-  await expect(page.locator('#panel-report')).toBeHidden();
-  await tabs.getByRole('button', { name: 'Run' }).dblclick();
-  await settled(page);
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(false);
-});
-
-test('panels fold, and hide all together', async ({ page }) => {
-  await open(page, { width: 1440, height: 900 });
-  await page.getByRole('button', { name: 'Fold report' }).click();
-  await expect(page.locator('#report-body')).toBeHidden();
-  await page.getByRole('button', { name: 'Unfold report' }).click();
-  await expect(page.locator('#report-body')).toBeVisible();
-  await page.getByRole('button', { name: 'View options' }).click();
-  await page.getByRole('button', { name: 'Hide the panels' }).click();
-  await expect(page.locator('.panel:visible')).toHaveCount(1);
-  await expect(page.getByRole('slider', { name: 'Timeline' })).toBeVisible();
-  await expect(page.locator('.caption')).toBeVisible();
-  await page.keyboard.press('h');
-  await expect(page.locator('.panel:visible')).toHaveCount(0);
-  await expect(page.locator('.caption')).toBeHidden();
-  await page.getByRole('button', { name: 'Show the panels' }).click();
-  await expect(page.locator('.panel:visible')).toHaveCount(4);
-});
-
-test('a menu opened by the pointer and closed by Escape gives the focus back without an error', async ({ page }) => {
-  const { clean } = await open(page);
-  for (const name of ['View options', 'Export']) {
-    const button = page.getByRole('button', { name, exact: true });
-    await button.click();
-    await expect(button).toHaveAttribute('aria-expanded', 'true');
-    await page.keyboard.press('Escape');
-    await expect(button).toHaveAttribute('aria-expanded', 'false');
-    await expect(button).toBeFocused();
-    // The explanation of the button, which has the focus by the keyboard now.
-    await expect(page.getByRole('tooltip')).toBeVisible();
-    await page.keyboard.press('Escape');
-  }
-  await clean();
-});
