@@ -34,7 +34,9 @@ test('the learner’s own formula is carried over, and back', async ({ page }) =
   await page.waitForFunction(
     () => /** @type {any} */ (window).marchingParticles?.engine.progress.value.phase === 'done',
   );
-  await page.waitForFunction(() => performance.getEntriesByType('resource').some(({ name }) => /\/learn-link/.test(name)));
+  await page.waitForFunction(() =>
+    performance.getEntriesByType('resource').some(({ name }) => /\/learn-link/.test(name)),
+  );
   await page.getByRole('link', { name: 'Lesson' }).click();
   await page.waitForURL(/learn\/#surface=/);
   await expect(page.locator('#surface-name')).toContainText(formula);

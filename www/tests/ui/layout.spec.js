@@ -1,96 +1,135 @@
 import { expect, test } from '@playwright/test';
-import { atRest, open, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, scan, settled, state } from './helpers.js';
 
-const SIZES = /** @type {const} */ ([
-  [3840, 2160],
-  [1440, 900],
-  [2560, 1440],
-  [820, 1180],
-  [390, 844],
-  [320, 640],
-  [844, 390],
-  [600, 340],
-]);
+/** @import { Page } from '@playwright/test' */
 
-for (const [width, height] of SIZES) {
-  test(`nothing overflows at ${width} by ${height}`, async ({ page }) => {
+/** Windows in which a page is opened, and those to which it is resized. */
+/** @type {[number, number][][]} */
+const WINDOWS = [
+  [
+    [1440, 900],
+    [3840, 2160],
+    [2560, 1440],
+  ],
+  [[1280, 720]],
+  [[820, 1180]],
+  [
+    [390, 844],
+    [320, 640],
+    [844, 390],
+    [600, 340],
+  ],
+];
+
+for (const [[width, height], ...others] of WINDOWS) {
+  test(`from ${width} by ${height} on nothing overflows; the page settles without a jump and asks nobody else for anything`, async ({
+    page,
+    baseURL,
+  }) => {
+    /** @type {string[]} */
+    const foreign = [];
+    page.on('request', (request) => {
+      if (!request.url().startsWith(new URL(baseURL ?? '').origin) && !/^(blob|data):/.test(request.url()))
+        foreign.push(request.url());
+    });
+    await page.addInitScript(() => {
+      /** @type {any} */ (window).shift = 0;
+      new PerformanceObserver((list) => {
+        for (const entry of list.getEntries()) /** @type {any} */ (window).shift += /** @type {any} */ (entry).value;
+      }).observe({ type: 'layout-shift', buffered: true });
+    });
     const { clean } = await open(page, { width, height });
-    const compact = width < 720 || height < 480;
-    for (const tab of compact ? ['Sampling', 'Report', 'Field'] : ['']) {
-      if (tab) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
-      const { scroll, outside, rows } = await page.evaluate(() => {
-        const visible = (/** @type {Element} */ element) => element.checkVisibility();
-        const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')]
-          .filter(visible)
-          .filter((element) => {
-            const { left, right, top, bottom } = element.getBoundingClientRect();
-            return left < -0.5 || right > innerWidth + 0.5 || top < -2.5 || bottom > innerHeight + 0.5;
-          })
-          .map((element) => element.className);
-        for (const body of document.querySelectorAll('.panel-body')) {
-          if (visible(body) && body.scrollWidth > body.clientWidth + 1)
-            outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
-        }
-        const middle = (/** @type {Element} */ element) =>
-          Math.round(element.getBoundingClientRect().top + element.clientHeight / 2);
-        const rows = new Set([...document.querySelectorAll('.tabs > *')].filter(visible).map(middle)).size;
-        return { scroll: document.documentElement.scrollWidth, outside, rows };
-      });
-      expect(rows).toBe(Number(compact));
-      expect(scroll).toBeLessThanOrEqual(width);
-      expect(outside).toEqual([]);
+    expect(await page.evaluate(() => /** @type {any} */ (window).shift)).toBeLessThan(0.05);
+    expect(foreign).toEqual([]);
+    await expectNoOverflow(page, width, height);
+    for (const [otherWidth, otherHeight] of others) {
+      await page.setViewportSize({ width: otherWidth, height: otherHeight });
+      await atRest(page);
+      await expectNoOverflow(page, otherWidth, otherHeight);
     }
-    // The surface stays visible: a good part of the window belongs to the picture.
-    const view = await page.locator('#view').boundingBox();
-    expect((view?.width ?? 0) * (view?.height ?? 0)).toBeGreaterThan(0.2 * width * height);
     await clean();
   });
 }
 
-for (const [width, height] of /** @type {const} */ ([
-  [1440, 900],
-  [390, 844],
-])) {
-  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
-    test(`axe finds nothing at ${width} by ${height}, ${colorScheme}`, async ({ page }) => {
-      await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
-      await open(page, { width, height });
-      if (width < 720) {
-        for (const tab of ['Sampling', 'Report', 'Field']) {
-          await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
-          expect((await scan(page)).violations).toEqual([]);
-        }
-        return;
+/** @param {Page} page @param {number} width @param {number} height */
+async function expectNoOverflow(page, width, height) {
+  const compact = width < 720 || height < 480;
+  for (const tab of compact ? ['Sampling', 'Report', 'Field'] : ['']) {
+    const button = page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab });
+    // A press on the tab of an open panel closes it.
+    if (tab && !(await page.locator(`#panel-${tab.toLowerCase()}`).isVisible())) await button.click();
+    const { scroll, outside, rows } = await page.evaluate(() => {
+      const visible = (/** @type {Element} */ element) => element.checkVisibility();
+      const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')]
+        .filter(visible)
+        .filter((element) => {
+          const { left, right, top, bottom } = element.getBoundingClientRect();
+          return left < -0.5 || right > innerWidth + 0.5 || top < -2.5 || bottom > innerHeight + 0.5;
+        })
+        .map((element) => element.className);
+      for (const body of document.querySelectorAll('.panel-body')) {
+        if (visible(body) && body.scrollWidth > body.clientWidth + 1)
+          outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
       }
-      expect((await scan(page)).violations).toEqual([]);
-      await page.getByRole('radio', { name: 'Adaptive' }).check();
-      await page.getByRole('button', { name: 'Advanced' }).click();
-      // Off the settings, whose explanation would come up in a layer outside of every landmark.
-      await page.mouse.move(720, 400);
-      await settled(page);
-      expect((await scan(page)).violations).toEqual([]);
-      await page.getByRole('button', { name: 'View options' }).click();
-      expect((await scan(page)).violations).toEqual([]);
-      await page.keyboard.press('Escape');
-      await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
-      expect((await scan(page)).violations).toEqual([]);
+      const middle = (/** @type {Element} */ element) =>
+        Math.round(element.getBoundingClientRect().top + element.clientHeight / 2);
+      const rows = new Set([...document.querySelectorAll('.tabs > *')].filter(visible).map(middle)).size;
+      return { scroll: document.documentElement.scrollWidth, outside, rows };
     });
+    const where = `${width} by ${height} ${tab}`;
+    expect(rows, where).toBe(Number(compact));
+    expect(scroll, where).toBeLessThanOrEqual(width);
+    expect(outside, where).toEqual([]);
+  }
+  // The surface stays visible: a good part of the window belongs to the picture.
+  const view = await page.locator('#view').boundingBox();
+  expect((view?.width ?? 0) * (view?.height ?? 0)).toBeGreaterThan(0.2 * width * height);
+}
+
+/** Expects that axe finds nothing, in the light and in the dark. @param {Page} page */
+async function expectAccessible(page) {
+  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
+    await page.emulateMedia({ colorScheme });
+    expect((await scan(page)).violations, colorScheme).toEqual([]);
   }
 }
 
-for (const [width, height] of /** @type {const} */ ([
-  [390, 844],
-  [320, 640],
-  [320, 568],
-])) {
-  test(`on a phone of ${width} by ${height} the surface stands clear of tools, legend and caption`, async ({
-    page,
-  }) => {
-    await open(page, { width, height });
-    await page.locator('.tile[data-surface="sphere"]').click();
-    await page.getByRole('combobox', { name: 'Colour by' }).selectOption('curvature');
-    await settled(page);
-    await expect(page.locator('.scale .unit')).toBeVisible();
+test('axe finds nothing at 390 by 844', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  for (const tab of ['Sampling', 'Report', 'Field']) {
+    await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
+    await expectAccessible(page);
+  }
+});
+
+test('axe finds nothing at 1440 by 900', async ({ page }) => {
+  await open(page, { width: 1440, height: 900 });
+  await expectAccessible(page);
+  await page.getByRole('radio', { name: 'Adaptive' }).check();
+  await page.getByRole('button', { name: 'Advanced' }).click();
+  // Off the settings, whose explanation would come up in a layer outside of every landmark.
+  await page.mouse.move(720, 400);
+  await settled(page);
+  await expectAccessible(page);
+  await page.getByRole('button', { name: 'View options' }).click();
+  await expectAccessible(page);
+  await page.keyboard.press('Escape');
+  await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+  await expectAccessible(page);
+});
+
+test('on a phone the surface stands clear of tools, legend and caption', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  await page.locator('.tile[data-surface="sphere"]').click();
+  await page.getByRole('combobox', { name: 'Colour by' }).selectOption('curvature');
+  await settled(page);
+  await expect(page.locator('.scale .unit')).toBeVisible();
+  for (const [width, height] of /** @type {const} */ ([
+    [390, 844],
+    [320, 640],
+    [320, 568],
+  ])) {
+    await page.setViewportSize({ width, height });
     await atRest(page);
     const { under, between } = await page.evaluate(() => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
@@ -110,22 +149,77 @@ for (const [width, height] of /** @type {const} */ ([
     });
     expect(under).toEqual([false, false, false]);
     expect(between).toBe(true);
-  });
-}
+  }
+});
 
-test('targets are at least 24 pixels', async ({ page }) => {
-  await open(page, { width: 1440, height: 900 });
-  const small = await page.evaluate(() =>
-    [...document.querySelectorAll('button, select, input:not(.visually-hidden), summary')]
-      .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest('label.check'))
-      .map((element) => ({
-        name: element.textContent || element.getAttribute('aria-label'),
-        box: element.getBoundingClientRect(),
-      }))
-      .filter(({ box }) => box.width < 23.5 || box.height < 23.5)
-      .map(({ name, box }) => `${name} ${box.width} by ${box.height}`),
-  );
-  expect(small).toEqual([]);
+test('targets are large, the theme can be switched, and the page says what it is', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await test.step('targets are at least 24 pixels', async () => {
+    const small = await page.evaluate(() =>
+      [...document.querySelectorAll('button, select, input:not(.visually-hidden), summary')]
+        .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest('label.check'))
+        .map((element) => ({
+          name: element.textContent || element.getAttribute('aria-label'),
+          box: element.getBoundingClientRect(),
+        }))
+        .filter(({ box }) => box.width < 23.5 || box.height < 23.5)
+        .map(({ name, box }) => `${name} ${box.width} by ${box.height}`),
+    );
+    expect(small).toEqual([]);
+  });
+
+  await test.step('the theme follows the system and can be switched', async () => {
+    await page.emulateMedia({ colorScheme: 'dark' });
+    await afresh(page);
+    const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+    const dark = await ground();
+    await page.getByRole('button', { name: 'View options' }).click();
+    await page.getByRole('button', { name: 'Light', exact: true }).click();
+    expect(await ground()).not.toBe(dark);
+    await page.emulateMedia({ colorScheme: 'light' });
+    await page.getByRole('button', { name: 'System' }).click();
+    expect(await ground()).not.toBe(dark);
+  });
+
+  await test.step('on a phone formula and sliders come before the story, and the list of keys is in reach', async () => {
+    await afresh(page, { width: 390, height: 844 });
+    const top = async (/** @type {string} */ part) => (await page.locator(part).first().boundingBox())?.y ?? NaN;
+    expect(await top('.formula')).toBeLessThan(await top('.story'));
+    expect(await top('.parameters')).toBeLessThan(await top('.story'));
+    expect(await top('.story')).toBeLessThan(await top('.clip'));
+    await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+    await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
+  });
+
+  await test.step('in a large window everything grows with it, in a usual one it has the size that the user has set', async () => {
+    await afresh(page, { width: 1600, height: 900 });
+    const sizes = () =>
+      page.evaluate(() => {
+        const [field, levels, bar] = ['#panel-field', '#panel-levels', '#panel-sampling'].map((part) =>
+          /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect(),
+        );
+        return {
+          type: parseFloat(getComputedStyle(document.documentElement).fontSize),
+          field: field.width,
+          levels: levels.height,
+          bar: bar.width,
+        };
+      });
+    const usual = await sizes();
+    expect(usual.type).toBe(16);
+    for (const [width, height] of /** @type {const} */ ([
+      [1920, 1080],
+      [3440, 1080],
+    ])) {
+      await page.setViewportSize({ width, height });
+      expect((await sizes()).type).toBe(16);
+    }
+    await page.setViewportSize({ width: 3840, height: 2160 });
+    const large = await sizes();
+    for (const part of /** @type {const} */ (['type', 'field', 'levels', 'bar']))
+      expect(large[part], part).toBeGreaterThan(1.7 * usual[part]);
+  });
+  await clean();
 });
 
 test('without its style sheet the page still has all its controls', async ({ page }) => {
@@ -174,33 +268,6 @@ test('a style sheet that comes after the script finds everything in its place', 
   const ground = await page.locator('meta[name="theme-color"]').first().getAttribute('content');
   expect(ground).toBe(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
 });
-
-for (const [width, height] of /** @type {const} */ ([
-  [1440, 900],
-  [1280, 720],
-  [390, 844],
-])) {
-  test(`the page settles without a jump and asks nobody else for anything at ${width} by ${height}`, async ({
-    page,
-    baseURL,
-  }) => {
-    /** @type {string[]} */
-    const foreign = [];
-    page.on('request', (request) => {
-      if (!request.url().startsWith(new URL(baseURL ?? '').origin) && !/^(blob|data):/.test(request.url()))
-        foreign.push(request.url());
-    });
-    await page.addInitScript(() => {
-      /** @type {any} */ (window).shift = 0;
-      new PerformanceObserver((list) => {
-        for (const entry of list.getEntries()) /** @type {any} */ (window).shift += /** @type {any} */ (entry).value;
-      }).observe({ type: 'layout-shift', buffered: true });
-    });
-    await open(page, { width, height });
-    expect(await page.evaluate(() => /** @type {any} */ (window).shift)).toBeLessThan(0.05);
-    expect(foreign).toEqual([]);
-  });
-}
 
 test('keys alone reach the formula, a slider, the run and the panels', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
@@ -257,30 +324,6 @@ test('the picture of a dark page is dark from the first frame, also where the sa
   expect(brightest).toBeLessThan(64);
 });
 
-test('the theme follows the system and can be switched', async ({ page }) => {
-  await page.emulateMedia({ colorScheme: 'dark' });
-  await open(page);
-  const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
-  const dark = await ground();
-  await page.getByRole('button', { name: 'View options' }).click();
-  await page.getByRole('button', { name: 'Light', exact: true }).click();
-  expect(await ground()).not.toBe(dark);
-  await page.emulateMedia({ colorScheme: 'light' });
-  await page.getByRole('button', { name: 'System' }).click();
-  expect(await ground()).not.toBe(dark);
-});
-
-test('on a phone formula and sliders come before the story, and the list of keys is in reach', async ({ page }) => {
-  const { clean } = await open(page, { width: 390, height: 844 });
-  const top = async (/** @type {string} */ part) => (await page.locator(part).first().boundingBox())?.y ?? NaN;
-  expect(await top('.formula')).toBeLessThan(await top('.story'));
-  expect(await top('.parameters')).toBeLessThan(await top('.story'));
-  expect(await top('.story')).toBeLessThan(await top('.clip'));
-  await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
-  await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
-  await clean();
-});
-
 test('the page says in one line what it is', async ({ page }) => {
   for (const [width, height] of /** @type {const} */ ([
     [1440, 900],
@@ -292,36 +335,4 @@ test('the page says in one line what it is', async ({ page }) => {
     expect((await line.boundingBox())?.height).toBeLessThan(24);
     await clean();
   }
-});
-
-test('in a large window everything grows with it, in a usual one it has the size that the user has set', async ({
-  page,
-}) => {
-  const { clean } = await open(page, { width: 1600, height: 900 });
-  const sizes = () =>
-    page.evaluate(() => {
-      const [field, levels, bar] = ['#panel-field', '#panel-levels', '#panel-sampling'].map((part) =>
-        /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect(),
-      );
-      return {
-        type: parseFloat(getComputedStyle(document.documentElement).fontSize),
-        field: field.width,
-        levels: levels.height,
-        bar: bar.width,
-      };
-    });
-  const usual = await sizes();
-  expect(usual.type).toBe(16);
-  for (const [width, height] of /** @type {const} */ ([
-    [1920, 1080],
-    [3440, 1080],
-  ])) {
-    await page.setViewportSize({ width, height });
-    expect((await sizes()).type).toBe(16);
-  }
-  await page.setViewportSize({ width: 3840, height: 2160 });
-  const large = await sizes();
-  for (const part of /** @type {const} */ (['type', 'field', 'levels', 'bar']))
-    expect(large[part], part).toBeGreaterThan(1.7 * usual[part]);
-  await clean();
 });

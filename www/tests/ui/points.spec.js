@@ -108,9 +108,10 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
         new Promise((/** @type {(done: void) => void} */ resolve) => {
           const { engine } = /** @type {any} */ (window).marchingParticles;
           // Pressed in the page itself: from here a press could come late.
-          engine.loading.subscribe((/** @type {any} */ loading) => {
+          const off = engine.loading.subscribe((/** @type {any} */ loading) => {
             if (loading)
               setTimeout(() => {
+                off();
                 /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click();
                 resolve();
               });
@@ -152,24 +153,24 @@ test('keys alone open the chooser for files', async ({ page }) => {
   expect(await page.locator('input[type=file]').getAttribute('accept')).toContain('.ply');
 });
 
-for (const [width, height] of /** @type {const} */ ([
-  [1440, 900],
-  [390, 844],
-])) {
-  test(`a model is sampled, tells of its points, and one press leads back to the formula, at ${width} by ${height}`, async ({
-    page,
-  }) => {
-    await page.emulateMedia({ reducedMotion: 'reduce', colorScheme: width < 720 ? 'dark' : 'light' });
-    const { clean } = await open(page, { width, height });
-    const { formula } = await state(page);
-    const [model] = await page.evaluate(
-      () => /** @type {any} */ (window).marchingParticles.engine.description.value.models,
-    );
-    await page.getByRole('button', { name: 'Points', exact: true }).click();
-    await page.locator(`.tile[data-surface="${model.id}"]`).click();
-    await expect(page.locator('.story')).toContainText(model.name);
-    await settled(page);
-    expect((await report(page)).count).toBeGreaterThan(1000);
+test('a model is sampled, tells of its points, and one press leads back to the formula', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { formula } = await state(page);
+  const [model] = await page.evaluate(
+    () => /** @type {any} */ (window).marchingParticles.engine.description.value.models,
+  );
+  await page.getByRole('button', { name: 'Points', exact: true }).click();
+  await page.locator(`.tile[data-surface="${model.id}"]`).click();
+  await expect(page.locator('.story')).toContainText(model.name);
+  await settled(page);
+  expect((await report(page)).count).toBeGreaterThan(1000);
+  const points = page.getByRole('button', { name: 'Show points' });
+  for (const [width, height, colorScheme] of /** @type {const} */ ([
+    [1440, 900, 'light'],
+    [390, 844, 'dark'],
+  ])) {
+    await page.setViewportSize({ width, height });
+    await page.emulateMedia({ colorScheme });
     await expect(page.locator('.story')).toContainText(model.credit);
     await expect(page.locator('.story')).toContainText(`${model.points} points`);
     const facts = page.locator('.facts');
@@ -177,21 +178,21 @@ for (const [width, height] of /** @type {const} */ ([
       await expect(facts).toContainText(word);
     await expect(page.locator('.model')).toContainText(`f interpolates all ${model.points} points`);
     await expect(page.getByRole('textbox', { name: 'Formula' })).toBeHidden();
-    const points = page.getByRole('button', { name: 'Show points' });
     await expect(points).toHaveAttribute('aria-pressed', 'true');
     await points.click();
     expect((await state(page)).view.points).toBe(false);
     expect((await scan(page)).violations).toEqual([]);
-    await page.getByRole('button', { name: 'Back to the formula' }).click();
-    await settled(page);
-    expect((await state(page)).formula).toBe(formula);
-    await expect(points).toBeHidden();
-    await page.getByRole('button', { name: 'Undo', exact: true }).click();
-    await expect(page.locator('.story')).toContainText(model.name);
-    await settled(page);
-    await clean();
-  });
-}
+    await points.click();
+  }
+  await page.getByRole('button', { name: 'Back to the formula' }).click();
+  await settled(page);
+  expect((await state(page)).formula).toBe(formula);
+  await expect(points).toBeHidden();
+  await page.getByRole('button', { name: 'Undo', exact: true }).click();
+  await expect(page.locator('.story')).toContainText(model.name);
+  await settled(page);
+  await clean();
+});
 
 test('a file and the number of its points', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
