@@ -22,11 +22,11 @@ const MAY_USE = {
   'engine/constants': [],
   'engine/vector': ['engine/types'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
-  'engine/columns': ['engine/types'],
+  'engine/columns': ['engine/types', 'engine/vector'],
   'engine/store': ['engine/types', 'engine/share'],
   'engine/view': ['engine/types', 'engine/columns', 'engine/vector'],
   // The state holds the camera's.
-  'engine/share': ['engine/types', 'engine/constants', 'engine/columns', 'engine/view'],
+  'engine/share': ['engine/types', 'engine/constants', 'engine/columns', 'engine/vector', 'engine/view'],
   // What the workers need to bring in a bundle and to keep its pace.
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.

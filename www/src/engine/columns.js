@@ -5,6 +5,7 @@
  * @module
  */
 
+import { vec } from './vector.js';
 /** @import { Bounds, Mesh } from './types.js' */
 
 /** Parent index of a seed, as the core writes it. */
@@ -118,19 +119,13 @@ export class Columns {
   reserve(n) {
     if (n <= this.radii.length) return;
     const room = Math.max(n, 2 * this.radii.length, 1024);
-    /** @template {Float32Array | Float64Array | Uint32Array} T @param {T} old @param {number} width @returns {T} */
-    const grown = (old, width) => {
-      const next = /** @type {T} */ (new /** @type {any} */ (old.constructor)(room * width));
-      next.set(old);
-      return next;
-    };
-    this.positions = grown(this.positions, 3);
-    if (this.exact.length > 0) this.exact = grown(this.exact, 3);
-    this.normals = grown(this.normals, 3);
-    this.radii = grown(this.radii, 1);
-    this.levels = grown(this.levels, 1);
-    this.parents = grown(this.parents, 1);
-    this.slots = grown(this.slots, 1);
+    this.positions = grown(this.positions, 3 * room);
+    if (this.exact.length > 0) this.exact = grown(this.exact, 3 * room);
+    this.normals = grown(this.normals, 3 * room);
+    this.radii = grown(this.radii, room);
+    this.levels = grown(this.levels, room);
+    this.parents = grown(this.parents, room);
+    this.slots = grown(this.slots, room);
   }
 
   /**
@@ -198,8 +193,8 @@ export class Columns {
    */
   bounds() {
     if (this.count === 0) return null;
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
+    const min = vec(() => Infinity);
+    const max = vec(() => -Infinity);
     for (let i = 0; i < this.count; i += 1) {
       const r = this.radii[i];
       for (let k = 0; k < 3; k += 1) {
@@ -208,6 +203,24 @@ export class Columns {
         if (v + r > max[k]) max[k] = v + r;
       }
     }
-    return { min: /** @type {any} */ (min), max: /** @type {any} */ (max) };
+    return { min, max };
   }
+}
+
+/**
+ * Returns an empty column of the same kind.
+ * @template {Float32Array | Float64Array | Uint32Array} T
+ * @param {T} column @param {number} length
+ */
+export const emptyLike = (column, length) => /** @type {T} */ (new /** @type {any} */ (column.constructor)(length));
+
+/**
+ * Returns a longer column with the same values at its beginning.
+ * @template {Float32Array | Float64Array | Uint32Array} T
+ * @param {T} column @param {number} length
+ */
+export function grown(column, length) {
+  const next = emptyLike(column, length);
+  next.set(column);
+  return next;
 }

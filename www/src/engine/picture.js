@@ -3,17 +3,18 @@
  *
  * @module
  */
+
 import { batch } from '@preact/signals-core';
 import { NO_PARENT } from './columns.js';
 import { CAMERA_MS } from './debug.js';
 import { changeView } from './store.js';
+import { triple } from './vector.js';
 import { attachControls } from './view/controls.js';
 import { Viewer } from './view/viewer.js';
 
 /**
  * @import { Columns } from './columns.js'
  * @import { Store } from './store.js'
- * @import { Vec3 } from './types.js'
  * @import { BackendKind, Device } from './view/backends.js'
  */
 
@@ -145,14 +146,12 @@ const withEnd = (measured, index) => (measured.length === 1 && measured[0] !== i
 
 /** Returns the attributes of one particle that the hover card shows. @param {Columns} columns @param {number} index */
 function particle(columns, index) {
-  const triple = (/** @type {Float32Array} */ column) =>
-    /** @type {Vec3} */ ([...column.subarray(3 * index, 3 * index + 3)]);
   return {
     index,
     level: columns.levels[index],
     parent: columns.parents[index] === NO_PARENT ? null : columns.parents[index],
-    position: triple(columns.shown),
-    normal: triple(columns.normals),
+    position: triple(columns.shown, index),
+    normal: triple(columns.normals, index),
     radius: columns.radii[index],
     residual: columns.residual?.[index] ?? null,
     valence: columns.valence?.[index] ?? null,

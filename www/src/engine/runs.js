@@ -48,7 +48,7 @@ export class Runs {
       store,
       columns,
       picture,
-      spawn: () => /** @type {any} */ (spawnSampler()),
+      spawn: spawnSampler,
       whole: () => this.request(),
       solved: (key) => this.loader.client.get(key),
       onReady,

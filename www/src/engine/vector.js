@@ -2,6 +2,11 @@
 
 /** @import { Vec3 } from './types.js' */
 
+/** Returns the vector of f(0), f(1) and f(2). @param {(axis: number) => number} f @returns {Vec3} */
+export const vec = (f) => [f(0), f(1), f(2)];
+/** Returns vector number i of a column. @param {ArrayLike<number>} column @param {number} i @returns {Vec3} */
+export const triple = (column, i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]];
+
 /** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
 export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 /** @param {ArrayLike<number>} p @param {ArrayLike<number>} q @returns {Vec3} */

@@ -6,12 +6,12 @@
 import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
 import { childMarks, slotGroup } from './drawings.js';
-import { arcOf, unrolled, widthOf } from './geometry.js';
+import { arcOf, polar, unrolled, widthOf } from './geometry.js';
 import { label, line, ring } from './svg.js';
 import { FATES, inDegrees } from './words.js';
 
 /**
- * @import { Plane, Point } from './geometry.js'
+ * @import { Plane } from './geometry.js'
  * @import { Child, Moment } from './moment.js'
  * @import { Opened } from './particle.js'
  */
@@ -77,8 +77,7 @@ function anglesOf({ room, pushes }, plane) {
   if (!room || !last) return [];
   const [x, y] = unrolled(plane, last.position);
   const from = Math.atan2(y, x) - room.phi_rad / 2;
-  const middle = (/** @type {number} */ width, /** @type {number} */ at) =>
-    /** @type {Point} */ ([at * Math.cos(from + width / 2), at * Math.sin(from + width / 2)]);
+  const middle = (/** @type {number} */ width, /** @type {number} */ at) => polar(from + width / 2, at);
   const isRing = room.tau_rad >= 2 * Math.PI;
   return [
     line('free', arcOf(from, room.tau_rad, FREE_AT)),

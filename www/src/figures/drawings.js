@@ -3,7 +3,7 @@
 import { dot } from '../engine/vector.js';
 import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
-import { inPlane, slotPlace } from './geometry.js';
+import { inPlane, scaledBy, slotPlace } from './geometry.js';
 import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
 
@@ -66,7 +66,7 @@ const clear = ([x, y]) => [x, y > 0.5 ? y + 0.58 : y - 0.58];
 /** @param {Child} child @param {boolean} isNow */
 function slotMarks({ slot }, isNow) {
   const end = slotPlace(slot);
-  const between = /** @type {Point} */ (end.map((v) => (v * NUMBER_AT) / 2));
+  const between = scaledBy(end, NUMBER_AT / 2);
   return [
     line(isNow ? 'ray now' : 'ray', [[0, 0], end]),
     ring(isNow ? 'slot now' : 'slot', end, 1),

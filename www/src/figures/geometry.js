@@ -94,3 +94,8 @@ export function widthOf([from, to]) {
   const width = to - from;
   return width > 0 ? width : width + 2 * Math.PI;
 }
+
+/** @param {Point} p @param {number} factor @returns {Point} */
+export const scaledBy = ([x, y], factor) => [x * factor, y * factor];
+/** @param {number} angle @param {number} distance @returns {Point} */
+export const polar = (angle, distance) => [distance * Math.cos(angle), distance * Math.sin(angle)];

@@ -2,7 +2,7 @@
  * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
  */
 import { NO_PARENT } from '../engine/columns.js';
-import { distance, unit } from '../engine/vector.js';
+import { distance, triple, unit, vec } from '../engine/vector.js';
 import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
@@ -45,9 +45,6 @@ export const RESIDUAL = 1e-4;
 const SECTION_HALF = 3.2;
 const SECTION_CELLS = 64;
 const LENS_CELLS = 24;
-
-/** @param {Float32Array} column @param {number} i */
-export const triple = (column, i) => /** @type {Vec3} */ ([...column.subarray(3 * i, 3 * i + 3)]);
 
 /**
  * Fetches the events of a particle and all that is drawn of it, so that each step is at once.
@@ -98,9 +95,8 @@ async function profile(client, { place, normal, radius }, { start, iterates, lan
   const around = lensOf([start.place, ...tried.map(({ position }) => position)].map((q) => inPlane(at, q)));
   let lens = null;
   if (around) {
-    const centre = /** @type {Vec3} */ (
-      place.map((v, k) => v + radius * (around.centre[0] * direction[k] + around.centre[1] * normal[k]))
-    );
+    const [x, y] = around.centre;
+    const centre = vec((k) => place[k] + radius * (x * direction[k] + y * normal[k]));
     const cells = LENS_CELLS;
     lens = { ...around, section: await client.ask('section', { ...plane, centre, half: around.half * radius, cells }) };
   }

@@ -3,7 +3,7 @@
 import { dot } from '../engine/vector.js';
 import { s } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
-import { inPlane, tangentsOf } from './geometry.js';
+import { inPlane, scaledBy, tangentsOf } from './geometry.js';
 import { pushWords } from './rest.js';
 import { label, line, ring } from './svg.js';
 
@@ -36,8 +36,8 @@ function arrow(kind, to) {
   const length = Math.hypot(x, y);
   const head = Math.min(HEAD, 0.6 * length);
   const [u, v] = length > 0 ? [x / length, y / length] : [0, 0];
-  const side = (/** @type {1 | -1} */ by) =>
-    /** @type {Point} */ ([x - head * (u - by * HEAD_WIDTH * v), y - head * (v + by * HEAD_WIDTH * u)]);
+  /** @param {1 | -1} by @returns {Point} */
+  const side = (by) => [x - head * (u - by * HEAD_WIDTH * v), y - head * (v + by * HEAD_WIDTH * u)];
   return line(kind, [[0, 0], to, side(1), to, side(-1)]);
 }
 
@@ -62,8 +62,7 @@ export function restPlane({ particle }, rest, towards) {
     role: 'img',
     'aria-label': `Tangent plane of particle ${formatCount(particle)} in relaxation step ${rest.step}: ${pushWords(rest)}`,
   });
-  const scaled = (/** @type {ArrayLike<number>} */ force) =>
-    /** @type {Point} */ (along(plane, force).map((v) => FORCE_SCALE * v));
+  const scaled = (/** @type {ArrayLike<number>} */ force) => scaledBy(along(plane, force), FORCE_SCALE);
   for (const { at, radius } of rest.pushes) svg.append(ring('disc', inPlane(plane, at), radius / rest.radius));
   svg.append(ring('self', [0, 0], 1));
   for (const { particle: other, at } of rest.pushes)
@@ -84,7 +83,7 @@ export function moveLens(rest, towards) {
   const far = Math.max(Math.hypot(...target), Math.hypot(...landing));
   if (!(far > LEAST_MOVE)) return null;
   const half = LENS_ROOM * far;
-  const at = ([x, y] = target) => /** @type {Point} */ ([x / half, y / half]);
+  const at = (point = target) => scaledBy(point, 1 / half);
   const svg = s(
     'svg',
     { class: 'drawing lens rest', viewBox: '-1 -1 2 2', 'aria-hidden': 'true' },

@@ -71,7 +71,7 @@ const withOwn = (values, own) =>
 /** Gives each card that has one a button that shows both. @param {HTMLElement} cards @param {Lab} lab */
 export function mountCards(cards, lab) {
   for (const card of cards.querySelectorAll('.card')) {
-    const { whatIf: id } = /** @type {HTMLElement} */ (card).dataset;
+    const id = card.getAttribute('data-what-if');
     if (!id) continue;
     const title = card.querySelector('h3')?.textContent ?? '';
     const isOpen = signal(false);

@@ -58,8 +58,8 @@ export function createHandout(host, { figures, lab, compare, say }) {
     for (const id of ids) await ask(id).catch((error) => known.set(id, reasonOf(error)));
     await compare();
     // Not on the screen, they have not been asked for.
-    for (const still of document.querySelectorAll('.what-if-stills img')) {
-      const image = /** @type {HTMLImageElement} */ (still);
+    for (const image of document.querySelectorAll('.what-if-stills img')) {
+      if (!(image instanceof HTMLImageElement)) continue;
       image.loading = 'eager';
       await image.decode().catch(() => {});
     }

@@ -18,7 +18,7 @@ export function lockParts(root, locks) {
   const selector = locks.flatMap((name) => PARTS[name] ?? []).join(', ');
   if (!selector) return;
   const apply = () => {
-    for (const part of root.querySelectorAll(selector)) /** @type {HTMLElement} */ (part).inert = true;
+    for (const part of root.querySelectorAll(selector)) part.toggleAttribute('inert', true);
   };
   // Figures come to life later, and make some of their controls anew.
   new MutationObserver(apply).observe(root, { childList: true, subtree: true });

@@ -1,6 +1,6 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
-import { LessonClient } from '../engine/lesson/client.js';
+import { kindOf, LessonClient } from '../engine/lesson/client.js';
 import { button } from '../ui/button.js';
 import { byId } from '../ui/dom.js';
 import { surfaceWords } from '../ui/surface-link.js';
@@ -35,7 +35,7 @@ async function openLab() {
     await own.radiusFor(PARTICLES);
     return own;
   } catch (error) {
-    const isRefused = error instanceof NoSurface || /** @type {any} */ (error)?.kind === 'refused';
+    const isRefused = error instanceof NoSurface || kindOf(error) === 'refused';
     if (!isRefused) return own;
     const stand = subjectOf(undefined).surface;
     notice.textContent = `${/** @type {Error} */ (error).message} The figures show an ellipsoid.`;

@@ -1,4 +1,5 @@
 /** Two runs side by side, seen by one camera. */
+import { triple } from '../engine/vector.js';
 import { fill, h } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
 import { spread } from '../ui/neighbours.js';
@@ -38,12 +39,12 @@ function sceneOf(run, colouring, [least, most]) {
 
 /** The colours in words. @param {Colouring} colouring @param {[number, number]} radii */
 function legendOf(colouring, [least, most]) {
-  const ends = /** @type {const} */ ([formatFixed(LOW, 2), formatFixed(HIGH, 2)]);
+  const [low, high] = [formatFixed(LOW, 2), formatFixed(HIGH, 2)];
   switch (colouring) {
     case 'parent':
-      return createScale('Distance to the parent, in 2r', ...ends);
+      return createScale('Distance to the parent, in 2r', low, high);
     case 'nearest':
-      return createScale('Distance to the nearest, in 2r', ...ends);
+      return createScale('Distance to the nearest, in 2r', low, high);
     case 'radius':
       return createScale('Radius', formatSignificant(least, 2), formatSignificant(most, 2));
     default:
@@ -55,23 +56,21 @@ function legendOf(colouring, [least, most]) {
 const around = ({ mean, deviation }) =>
   `${formatFixed(mean, 3)} ± ${formatFixed(Math.round(deviation * 1000) / 1000, 3)}`;
 
-/** What is compared. @param {LabRun} run @returns {[string, string][]} */
+/** What is compared. @param {LabRun} run */
 export function figuresOf(run) {
   const { particles, evaluations } = run.progress;
   const nearest = spread(nearestDistances(run.end));
   const isEven = run.settings.sampling !== 'adaptive';
   const unit = isEven ? 'in 2r' : 'over the sum of both radii';
-  return [
+  /** @type {[string, string][]} */
+  const figures = [
     ['Particles', formatCount(particles)],
     ['Evaluations of f for each', formatSignificant(evaluations / Math.max(1, particles), 3)],
     [`Nearest neighbour, ${unit}`, around(nearest)],
     [`Closest pair, ${unit}`, formatFixed(nearest.least, 3)],
-    ...(isEven
-      ? /** @type {[string, string][]} */ ([
-          ['Distance to the parent, in 2r', around(spread(parentDistances(run.placed, run.radius)))],
-        ])
-      : []),
   ];
+  if (isEven) figures.push(['Distance to the parent, in 2r', around(spread(parentDistances(run.placed, run.radius)))]);
+  return figures;
 }
 
 /** @param {readonly [Side, Side]} sides @param {readonly [LabRun, LabRun]} runs */
@@ -94,7 +93,7 @@ export function createPair(lab, { bare = false } = {}) {
   /** @param {number} k @param {number} particle */
   function particlePlace(k, particle) {
     const { positions = new Float32Array(0) } = pictures[k].scene.peek()?.particles ?? {};
-    return [...positions.subarray(3 * particle, 3 * particle + 3)];
+    return triple(positions, particle);
   }
   const captions = pictures.map(() => h('figcaption', null));
   const legend = h('div');
@@ -134,7 +133,8 @@ export function createPair(lab, { bare = false } = {}) {
         this.runs = [left, right];
         orbit.fitTo(left.end);
         const all = [...left.end.radii, ...right.end.radii];
-        const radii = /** @type {[number, number]} */ ([Math.min(...all), Math.max(...all)]);
+        /** @type {[number, number]} */
+        const radii = [Math.min(...all), Math.max(...all)];
         for (const [k, run] of this.runs.entries()) {
           pictures[k].show(sceneOf(run, colouring, radii));
           captions[k].textContent = sides[k].label;

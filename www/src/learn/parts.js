@@ -94,14 +94,15 @@ export function createBars({ values, words }) {
 
 /**
  * A select with its name.
- * @param {{ name: string, choices: readonly { value: string, label: string }[], value?: string, change: (value: string)
- *   => void }} about
+ * @template {string} T
+ * @param {{ name: string, choices: readonly { value: T, label: string }[], value?: NoInfer<T>, change: (value: T) =>
+ *   void }} about
  */
 export function createSelect({ name, choices, value, change }) {
   const id = uniqueId('select');
   const select = h(
     'select',
-    { class: 'select', id, on: { change: () => change(select.value) } },
+    { class: 'select', id, on: { change: () => change(choices[select.selectedIndex].value) } },
     choices.map((choice) => h('option', { value: choice.value, selected: choice.value === value }, choice.label)),
   );
   return { element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select), select };

@@ -10,7 +10,7 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
- * @import { Bounds, LessonParticles, Vec3 } from '../engine/types.js'
+ * @import { Bounds, LessonParticles } from '../engine/types.js'
  * @import { View } from '../engine/view/camera.js'
  * @import { Palette } from '../engine/view/palettes.js'
  */
@@ -79,7 +79,7 @@ export class Orbit {
       min[i % 3] = Math.min(min[i % 3], positions[i]);
       max[i % 3] = Math.max(max[i % 3], positions[i]);
     }
-    const { centre } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+    const { centre } = ballOf({ min, max });
     const radius = radii.reduce((most, own, i) => {
       const far = Math.hypot(...centre.map((c, k) => positions[3 * i + k] - c));
       return Math.max(most, far + own);

@@ -1,6 +1,7 @@
 /** The race: the front against the method that the paper compares it with, side by side under one camera. */
 
 import { signal } from '@preact/signals-core';
+import { kindOf } from '../engine/lesson/client.js';
 import { opponentOf, Race } from '../engine/lesson/race.js';
 import { button } from '../ui/button.js';
 import { fill, h, s } from '../ui/dom.js';
@@ -181,7 +182,7 @@ class Course {
       fill(this.result, resultOf(names, own.lanes, ends), marksOf(kind, ratio));
       this.stop();
     } catch (error) {
-      if (isOver() || /** @type {any} */ (error)?.kind === 'given_up') return;
+      if (isOver() || kindOf(error) === 'given_up') return;
       this.stop();
       this.status.value = reasonOf(error);
     }

@@ -51,6 +51,18 @@ function parsePlace(value) {
 /** @param {readonly (readonly [string, string])[]} pairs */
 const values = (pairs) => pairs.map(([value, label]) => ({ value, label }));
 
+/**
+ * The values and the runs of a choice that is one setting.
+ * @template {keyof LessonSettings} K
+ * @param {K} key
+ * @param {readonly (readonly [string & LessonSettings[K], string])[]} pairs
+ * @param {Partial<LessonSettings>} [others]
+ */
+const setting = (key, pairs, others) => ({
+  values: values(pairs),
+  make: even((value) => ({ [key]: value, ...others })),
+});
+
 const ONE_SIZE = 'one_size';
 
 /** @type {readonly WhatIf[]} */
@@ -60,22 +72,24 @@ export const WHAT_IFS = [
     name: 'Queue or stack',
     look: 'Which particle comes next decides whether the front grows in rings or runs off like a thread, and so how many seams it leaves.',
     colouring: 'level',
-    values: values([
+    ...setting('order', [
       ['queue', 'Queue'],
       ['stack', 'Stack'],
     ]),
-    make: even((order) => ({ order: /** @type {'queue' | 'stack'} */ (order) })),
   },
   {
     id: 'projection',
     name: 'Circle or Newton',
     look: 'The distance of each child to its parent. The circle keeps 2r everywhere; Newton’s method falls short of it where the surface bends.',
     colouring: 'parent',
-    values: values([
-      ['circle', 'Circle'],
-      ['newton', 'Newton’s method'],
-    ]),
-    make: even((projection) => ({ projection: /** @type {'circle' | 'newton'} */ (projection), relax_steps: 0 })),
+    ...setting(
+      'projection',
+      [
+        ['circle', 'Circle'],
+        ['newton', 'Newton’s method'],
+      ],
+      { relax_steps: 0 },
+    ),
   },
   {
     id: 'tolerance',
@@ -133,44 +147,52 @@ export const WHAT_IFS = [
     name: 'Matched particles leave or stay',
     look: 'The paper takes a matched particle out of the neighbours. Two children of one parent can then not be matched with the same particle, and one of them is added beside it.',
     colouring: 'nearest',
-    values: values([
-      ['stay', 'They stay'],
-      ['leave', 'They leave'],
-    ]),
-    make: even((matched) => ({ matched: /** @type {'stay' | 'leave'} */ (matched), relax_steps: 0 })),
+    ...setting(
+      'matched',
+      [
+        ['stay', 'They stay'],
+        ['leave', 'They leave'],
+      ],
+      { relax_steps: 0 },
+    ),
   },
   {
     id: 'gaps',
     name: 'Gaps left or filled',
     look: 'A hole that is wide enough for a particle can be given one before the relaxation.',
     colouring: 'nearest',
-    values: values([
+    ...setting('gaps', [
       ['leave', 'Left'],
       ['fill', 'Filled'],
     ]),
-    make: even((gaps) => ({ gaps: /** @type {'leave' | 'fill'} */ (gaps) })),
   },
   {
     id: 'start',
     name: 'Where the search begins',
     look: 'The pictures agree. Look at the evaluations: a start where the parent’s curvature expects the surface needs fewer steps.',
     colouring: 'level',
-    values: values([
-      ['tangent', 'In the tangent plane'],
-      ['curvature', 'Where the curvature points'],
-    ]),
-    make: even((start) => ({ start: /** @type {'tangent' | 'curvature'} */ (start), relax_steps: 0 })),
+    ...setting(
+      'start',
+      [
+        ['tangent', 'In the tangent plane'],
+        ['curvature', 'Where the curvature points'],
+      ],
+      { relax_steps: 0 },
+    ),
   },
   {
     id: 'placing',
     name: 'Child by child or level by level',
     look: 'Placing a whole level at once gives nearly the same particles. It compares children before it projects them, and so needs far fewer evaluations.',
     colouring: 'level',
-    values: values([
-      ['one_by_one', 'Child by child'],
-      ['level_by_level', 'Level by level'],
-    ]),
-    make: even((placing) => ({ placing: /** @type {'one_by_one' | 'level_by_level'} */ (placing), relax_steps: 0 })),
+    ...setting(
+      'placing',
+      [
+        ['one_by_one', 'Child by child'],
+        ['level_by_level', 'Level by level'],
+      ],
+      { relax_steps: 0 },
+    ),
   },
   {
     id: 'law',
@@ -195,13 +217,14 @@ export const WHAT_IFS = [
 ];
 
 /** @param {WhatIf} whatIf @param {readonly [string, string]} chosen @returns {[Side, Side]} */
-export const sidesOf = ({ values: all, make }, chosen) =>
-  /** @type {[Side, Side]} */ (
-    chosen.map((value) => ({
-      label: all.find((known) => known.value === value)?.label ?? value,
-      make: (/** @type {Lab} */ lab) => make(lab, value),
-    }))
-  );
+export function sidesOf({ values: all, make }, [left, right]) {
+  /** @param {string} value @returns {Side} */
+  const side = (value) => ({
+    label: all.find((known) => known.value === value)?.label ?? value,
+    make: (lab) => make(lab, value),
+  });
+  return [side(left), side(right)];
+}
 
 /** The choice of this name, else the first. @param {string} id */
 export const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? WHAT_IFS[0];

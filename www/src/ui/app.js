@@ -145,7 +145,7 @@ async function loadTimeline(engine, { shell, stage, told }, toast) {
  * @param {Engine} engine
  */
 function linkLearn(engine) {
-  const link = /** @type {HTMLAnchorElement} */ (byId('learn-link'));
+  const link = query(document, '#learn-link', HTMLAnchorElement);
   import('./learn-link.js').then(
     ({ bindLearnLink }) => bindLearnLink(link, engine),
     () => {},

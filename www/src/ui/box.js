@@ -1,12 +1,12 @@
 /** What is said and done where the clip box cuts the surface, and how the box changes. */
+import { vec } from '../engine/vector.js';
 import { clamp } from './scale.js';
 
 /** @import { Bounds, Engine, Report } from '../engine/types.js' */
 
 /** Returns a box of twice the size around the same middle. @param {Bounds} bounds @returns {Bounds} */
 export function doubled({ min, max }) {
-  const end = (/** @type {1 | -1} */ side) =>
-    /** @type {[number, number, number]} */ (min.map((low, i) => (low + max[i]) / 2 + side * (max[i] - low)));
+  const end = (/** @type {1 | -1} */ side) => vec((k) => (min[k] + max[k]) / 2 + side * (max[k] - min[k]));
   return { min: end(-1), max: end(1) };
 }
 

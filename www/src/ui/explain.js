@@ -111,7 +111,7 @@ export function explain(target, read, options = {}) {
     if (explanation?.text && target.isConnected) show(target, explanation, options.side);
   };
   target.addEventListener('pointerenter', (event) => {
-    if (/** @type {PointerEvent} */ (event).pointerType === 'mouse') later(open, owner ? 60 : HOVER_DELAY_MS);
+    if (event instanceof PointerEvent && event.pointerType === 'mouse') later(open, owner ? 60 : HOVER_DELAY_MS);
   });
   target.addEventListener('pointerleave', () => later(hide, LEAVE_DELAY_MS));
   target.addEventListener('pointerdown', () => {

@@ -14,7 +14,7 @@ export function attachMenu(button, items, { label }) {
   button.setAttribute('aria-haspopup', 'true');
   button.setAttribute('aria-expanded', 'false');
   menu.addEventListener('toggle', (event) => {
-    const open = /** @type {ToggleEvent} */ (event).newState === 'open';
+    const open = event.newState === 'open';
     button.setAttribute('aria-expanded', String(open));
     if (!open) return;
     place(menu, button.getBoundingClientRect(), 'left');
@@ -26,7 +26,7 @@ export function attachMenu(button, items, { label }) {
   menu.addEventListener('keydown', (event) => {
     const step = event.key === 'ArrowDown' ? 1 : event.key === 'ArrowUp' ? -1 : 0;
     const stops = [...menu.querySelectorAll('button')].filter((each) => each.checkVisibility());
-    const at = stops.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
+    const at = stops.findIndex((stop) => stop.matches(':focus'));
     if (!step || at < 0) return;
     event.preventDefault();
     stops[(at + step + stops.length) % stops.length].focus();

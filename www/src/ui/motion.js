@@ -7,7 +7,6 @@ import { snap } from './scale.js';
 
 /**
  * @import { Engine, Parameter } from '../engine/types.js'
- * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
 /** @typedef {Pick<Parameter, 'name' | 'min' | 'max' | 'step'>} Range */
@@ -78,8 +77,8 @@ export function createMotion(engine, stage) {
   });
   return {
     /** Name of the parameter that moves. */
-    playing: /** @type {ReadonlySignal<string | null>} */ (playing),
-    turning: /** @type {ReadonlySignal<boolean>} */ (turning),
+    playing,
+    turning,
     /** Whether a film is made, for which parameters and camera are moved. */
     filming,
     course,

@@ -2,12 +2,13 @@
 import { h, live, uniqueId } from './dom.js';
 
 /**
+ * @template {string} T
  * @param {object} options
  * @param {string} options.name accessible name
- * @param {{ value: string, label: string }[]} options.choices
- * @param {() => string} options.value  the choice that is checked, from signals
+ * @param {readonly { value: T, label: string }[]} options.choices
+ * @param {() => NoInfer<T>} options.value  the choice that is checked, from signals
  * @param {() => boolean} [options.disabled]
- * @param {(value: string) => unknown} options.change  may take its time
+ * @param {(value: T) => unknown} options.change  may take its time
  */
 export function createSegmented({ name, choices, value: checked, disabled, change }) {
   const group = uniqueId('segmented');

@@ -1,5 +1,5 @@
 /** Computes directions, extents and sections in the space of the surface, for controls and for marks on the picture. */
-import { along, cross, distance, dot } from '../engine/vector.js';
+import { along, cross, distance, dot, vec } from '../engine/vector.js';
 
 /**
  * @import { Columns } from '../engine/columns.js'
@@ -8,20 +8,18 @@ import { along, cross, distance, dot } from '../engine/vector.js';
 
 export const AXES = /** @type {const} */ (['x', 'y', 'z']);
 
-/** Returns the unit vector along an axis. @param {number} axis @param {number} [sign] @returns {Vec3} */
-export const axisVector = (axis, sign = 1) => /** @type {Vec3} */ ([0, 1, 2].map((k) => (k === axis ? sign : 0)));
+/** Returns the unit vector along an axis. @param {number} axis @param {number} [sign] */
+export const axisVector = (axis, sign = 1) => vec((k) => (k === axis ? sign : 0));
 
-/** @param {Bounds} bounds @returns {Vec3} */
-export const centreOf = ({ min, max }) => /** @type {Vec3} */ (min.map((low, k) => (low + max[k]) / 2));
+/** @param {Bounds} bounds */
+export const centreOf = ({ min, max }) => vec((k) => (min[k] + max[k]) / 2);
 
 /**
  * Returns a corner of a box; bit k of `index` chooses the larger end along axis k.
  * @param {Bounds} bounds
  * @param {number} index
- * @returns {Vec3}
  */
-export const cornerOf = ({ min, max }, index) =>
-  /** @type {Vec3} */ (min.map((low, k) => ((index >> k) & 1 ? max[k] : low)));
+export const cornerOf = ({ min, max }, index) => vec((k) => ((index >> k) & 1 ? max[k] : min[k]));
 
 /**
  * Returns the direction from the camera's target to its eye.
@@ -102,7 +100,7 @@ export function sectionOf(bounds, { normal, offset }) {
     }
   }
   if (points.length < 3) return [];
-  const middle = /** @type {Vec3} */ ([0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length));
+  const middle = vec((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
   const u = across(normal);
   const v = cross(normal, u);
   const angle = (/** @type {Vec3} */ p) => {

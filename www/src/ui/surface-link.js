@@ -59,7 +59,7 @@ export function unpackCarried(text) {
     values.every(([, value]) => Number.isFinite(value));
   if (!isWhole) return null;
   const parameters = values.map(([name, value]) => {
-    const number = /** @type {number} */ (value);
+    const number = Number(value);
     return { name, label: name, value: number, min: Math.min(0, number), max: Math.max(1, number), step: 0.01 };
   });
   return { surface: { formula, parameters, bounds: { min: bounds.min, max: bounds.max } }, from };

@@ -15,14 +15,7 @@
 
 /** @import { Fault, FromLesson, LessonProgress, LessonSettings, Questions, Surface, ToLesson } from './protocol.js' */
 
-/**
- * The part of the worker interface that the client uses. Tests pass a scripted worker.
- * @typedef {object} WorkerLike
- * @property {(message: ToLesson) => void} postMessage
- * @property {() => void} terminate
- * @property {((event: {data: FromLesson}) => void) | null} onmessage
- * @property {((event: {message?: string}) => void) | null} onerror
- */
+/** @typedef {import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>} WorkerLike */
 /**
  * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's
  * `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error;
@@ -40,7 +33,7 @@ export class LessonError extends Error {
   }
 }
 
-/** Starts the worker of the lesson, which loads its bundle when it is first asked something. @returns {Worker} */
+/** Starts the worker of the lesson, which loads its bundle when it is first asked something. @returns {WorkerLike} */
 export const spawnLesson = () =>
   new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
 
@@ -52,7 +45,7 @@ export class LessonClient {
    * @param {() => WorkerLike} [options.spawn]
    * @param {(progress: LessonProgress) => void} [options.onProgress]  of the present run, some fifty times a second
    */
-  constructor({ spawn = /** @type {() => WorkerLike} */ (spawnLesson), onProgress = () => {} } = {}) {
+  constructor({ spawn = spawnLesson, onProgress = () => {} } = {}) {
     this.spawn = spawn;
     this.onProgress = onProgress;
     /** @type {WorkerLike | null} */
@@ -177,3 +170,6 @@ export class LessonClient {
     this.worker = null;
   }
 }
+
+/** The kind of an error, if it is one of a run. @param {unknown} error */
+export const kindOf = (error) => (error instanceof LessonError ? error.kind : null);

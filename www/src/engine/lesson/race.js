@@ -48,7 +48,7 @@ export class Race {
    * @param {() => WorkerLike} [options.spawn]
    * @param {(index: 0 | 1, lane: Lane) => void} [options.onLane]  after every turn
    */
-  constructor({ spawn = /** @type {() => WorkerLike} */ (spawnLesson), onLane = () => {} } = {}) {
+  constructor({ spawn = spawnLesson, onLane = () => {} } = {}) {
     this.onLane = onLane;
     this.clients = [new LessonClient({ spawn }), new LessonClient({ spawn })];
     /** @type {[Lane, Lane]} */
@@ -69,7 +69,8 @@ export class Race {
     this.resume();
     this.race += 1;
     const race = this.race;
-    const lanes = /** @type {[Lane, Lane]} */ ([newLane(), newLane()]);
+    /** @type {[Lane, Lane]} */
+    const lanes = [newLane(), newLane()];
     this.lanes = lanes;
     const begun = await Promise.all(this.clients.map((client, k) => client.start(surface, settings[k], true)));
     const units = [FIRST_UNITS, FIRST_UNITS];

@@ -7,14 +7,7 @@
 
 /** @import { FromPoints, Order, Solved } from './protocol.js' */
 
-/**
- * The part of the worker interface that the client uses. Tests pass a scripted worker.
- * @typedef {object} WorkerLike
- * @property {(message: Order) => void} postMessage
- * @property {() => void} terminate
- * @property {((event: {data: FromPoints}) => void) | null} onmessage
- * @property {((event: {message?: string}) => void) | null} onerror
- */
+/** @typedef {import('../bundle/types.js').WorkerLike<Order, FromPoints>} WorkerLike */
 /** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
 /**
  * How an order ended. `givenUp`: the page cancelled it.

@@ -10,14 +10,7 @@ import { SILENCE_MS } from './protocol.js';
 
 /** @import { FromWorker, ToWorker } from './protocol.js' */
 
-/**
- * The part of the worker interface that the supervisor uses. Tests pass a scripted worker.
- * @typedef {object} WorkerLike
- * @property {(message: ToWorker) => void} postMessage
- * @property {() => void} terminate
- * @property {((event: {data: FromWorker}) => void) | null} onmessage
- * @property {((event: {message?: string}) => void) | null} onerror
- */
+/** @typedef {import('../bundle/types.js').WorkerLike<ToWorker, FromWorker>} WorkerLike */
 /**
  * @typedef {{cause: 'panic' | 'hang', message: string, stack: string, restarts: number}} Crash
  * @typedef {{now: () => number, setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} Clock

@@ -3,13 +3,15 @@
  *
  * @module
  */
+
 import { FILE_SURFACE } from '../constants.js';
+import { vec } from '../vector.js';
 import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
 
 /**
  * @import { Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Settings, State } from '../types.js'
- * @import { SurfaceInfo, Vec3 } from '../types.js'
+ * @import { SurfaceInfo } from '../types.js'
  */
 
 /** Largest number of parameters in a state. */
@@ -111,7 +113,7 @@ export function validPlane(v) {
   const length = normal ? Math.hypot(...normal) : 0;
   if (!normal || offset === undefined || !(length > 0 && length < Infinity)) return undefined;
   // Adding 0 turns −0 into 0, as a link does.
-  return { normal: /** @type {Vec3} */ (normal.map((c) => c / length + 0)), offset: offset / length + 0 };
+  return { normal: vec((k) => normal[k] / length + 0), offset: offset / length + 0 };
 }
 
 /**

@@ -7,9 +7,9 @@
  *
  * @module
  */
-import { dot } from '../vector.js';
+import { dot, vec } from '../vector.js';
 
-/** @import { Bounds, CameraState, Spot, Vec3 } from '../types.js' */
+/** @import { CameraState, Spot, Vec3 } from '../types.js' */
 
 /**
  * @typedef {{left: number, right: number, top: number, bottom: number}} Insets  pixels covered by panels
@@ -156,11 +156,11 @@ export function projected({ clipFromWorld: m, worldPerPx }, place, widthPx, heig
  */
 export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_RAD / 2);
 
-/** Returns the ball around a box. @param {Bounds} bounds @returns {{centre: Vec3, radius: number}} */
+/** Returns the ball around a box. @param {{min: ArrayLike<number>, max: ArrayLike<number>}} bounds */
 export function ballOf({ min, max }) {
   const half = [0, 1, 2].map((k) => (max[k] - min[k]) / 2);
   return {
-    centre: /** @type {Vec3} */ ([0, 1, 2].map((k) => (max[k] + min[k]) / 2)),
+    centre: vec((k) => (max[k] + min[k]) / 2),
     radius: Math.hypot(half[0], half[1], half[2]) || 1,
   };
 }
@@ -252,14 +252,13 @@ export class Camera {
     if (!(factor > 0) || !Number.isFinite(factor)) return;
     const { target, distance } = this.state;
     const next = clamp(distance / factor, this.nearLimit, this.farLimit);
-    /** @type {Vec3} */
     let moved = target;
     if (at) {
       const ray = rayThrough(at.view, at.xPx, at.yPx, at.widthPx, at.heightPx);
       // The fixed point is the intersection of the ray with the plane through the target that faces the eye.
       const along = distance / dot(ray, at.view.forward);
       const share = 1 - next / distance;
-      moved = /** @type {Vec3} */ (target.map((t, k) => t + share * (at.view.eye[k] + ray[k] * along - t)));
+      moved = vec((k) => target[k] + share * (at.view.eye[k] + ray[k] * along - target[k]));
     }
     this.state = { ...this.state, distance: next, target: moved, fit: false };
     this.glide = null;
@@ -271,9 +270,7 @@ export class Camera {
     const scale = view.worldPerPx * this.state.distance;
     this.state = {
       ...this.state,
-      target: /** @type {Vec3} */ (
-        this.state.target.map((t, k) => t + scale * (-dxPx * view.right[k] + dyPx * view.up[k]))
-      ),
+      target: vec((k) => this.state.target[k] + scale * (-dxPx * view.right[k] + dyPx * view.up[k])),
       fit: false,
     };
     this.glide = null;
@@ -386,7 +383,7 @@ export class Camera {
     const { state } = this;
     const { target, distance, yaw = state.yaw, pitch = state.pitch } = this.glide;
     const log = Math.log(distance) + (Math.log(state.distance) - Math.log(distance)) * keep;
-    const next = /** @type {Vec3} */ (state.target.map((t, k) => target[k] + (t - target[k]) * keep));
+    const next = vec((k) => target[k] + (state.target[k] - target[k]) * keep);
     const turned = { yaw: yaw + (state.yaw - yaw) * keep, pitch: pitch + (state.pitch - pitch) * keep };
     const left =
       Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance +

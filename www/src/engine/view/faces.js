@@ -4,6 +4,7 @@
  *
  * @module
  */
+import { emptyLike } from '../columns.js';
 import { classOfValence, coloursOf } from './colouring.js';
 import { PALETTES } from './palettes.js';
 
@@ -57,7 +58,7 @@ export function marksOf(triangles, count, theme) {
  * @returns {T}
  */
 function gather(column, width, corners) {
-  const out = /** @type {T} */ (new /** @type {any} */ (column.constructor)(width * corners.length));
+  const out = emptyLike(column, width * corners.length);
   for (let i = 0; i < corners.length; i += 1) {
     const from = width * corners[i];
     for (let k = 0; k < width; k += 1) out[width * i + k] = column[from + k];

@@ -7,7 +7,7 @@
  *
  * @module
  */
-import { NO_LEVEL } from '../columns.js';
+import { grown, NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
@@ -177,18 +177,12 @@ export class Painter {
     const last = first + radii.length;
     if (last > this.radii.length) {
       const room = Math.max(last, 2 * this.radii.length);
-      /** @template {Float32Array | Float64Array | Uint32Array} T @param {T} old @param {number} n @returns {T} */
-      const grow = (old, n) => {
-        const next = /** @type {T} */ (new /** @type {any} */ (old.constructor)(n));
-        next.set(old);
-        return next;
-      };
-      this.positions = grow(this.positions, 3 * room);
-      this.normals = grow(this.normals, 3 * room);
-      this.radii = grow(this.radii, room);
-      this.levels = grow(this.levels, room);
-      this.colours = grow(this.colours, room);
-      this.births = grow(this.births, room);
+      this.positions = grown(this.positions, 3 * room);
+      this.normals = grown(this.normals, 3 * room);
+      this.radii = grown(this.radii, room);
+      this.levels = grown(this.levels, room);
+      this.colours = grown(this.colours, room);
+      this.births = grown(this.births, room);
     }
     this.positions.set(positions, 3 * first);
     this.normals.set(normals, 3 * first);

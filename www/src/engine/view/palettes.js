@@ -7,6 +7,7 @@
  *
  * @module
  */
+import { vec } from '../vector.js';
 import { oklch, packedFromOklab } from './oklab.js';
 
 /** @typedef {'light' | 'dark'} Theme */
@@ -66,9 +67,7 @@ function diverging(theme) {
   return Uint32Array.from({ length: DIVERGING }, (_, i) => {
     const t = (2 * i) / (DIVERGING - 1) - 1;
     const end = t < 0 ? low : high;
-    return packedFromOklab(
-      /** @type {[number, number, number]} */ (middle.map((v, k) => v + (end[k] - v) * Math.abs(t))),
-    );
+    return packedFromOklab(vec((k) => middle[k] + (end[k] - middle[k]) * Math.abs(t)));
   });
 }
 

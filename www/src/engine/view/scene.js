@@ -84,7 +84,7 @@ function frontBall({ placed, radii, count }, isShown) {
     }
   }
   if (first < 0) return null;
-  const { centre } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+  const { centre } = ballOf({ min, max });
   const { radius } = ballAround({ positions: placed, radii, count }, centre, isShown);
   return { centre, radius: Math.max(radius, LEAST_FRONT * radii[first]) };
 }

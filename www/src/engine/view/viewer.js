@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { vec } from '../vector.js';
 import { ballOf, Camera, projected, rayThrough, viewOf } from './camera.js';
 import { legendOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
@@ -122,7 +123,7 @@ export class Viewer {
     this.restyle();
   }
 
-  /** Draws the particles after the relaxation step that is looked at, which a glide leads to. */
+  /** Draws the particles as they were after the chosen relaxation step, or on their way there. */
   remembered() {
     const { columns } = this;
     const before = columns.shown;
@@ -259,10 +260,8 @@ export class Viewer {
 
   /** Brings a place before the camera, seen along its normal. @param {Place} place */
   lookAt({ places, radius, normal }) {
-    const target = /** @type {Vec3} */ (
-      [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length)
-    );
-    this.camera.lookAt({ centre: target, radius: LOOK_RADII * radius }, normal);
+    const centre = vec((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length);
+    this.camera.lookAt({ centre, radius: LOOK_RADII * radius }, normal);
     this.moved();
   }
 

@@ -1,4 +1,5 @@
 /** Where rings meet, and ten steps of rest. */
+import { triple } from '../../engine/vector.js';
 import { h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
 import { spread } from '../../ui/neighbours.js';
@@ -61,14 +62,18 @@ export async function seams({ lab, stops }) {
   const count = run.placed.radii.length;
   const rings = byLevel(run.placed);
   const marked = byMark(count, (i) => met.has(i));
-  const at = (/** @type {Float32Array} */ column, /** @type {number} */ i) => column.subarray(3 * i, 3 * i + 3);
   const draw = () => {
     const isOpen = stops.isOpen('predict-hole');
     const picked = stops.picked('predict-hole');
     /** @type {Mark[]} */
     const marks = [];
     const mark = (/** @type {number} */ i, /** @type {'ring' | 'cross'} */ kind) =>
-      marks.push({ place: at(run.placed.positions, i), normal: at(run.placed.normals, i), radius: run.radius, kind });
+      marks.push({
+        place: triple(run.placed.positions, i),
+        normal: triple(run.placed.normals, i),
+        radius: run.radius,
+        kind,
+      });
     if (picked !== null) mark(picked, 'cross');
     if (isOpen && hole && hole.particle < count) mark(hole.particle, 'ring');
     picture.show({ particles: run.placed, colours: isOpen && show.checked ? marked : rings, marks });

@@ -40,7 +40,7 @@ export async function sizes({ lab, stops }) {
     name: 'The radius follows',
     choices: LAWS,
     value: 'max_curvature',
-    change: (value) => void show(/** @type {Law} */ (value)),
+    change: (value) => void show(value),
   });
   await show('max_curvature');
   return [picture.element, h('div', { class: 'controls' }, law.element, words), legend];

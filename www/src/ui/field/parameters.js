@@ -9,7 +9,7 @@ import { createSlider } from '../slider.js';
 
 /**
  * @import { Engine, Parameter } from '../../engine/types.js'
- * @import { Course, Motion } from '../motion.js'
+ * @import { Motion } from '../motion.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
  */
 
@@ -97,7 +97,7 @@ function createCourse({ playing, course, speed }) {
       ],
       value: () => course.value,
       change: (value) => {
-        course.value = /** @type {Course} */ (value);
+        course.value = value;
       },
     }),
     h(

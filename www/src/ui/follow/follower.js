@@ -2,9 +2,11 @@
  * Follows single particles: runs the paper's algorithm on the surface of the picture, finds the particle that stands
  * for one of the picture, and goes through its events.
  */
+
 import { batch, computed, signal } from '@preact/signals-core';
+import { triple } from '../../engine/vector.js';
 import { momentAt } from '../../figures/moment.js';
-import { openParticle, triple } from '../../figures/particle.js';
+import { openParticle } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { surfaceWords } from '../surface-link.js';

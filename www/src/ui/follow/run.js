@@ -2,8 +2,10 @@
  * A run of the paper's algorithm on the surface of the picture: what it is asked for, and how it relates to the
  * picture.
  */
+
 import { NO_PARENT } from '../../engine/columns.js';
-import { RESIDUAL, triple } from '../../figures/particle.js';
+import { triple } from '../../engine/vector.js';
+import { RESIDUAL } from '../../figures/particle.js';
 import { distanceSq } from './find.js';
 
 /** @import { Engine, LessonParticles, LessonSettings, Vec3 } from '../../engine/types.js' */

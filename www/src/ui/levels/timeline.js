@@ -15,7 +15,7 @@ import { Player } from './player.js';
 import { describeLevel } from './table.js';
 
 /**
- * @import { Engine, Grain } from '../../engine/types.js'
+ * @import { Engine } from '../../engine/types.js'
  * @import { Bars, FollowPanel } from '../track.js'
  * @import { ButtonProps } from '../types.js'
  * @import { Move } from './keys.js'
@@ -29,9 +29,9 @@ import { describeLevel } from './table.js';
 /** Speeds of the playback; 1 is ten levels, two particles or an event a second. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 const GRAINS = /** @type {const} */ ([
-  ['level', 'Level'],
-  ['particle', 'Particle'],
-  ['event', 'Event'],
+  { value: 'level', label: 'Level' },
+  { value: 'particle', label: 'Particle' },
+  { value: 'event', label: 'Event' },
 ]);
 
 /**
@@ -52,10 +52,10 @@ export function createTimeline(body, engine, { told, loadFollow, say }) {
   const track = trackOf(player, range);
   const grains = createSegmented({
     name: 'Steps of the timeline',
-    choices: GRAINS.map(([value, label]) => ({ value, label })),
+    choices: GRAINS,
     value: () => player.grain.value,
     disabled: () => !levels.some.value,
-    change: (grain) => player.choose(/** @type {Grain} */ (grain)),
+    change: (grain) => player.choose(grain),
   });
   fill(body, grains, buttonsOf(player), track, captionOf(player), speedOf(player), chartsOf(body, engine, player, say));
   explainParts(grains, track, player);

@@ -72,7 +72,7 @@ function choice(label, select) {
   return h('div', { class: 'picture-choice' }, h('label', { for: select.id }, label), select);
 }
 
-/** @param {() => [value: string, text: string][]} read */
+/** @param {() => string[][]} read  values and texts */
 function selectOf(read) {
   const select = h('select', { class: 'select' });
   const update = () => {
@@ -87,6 +87,9 @@ function selectOf(read) {
   return { select, update };
 }
 
+/** The entry that a select stands at. @param {readonly SizeEntry[]} entries @param {HTMLSelectElement} select */
+const chosen = (entries, { value }) => entries.find(({ id }) => id === value) ?? entries[0];
+
 /** @param {string} text @param {() => void} press @param {string} [look] */
 const action = (text, press, look = '') => button({ class: look, press }, text);
 
@@ -96,7 +99,7 @@ function pictureSection({ engine, page, parts, transparent, close }) {
   const { select, update } = selectOf(() => sizes().map((entry) => [entry.id, sizeWords(entry)]));
   addEventListener('resize', update);
   const save = async () => {
-    const { size } = /** @type {SizeEntry} */ (sizes().find(({ id }) => id === select.value));
+    const { size } = chosen(sizes(), select);
     try {
       const canvas = new OffscreenCanvas(size.width, size.height);
       const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
@@ -127,11 +130,11 @@ function pictureSection({ engine, page, parts, transparent, close }) {
   ];
 }
 
-/** @param {Engine} engine @param {Size} size */
+/** @param {Engine} engine @param {Size} size @returns {Omit<Wish, 'parts'>} */
 const wishOf = (engine, size) => ({
   engine,
   size,
-  subject: /** @type {Subject} */ ({ kind: FREE }),
+  subject: { kind: FREE },
   signal: new AbortController().signal,
   tell: () => {},
 });
@@ -140,9 +143,7 @@ const wishOf = (engine, size) => ({
 function filmSection({ engine, page, parts, transparent, close }) {
   const subjects = selectOf(() => [
     [TURN, 'Turntable'],
-    ...(engine.field.peek()?.parameters ?? []).map(
-      ({ name }) => /** @type {[string, string]} */ ([name, `Parameter ${name}`]),
-    ),
+    ...(engine.field.peek()?.parameters ?? []).map(({ name }) => [name, `Parameter ${name}`]),
     [FREE, 'What I do'],
   ]);
   const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, sizeWords(entry)]));
@@ -152,11 +153,12 @@ function filmSection({ engine, page, parts, transparent, close }) {
   const update = () => subjects.update();
   subjects.select.addEventListener('pointerdown', update);
   subjects.select.addEventListener('focus', update);
+  /** @returns {Subject} */
   const subject = () => {
     const { value } = subjects.select;
     const range = engine.field.peek()?.parameters.find(({ name }) => name === value);
-    if (range) return /** @type {Subject} */ ({ kind: 'parameter', range, course: page.motion.course.peek() });
-    return /** @type {Subject} */ ({ kind: value === FREE ? FREE : TURN });
+    if (range) return { kind: 'parameter', range, course: page.motion.course.peek() };
+    return { kind: value === FREE ? FREE : TURN };
   };
   /** @param {(wish: Wish) => Promise<Blob | null>} make */
   const record = async (make) => {
@@ -165,7 +167,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
     filming.value = true;
     close();
     page.motion.stop();
-    const { size } = /** @type {SizeEntry} */ (FILM_SIZES.find(({ id }) => id === sizes.select.value));
+    const { size } = chosen(FILM_SIZES, sizes.select);
     const abort = new AbortController();
     const bar = createRecorderBar(() => abort.abort());
     try {

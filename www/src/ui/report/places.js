@@ -1,6 +1,6 @@
 /** Finds the places in the picture that a figure of the report is about: crowded pairs and wide holes. */
 
-import { distance } from '../../engine/vector.js';
+import { distance, triple } from '../../engine/vector.js';
 import { formatFixed } from '../format.js';
 import { valueAt } from './rows.js';
 
@@ -33,8 +33,6 @@ export function listOf(report, path) {
 export function placeOf(list, index, columns) {
   const place = list[index];
   const { positions, normals, radii } = columns;
-  const triple = (/** @type {Float32Array} */ column, /** @type {number} */ i) =>
-    /** @type {[number, number, number]} */ ([...column.subarray(3 * i, 3 * i + 3)]);
   const count = list.length > 1 ? ` · ${index + 1} of ${list.length}` : '';
   if ('particles' in place) {
     const [i, j] = place.particles;

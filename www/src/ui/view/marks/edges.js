@@ -34,10 +34,8 @@ export function outerEdge(engine, bounds, axis) {
   for (const a of [0, 1]) {
     for (const b of [0, 1]) {
       const corner = (a << i) | (b << j);
-      const ends = /** @type {[number[], number[]]} */ ([
-        cornerOf(bounds, corner),
-        cornerOf(bounds, corner | (1 << axis)),
-      ]);
+      /** @type {[number[], number[]]} */
+      const ends = [cornerOf(bounds, corner), cornerOf(bounds, corner | (1 << axis))];
       const [from, to] = ends.map((end) => engine.project(end));
       if (!from || !to) return null;
       const middle = { x: from.x + to.x, y: from.y + to.y };
