@@ -2,7 +2,7 @@
 import '../ui/trusted.js';
 import { kindOf, LessonClient } from '../engine/lesson/client.js';
 import { button } from '../ui/button.js';
-import { byId } from '../ui/dom.js';
+import { byId, query, queryAll } from '../ui/dom.js';
 import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
 import { createMaker, mountAssignment } from './assignment.js';
@@ -38,7 +38,7 @@ async function openLab() {
     const isRefused = error instanceof NoSurface || kindOf(error) === 'refused';
     if (!isRefused) return own;
     const stand = subjectOf(undefined).surface;
-    notice.textContent = `${/** @type {Error} */ (error).message} The figures show an ellipsoid.`;
+    notice.textContent = `${error instanceof Error ? error.message : error} The figures show an ellipsoid.`;
     byId('surface-name').textContent = 'an ellipsoid';
     return new Lab(stand, open);
   }
@@ -61,18 +61,16 @@ async function blindPair(lab) {
 
 notice.textContent = subject.notice;
 if (subject.isOwn) byId('surface-name').textContent = `your surface, ${surfaceWords(subject.surface)}`;
-for (const id of ['back', 'back-end']) /** @type {HTMLAnchorElement} */ (byId(id)).href = `../${subject.from}`;
+for (const id of ['#back', '#back-end']) query(document, id, HTMLAnchorElement).href = `../${subject.from}`;
 
 const lab = openLab();
 const context = { lab, stops };
-const figures = [...document.querySelectorAll('[data-figure]')].map((stage) => {
-  const host = /** @type {HTMLElement} */ (stage);
+const figures = queryAll(document, '[data-figure]').map((host) => {
   const name = host.dataset.figure ?? '';
   const build = name === 'order' ? async () => blindPair(await lab) : () => FIGURES[name](context);
   return mountFigure(host, build);
 });
-for (const host of document.querySelectorAll('.predict'))
-  mountPrediction(/** @type {HTMLElement} */ (host), PREDICTIONS[host.id], context);
+for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
 const bench = lab.then((ready) => {
   mountCards(byId('cards'), ready);
   mountRace(byId('race-box'), ready);

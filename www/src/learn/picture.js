@@ -10,6 +10,7 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
+ * @import { Signal } from '@preact/signals-core'
  * @import { Bounds, LessonParticles } from '../engine/types.js'
  * @import { View } from '../engine/view/camera.js'
  * @import { Palette } from '../engine/view/palettes.js'
@@ -107,7 +108,8 @@ export class Picture {
     this.name = name;
     /** @type {((particle: number) => void) | null} */
     this.onPick = null;
-    this.scene = signal(/** @type {Scene | null} */ (null));
+    /** @type {Signal<Scene | null>} */
+    this.scene = signal(null);
     this.canvas = h('canvas', { class: 'picture-canvas' });
     this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.canvas);
     this.pickWith(onPick ?? null);

@@ -4,6 +4,8 @@ import { button } from '../ui/button.js';
 import { h } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
 
+/** @import { Signal } from '@preact/signals-core' */
+
 /** Elements in which a letter is text. */
 const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), textarea, select';
 
@@ -15,7 +17,8 @@ const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), te
 export function createPresenter({ stops, to }) {
   const root = document.documentElement;
   /** Number of the stop that is shown; null while nothing is presented. */
-  const at = signal(/** @type {number | null} */ (null));
+  /** @type {Signal<number | null>} */
+  const at = signal(null);
   const withNotes = signal(false);
   let last = 0;
   const leave = () => {

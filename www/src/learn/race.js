@@ -16,6 +16,7 @@ import { createSelect } from './parts.js';
 import { byValue, Orbit, Picture } from './picture.js';
 
 /**
+ * @import { Signal } from '@preact/signals-core'
  * @import { LessonSettings } from '../engine/lesson/protocol.js'
  * @import { Lane } from '../engine/lesson/race.js'
  * @import { LessonParticles } from '../engine/types.js'
@@ -120,7 +121,8 @@ export function mountRace(host, lab) {
 class Course {
   #lab;
   kind = signal(KINDS[0].value);
-  race = signal(/** @type {Race | null} */ (null));
+  /** @type {Signal<Race | null>} */
+  race = signal(null);
   isPaused = signal(false);
   status = signal('');
   place = h('div', { class: 'pair' });

@@ -61,7 +61,8 @@ export function mountInterface(engine) {
   /** @type {Timeline | null} */
   let timeline = null;
   /** The generation level chosen on the timeline, in words. */
-  const told = signal(/** @type {Told | null} */ (null));
+  /** @type {Signal<Told | null>} */
+  const told = signal(null);
   const { picture, print } = pictureOf(engine, motion, toast);
   const shortcuts = mountShortcuts(
     shortcutsOf(engine, {

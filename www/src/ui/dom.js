@@ -169,6 +169,10 @@ export function query(root, selector, kind = HTMLElement) {
   return element;
 }
 
+/** Returns all elements within `root` that a selector finds. @param {ParentNode} root @param {string} selector */
+export const queryAll = (root, selector) =>
+  [...root.querySelectorAll(selector)].filter((element) => element instanceof HTMLElement);
+
 /** Time in which a second press counts as part of a double click. */
 const DOUBLE_CLICK_MS = 500;
 

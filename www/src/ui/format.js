@@ -89,7 +89,8 @@ export function formatSignificant(value, digits = 3) {
   return write(value, { maximumSignificantDigits: digits });
 }
 
-const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({
+/** @type {Record<string, string>} */
+const SUPERSCRIPTS = {
   '-': '⁻',
   0: '⁰',
   1: '¹',
@@ -101,7 +102,7 @@ const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({
   7: '⁷',
   8: '⁸',
   9: '⁹',
-});
+};
 
 /** Formats a number as a power of ten, such as 3.1·10⁻⁶. @param {number} value */
 function formatPower(value) {

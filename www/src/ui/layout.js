@@ -6,6 +6,8 @@ import { button } from './button.js';
 import { live } from './dom.js';
 import { explain } from './explain.js';
 
+/** @import { Signal } from '@preact/signals-core' */
+
 /** Width below which the report is initially folded, to leave room for the picture. */
 const NARROW = '(max-width: 67.45em)';
 /** Width of a phone in portrait orientation, with panels and tabs below the picture. */
@@ -34,7 +36,8 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   for (const each of panels)
     if (each.head) addFold(each.title, each.panel, each.head, each === last && matchMedia(NARROW).matches);
 
-  const active = signal(/** @type {HTMLElement | null} */ (panels[0].panel));
+  /** @type {Signal<HTMLElement | null>} */
+  const active = signal(panels[0].panel);
   for (const { title, panel } of panels) {
     live(panel, () => panel.toggleAttribute('data-active', panel === active.value));
     nav.append(

@@ -6,6 +6,7 @@ import { signal } from '@preact/signals-core';
 import { snap } from './scale.js';
 
 /**
+ * @import { Signal } from '@preact/signals-core'
  * @import { Engine, Parameter } from '../engine/types.js'
  */
 
@@ -37,10 +38,12 @@ export const valueAt = ({ min, max, step }, place) => snap({ min, max, step }, m
 
 /** @param {Engine} engine @param {HTMLElement} stage  a press on it ends the turning */
 export function createMotion(engine, stage) {
-  const playing = signal(/** @type {string | null} */ (null));
+  /** @type {Signal<string | null>} */
+  const playing = signal(null);
   const turning = signal(false);
   const filming = signal(false);
-  const course = signal(/** @type {Course} */ ('bounce'));
+  /** @type {Signal<Course>} */
+  const course = signal('bounce');
   const speed = signal(1);
   let player = /** @type {Player | null} */ (null);
   let lastMs = 0;

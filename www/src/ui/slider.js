@@ -28,7 +28,8 @@ import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
  * @property {(scale: Scale) => void} setScale
  */
 
-const KEYS = /** @type {Record<string, number>} */ ({
+/** @type {Record<string, number>} */
+const KEYS = {
   ArrowLeft: -1,
   ArrowDown: -1,
   ArrowRight: 1,
@@ -37,7 +38,7 @@ const KEYS = /** @type {Record<string, number>} */ ({
   PageUp: 10,
   Home: -Infinity,
   End: Infinity,
-});
+};
 /** Number of positions of the range input: enough for a 4K wide slider with Shift. */
 const PLACES = 10000;
 /** Width of the thumb in pixels, as in the style sheet. */

@@ -382,7 +382,7 @@ function colourOfDirection(x, y, z) {
 }
 
 /** The six directions along the axes, for the legend. */
-const NORMAL_AXES = /** @type {[string, number, number, number][]} */ ([
+const NORMAL_AXES = /** @type {const} */ ([
   ['+x', 1, 0, 0],
   ['−x', -1, 0, 0],
   ['+y', 0, 1, 0],

@@ -90,8 +90,7 @@ export async function rings(context) {
     h('p', { class: 'figure-count' }, words),
   );
   live(chart, () => bars.mark(range.place.value));
-  bars.element.addEventListener('click', (event) => {
-    const { clientX } = /** @type {MouseEvent} */ (event);
+  bars.element.addEventListener('click', ({ clientX }) => {
     const box = bars.element.getBoundingClientRect();
     const at = Math.floor(((clientX - box.left) / box.width) * sizes.length);
     range.set(Math.min(sizes.length - 1, Math.max(0, at)));

@@ -41,7 +41,7 @@ export function createCuttingPlane(engine) {
     free.value = value === 'free';
     if (value === 'off' || !now) return engine.setPlane(null);
     const seen = towardEye(engine.state.peek().view.camera);
-    const at = /** @type {readonly string[]} */ (AXES).indexOf(value);
+    const at = ['x', 'y', 'z'].indexOf(value);
     const normal = at < 0 ? seen : axisVector(at, seen[at] < 0 ? -1 : 1);
     engine.setPlane({ normal, offset: dot(normal, centreOf(now)) });
   }

@@ -44,7 +44,8 @@ export class Follower {
     this.say = say;
     /** @type {Signal<Status>} */
     this.status = signal({ kind: 'running', particles: 0 });
-    this.opened = signal(/** @type {Opened | null} */ (null));
+    /** @type {Signal<Opened | null>} */
+    this.opened = signal(null);
     /** Number of the event that is shown. */
     this.at = signal(0);
     /** The particle that is open, or is about to be. */
@@ -54,7 +55,8 @@ export class Follower {
      * @type {ReadonlySignal<[number, number] | null>}
      */
     this.place = computed(() => (this.opened.value ? [this.opened.value.subject.particle, this.at.value] : null));
-    this.run = signal(/** @type {FollowedRun | null} */ (null));
+    /** @type {Signal<FollowedRun | null>} */
+    this.run = signal(null);
     this.moment = computed(() => {
       const opened = this.opened.value;
       return opened && opened.events.length > 0 ? momentAt(opened.events, this.at.value) : null;

@@ -13,6 +13,7 @@ import { formatCount, formatSignificant } from '../format.js';
 import { settingOf, settingsOf } from './run.js';
 
 /**
+ * @import { Signal } from '@preact/signals-core'
  * @import { LessonChapter, LessonClient } from '../../engine/types.js'
  * @import { Rest } from '../../figures/rest.js'
  * @import { Children } from '../types.js'
@@ -28,7 +29,8 @@ export class Relaxation {
   /** @param {Follower} follower */
   constructor(follower) {
     this.follower = follower;
-    this.status = signal(/** @type {RestStatus} */ (null));
+    /** @type {Signal<RestStatus>} */
+    this.status = signal(null);
     /** @type {LessonClient | null} */
     this.client = null;
     /**
@@ -75,7 +77,10 @@ export class Relaxation {
       told({ text: rest ? tellRest(rest) : 'This run has no such step.', rest });
     } catch (error) {
       if (/** @type {any} */ (error)?.kind !== 'given_up')
-        told({ text: `The relaxation cannot be shown: ${/** @type {Error} */ (error).message}.`, rest: null });
+        told({
+          text: `The relaxation cannot be shown: ${error instanceof Error ? error.message : error}.`,
+          rest: null,
+        });
     }
   }
 

@@ -9,7 +9,7 @@ import { computed, effect, signal } from '@preact/signals-core';
  * @import { FollowPanel, Track } from '../track.js'
  * @import { Move } from './keys.js'
  * @import { Levels } from './levels.js'
- * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
  */
 
 export class Player {
@@ -22,7 +22,8 @@ export class Player {
     this.engine = engine;
     this.levels = levels;
     this.load = load;
-    this.panel = signal(/** @type {FollowPanel | null} */ (null));
+    /** @type {Signal<FollowPanel | null>} */
+    this.panel = signal(null);
     this.isOpen = computed(() => this.panel.value?.open.value ?? false);
     /** @type {ReadonlySignal<Grain>} */
     this.grain = computed(() => (this.isOpen.value ? engine.state.value.view.grain : 'level'));

@@ -102,7 +102,8 @@ function pictureSection({ engine, page, parts, transparent, close }) {
     const { size } = chosen(sizes(), select);
     try {
       const canvas = new OffscreenCanvas(size.width, size.height);
-      const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+      const context = canvas.getContext('2d');
+      if (!context) throw new Error('no canvas');
       const image = await engine.picture({ ...size, transparent: transparent.checked });
       // A device may draw less than it is asked for.
       Object.assign(canvas, { width: image.width, height: image.height });

@@ -4,7 +4,7 @@ import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 
 /**
- * @import { ColourMode, Description, Engine, Legend } from '../../engine/types.js'
+ * @import { Description, Engine, Legend } from '../../engine/types.js'
  * @import { Child } from '../types.js'
  */
 
@@ -21,7 +21,7 @@ export function createLegend(engine, { colours }) {
       'aria-label': 'Colour by',
       prop: { value: colour },
       on: {
-        change: ({ currentTarget }) => engine.setView({ colour: /** @type {ColourMode} */ (currentTarget.value) }),
+        change: ({ currentTarget }) => engine.setView({ colour: colours[currentTarget.selectedIndex].id }),
       },
     },
     colours.map(({ id, label }) => h('option', { value: id }, label)),

@@ -63,13 +63,8 @@ export function boxMark(engine, stage) {
 function createFace(engine, stage, box, { name, axis, end }) {
   const vector = axisVector(axis);
   /** The box and the user's box when the drag began, where the pointer was along the axis, and where the face is. */
-  const drag = {
-    box: /** @type {Bounds | null} */ (null),
-    own: /** @type {Bounds | null} */ (null),
-    at: /** @type {number | null} */ (null),
-    value: 0,
-    moved: false,
-  };
+  /** @type {{ box: Bounds | null, own: Bounds | null, at: number | null, value: number, moved: boolean }} */
+  const drag = { box: null, own: null, at: null, value: 0, moved: false };
   const middleOf = (/** @type {Bounds} */ bounds) => {
     const middle = centreOf(bounds);
     middle[axis] = bounds[end][axis];
