@@ -12,7 +12,7 @@ import { change, description } from './store.js';
 /**
  * @import { Columns } from './columns.js'
  * @import { Picture } from './sampling/presenter.js'
- * @import { SampleRequest } from './sampling/run-state.js'
+ * @import { SampleRequest } from './sampling/types.js'
  * @import { Store } from './store.js'
  * @import { Settings } from './types.js'
  */

@@ -11,9 +11,9 @@ import { label, line, ring } from './svg.js';
 import { FATES, inDegrees } from './words.js';
 
 /**
- * @import { Plane } from './geometry.js'
- * @import { Child, Moment } from './moment.js'
- * @import { Opened } from './particle.js'
+ * @import { Plane } from './types.js'
+ * @import { Child, Moment } from './types.js'
+ * @import { Opened } from './types.js'
  */
 
 /** Half size of the drawing, in radii of the particle. */

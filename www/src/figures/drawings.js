@@ -8,9 +8,9 @@ import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
 
 /**
- * @import { Plane, Point } from './geometry.js'
- * @import { Child, Moment } from './moment.js'
- * @import { Opened, Profile } from './particle.js'
+ * @import { Plane, Point } from './types.js'
+ * @import { Child, Moment } from './types.js'
+ * @import { Opened, Profile } from './types.js'
  */
 
 /** Half sizes of the drawings, in radii. */

@@ -1,10 +1,8 @@
 /** Places in a plane through a particle, in radii. */
 import { dot } from '../engine/vector.js';
 
-/** @typedef {[number, number]} Point */
 /**
- * Two perpendicular unit vectors at a particle, and its radius.
- * @typedef {{ centre: ArrayLike<number>, right: ArrayLike<number>, up: ArrayLike<number>, radius: number }} Plane
+ * @import { Point, Plane } from './types.js'
  */
 
 /**

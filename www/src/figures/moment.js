@@ -3,36 +3,9 @@
  * gives exactly what was there before.
  */
 
-/** @import { LessonEvent } from '../engine/types.js' */
-
 /**
- * @template {LessonEvent['type']} T
- * @typedef {Extract<LessonEvent, {type: T}>} Of
- */
-/**
- * A child as far as it is known. `fate` is `open` until it is decided; `particle` is the one that it became or met.
- * @typedef {object} Child
- * @property {number} slot
- * @property {Of<'slot'> | null} start
- * @property {Of<'iterate'>[]} iterates
- * @property {Of<'landed'> | null} landed
- * @property {Of<'compared'> | null} compared
- * @property {(Of<'start'> | Of<'push'> | Of<'push_on_circle'>)[]} pushes  the way of an adaptive child in the tangent
- *   plane
- * @property {Of<'room'> | null} room  the angle that an adaptive child takes, and the free one
- * @property {Of<'fate'>['fate']} fate
- * @property {number | null} particle
- */
-/**
- * @typedef {object} Moment
- * @property {LessonEvent} event  the one that is shown
- * @property {Of<'frame'> | null} frame
- * @property {Of<'gathered'> | null} gathered
- * @property {Of<'arc'> | null} arc  the free space that an adaptive child is placed in
- * @property {Child[]} children  by slot: six, and up to ten of an adaptive particle
- * @property {number | null} slot  the slot that was spoken of last; null before the first
- * @property {boolean} isNow  whether the event itself speaks of that slot
- * @property {number} evaluations  of f for this particle so far
+ * @import { LessonEvent } from '../engine/types.js'
+ * @import { Of, Child, Moment } from './types.js'
  */
 
 const SLOTS = 6;

@@ -7,36 +7,9 @@ import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
 /**
- * @import { LessonClient, LessonEvent, LessonIterate, LessonParticles, Vec3 } from '../engine/types.js'
- * @import { Point } from './geometry.js'
- * @import { Child } from './moment.js'
- * @import { Subject } from './words.js'
- */
-
-/**
- * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's
- * method from the place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens is
- * given in radii.
- * @typedef {object} Profile
- * @property {Vec3} normal
- * @property {Vec3} direction
- * @property {number} reach  radius of the circle on which the child is looked for
- * @property {Float32Array} section
- * @property {LessonIterate[]} newton
- * @property {number | null} newtonDistance
- * @property {{ centre: Point, half: number, section: Float32Array } | null} lens
- */
-/**
- * A particle with its events, and what its drawings show.
- * @typedef {object} Opened
- * @property {Subject} subject
- * @property {Vec3} place
- * @property {Vec3} normal
- * @property {Float32Array} positions  of all particles of the run
- * @property {Float32Array} normals
- * @property {Float32Array} radii
- * @property {LessonEvent[]} events  from `taken` to `done`; none if it still waited at the end of the run
- * @property {(Profile | null)[]} profiles  by slot
+ * @import { Profile } from './types.js'
+ * @import { LessonClient, LessonParticles, Vec3 } from '../engine/types.js'
+ * @import { Child } from './types.js'
  */
 
 /** Limit on |f|/|∇f| in radii, as the runs of the lesson have it. */

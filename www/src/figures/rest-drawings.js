@@ -8,8 +8,8 @@ import { pushWords } from './rest.js';
 import { label, line, ring } from './svg.js';
 
 /**
- * @import { Plane, Point } from './geometry.js'
- * @import { Rest } from './rest.js'
+ * @import { Plane, Point } from './types.js'
+ * @import { Rest } from './types.js'
  * @import { Subject } from './words.js'
  */
 

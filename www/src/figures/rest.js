@@ -4,24 +4,8 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { inRadii } from './words.js';
 
 /**
- * @import { LessonChapter, LessonClient, LessonEvent, LessonPush, Vec3 } from '../engine/types.js'
- */
-
-/**
- * A step of a particle. `pushes` are of those that push it, the strongest first; `moved` is the event of its move;
- * `radius` its own before the step.
- * @typedef {object} Rest
- * @property {number} step
- * @property {number} steps  of the run
- * @property {number} size  of the step: the share of the force by which a particle moves
- * @property {number} before  energy per particle before the step
- * @property {number} after
- * @property {number} largest  longest move of all particles, in radii
- * @property {Vec3} place  before the step
- * @property {Vec3} normal
- * @property {number} radius
- * @property {(LessonPush & { at: Vec3, radius: number })[]} pushes
- * @property {Extract<LessonEvent, {type: 'moved'}>} moved
+ * @import { Rest } from './types.js'
+ * @import { LessonChapter, LessonClient, Vec3 } from '../engine/types.js'
  */
 
 /** @param {Float32Array} column @param {number} i @returns {Vec3} */

@@ -1,7 +1,7 @@
 /** Parts of drawings, in which y points up and lengths are in radii. */
 import { s } from '../ui/dom.js';
 
-/** @import { Point } from './geometry.js' */
+/** @import { Point } from './types.js' */
 
 /** Writes a coordinate with a length that does not depend on the number. @param {number} value */
 const short = (value) => String(Math.round(value * 1e4) / 1e4);

@@ -3,7 +3,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 
 /**
  * @import { LessonEvent } from '../engine/types.js'
- * @import { Moment } from './moment.js'
+ * @import { Moment } from './types.js'
  */
 
 /**

@@ -3,7 +3,8 @@ import { PARTICLES } from './lab.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/protocol.js'
- * @import { Lab, LabRun } from './lab.js'
+ * @import { Lab } from './lab.js'
+ * @import { LabRun } from './types.js'
  */
 
 /**

@@ -13,10 +13,11 @@ import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.
 import { WHAT_IFS } from './whatifs.js';
 
 /**
- * @import { Lab, LabRun } from './lab.js'
+ * @import { Lab } from './lab.js'
+ * @import { LabRun } from './types.js'
  * @import { Stops } from './predict.js'
- * @import { Task, Work } from './task.js'
- * @import { Control, Setup } from './whatifs.js'
+ * @import { Task, Work } from './types.js'
+ * @import { Control, Setup } from './types.js'
  */
 
 /** A run as plain numbers. @param {string} label @param {LabRun} run */

@@ -8,7 +8,7 @@ import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
 /**
  * @import { Lab } from './lab.js'
- * @import { Control, Setup } from './whatifs.js'
+ * @import { Control, Setup } from './types.js'
  */
 
 /** Stops of the bench in the address: one for each choice. */

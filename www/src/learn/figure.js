@@ -5,13 +5,12 @@
 import { h } from '../ui/dom.js';
 import { NoSurface } from './lab.js';
 
+/**
+ * @import { Figure } from './types.js'
+ */
+
 /** How far from the window a figure begins, in pixels. */
 const AHEAD_PX = 500;
-
-/**
- * `ready` is fulfilled once it is live, and never if it cannot be made.
- * @typedef {{ stage: HTMLElement, load: () => Promise<void>, ready: Promise<void> }} Figure
- */
 
 /**
  * @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure}

@@ -10,7 +10,7 @@ import { reasonOf } from './figure.js';
 import { PREDICTIONS } from './predictions.js';
 
 /**
- * @import { Figure } from './figure.js'
+ * @import { Figure } from './types.js'
  * @import { Lab } from './lab.js'
  */
 

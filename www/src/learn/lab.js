@@ -6,23 +6,10 @@
 import { RESIDUAL } from '../figures/particle.js';
 
 /**
- * @import { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/protocol.js'
- * @import { LessonClient, LessonParticles } from '../engine/types.js'
+ * @import { LabRun } from './types.js'
+ * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { LessonClient } from '../engine/types.js'
  * @import { FormulaSurface } from '../ui/surface-link.js'
- */
-
-/**
- * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after the
- * last; `placing` counts the evaluations of f until then.
- * @typedef {object} LabRun
- * @property {LessonClient} client  closed if the run was not to be kept
- * @property {Partial<LessonSettings>} settings
- * @property {number} radius
- * @property {LessonChapter[]} chapters
- * @property {LessonProgress} progress
- * @property {LessonParticles} placed
- * @property {LessonParticles} end
- * @property {number} placing
  */
 
 /** Particles that the figures have: many enough for rings, few enough to tell them apart. */

@@ -4,7 +4,7 @@ import { between, createGrid } from '../ui/neighbours.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
- * @import { LabRun } from './lab.js'
+ * @import { LabRun } from './types.js'
  */
 
 /**

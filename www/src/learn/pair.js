@@ -9,10 +9,14 @@ import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 
-/** @import { Lab, LabRun } from './lab.js' */
+/**
+ * @import { Colouring, Side } from './types.js'
+ */
 
-/** How the two pictures are coloured. @typedef {'level' | 'parent' | 'nearest' | 'radius'} Colouring */
-/** @typedef {{ label: string, make: (lab: Lab) => Promise<LabRun> }} Side */
+/**
+ * @import { Lab } from './lab.js'
+ * @import { LabRun } from './types.js'
+ */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];

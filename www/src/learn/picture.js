@@ -10,23 +10,11 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
+ * @import { Mark, Scene } from './types.js'
  * @import { Signal } from '@preact/signals-core'
  * @import { Bounds, LessonParticles } from '../engine/types.js'
  * @import { View } from '../engine/view/camera.js'
  * @import { Palette } from '../engine/view/palettes.js'
- */
-
-/**
- * A place that is marked, if its side is in view.
- * @typedef {{ place: ArrayLike<number>, normal: ArrayLike<number>, radius: number, kind: 'ring' | 'cross' }} Mark
- */
-/**
- * What a picture shows. `count`: the first so many particles; `colours`: one for each, of this theme's palette.
- * @typedef {object} Scene
- * @property {LessonParticles} particles
- * @property {number} [count]
- * @property {(palette: Palette) => Uint32Array} colours
- * @property {readonly Mark[]} [marks]
  */
 
 const KEY_STEP_RAD = 0.14;

@@ -9,27 +9,9 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 
 /**
+ * @import { Prediction, Guessed } from './types.js'
  * @import { Lab } from './lab.js'
  * @import { Signal } from '@preact/signals-core'
- */
-
-/**
- * `right` is compared with the guess; `words` say it in a sentence.
- * @typedef {{ right: string | number, words: string }} Answer
- */
-/**
- * `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it.
- * @typedef {object} Prediction
- * @property {'choice' | 'number' | 'pick'} kind
- * @property {readonly { value: string, label: string }[]} [choices]
- * @property {string} [label]  of the number
- * @property {number} [most]  largest number
- * @property {(lab: Lab, guess: string | number | null) => Promise<Answer>} answer
- * @property {(guess: string | number, right: string | number) => string} [judge]
- */
-/**
- * What a learner has guessed and what the run said.
- * @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Guessed
  */
 
 /** Which predictions are out. Figures show what would give the answer away only then. */

@@ -11,7 +11,7 @@ import { widestHole } from './chapters/rest.js';
 import { NoSurface } from './lab.js';
 import { asFineEverywhere, energiesOf, ringsOf, stepOfRest } from './measure.js';
 
-/** @import { Prediction } from './predict.js' */
+/** @import { Prediction } from './types.js' */
 
 /** The ring that is asked for. */
 const RING = 12;

@@ -3,15 +3,8 @@ import { packed, unpacked } from '../ui/surface-link.js';
 import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 
 /**
- * @import { Guessed } from './predict.js'
- * @import { Control, Setup } from './whatifs.js'
- */
-
-/** @typedef {{ title: string, setup: Setup, locks: Control[], questions: string[] }} Task */
-/**
- * What a learner hands in.
- * @typedef {{ assignment: string, surface: string, answers: { question: string, answer: string }[], predictions:
- *   Guessed[], runs: object[] }} Work
+ * @import { Task, Work } from './types.js'
+ * @import { Control } from './types.js'
  */
 
 export const LONGEST_TITLE = 120;

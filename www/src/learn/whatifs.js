@@ -2,25 +2,10 @@
 import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
+ * @import { Setup, WhatIf } from './types.js'
  * @import { LessonSettings } from '../engine/lesson/protocol.js'
- * @import { Lab, LabRun } from './lab.js'
- * @import { Colouring, Side } from './pair.js'
- */
-
-/**
- * What an assignment may lock: on its bench, then on the rest of the page.
- * @typedef {'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race'} Control
- */
-/** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
-/**
- * One choice. `make` is given a value and makes the run; the first two values are shown first.
- * @typedef {object} WhatIf
- * @property {string} id
- * @property {string} name
- * @property {string} look  what to look for
- * @property {Colouring} colouring
- * @property {readonly { value: string, label: string }[]} values
- * @property {(lab: Lab, value: string) => Promise<LabRun>} make
+ * @import { Lab } from './lab.js'
+ * @import { Side } from './types.js'
  */
 
 /**

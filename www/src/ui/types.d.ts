@@ -1,4 +1,6 @@
 // Types of the interface's parts: what elements are created from, and what panels share.
+
+import type { ReadonlySignal } from '@preact/signals-core';
 import type { IconName } from './icons.js';
 
 /** A value, or a function of signals that is read anew after every change of them. */
@@ -73,4 +75,50 @@ export interface ButtonProps extends Props<HTMLButtonElement> {
   icon?: Live<IconName>;
   /** whether a press does nothing; the button can still be reached by the keyboard */
   off?: () => boolean;
+}
+
+/** Bars above the places. With `widths` a bar stands for so many places. */
+export type Bars = { heights: ArrayLike<number>; widths?: ArrayLike<number> };
+export interface Track {
+  /** of a place, in the singular */
+  name: string;
+  /** whether there are places */
+  some: ReadonlySignal<boolean>;
+  /** the place that is shown */
+  at: ReadonlySignal<number>;
+  /** the last place; the first one is 0 */
+  last: ReadonlySignal<number>;
+  /** the place in words */
+  text: ReadonlySignal<string>;
+  /** the same for the eye: the number, and of how many */
+  short: ReadonlySignal<[string, string]>;
+  bars: ReadonlySignal<Bars>;
+  /** whether all is shown, no place in particular */
+  whole: ReadonlySignal<boolean>;
+  show: (at: number) => void;
+  /** to the next place or the one before; false if there is none */
+  go: (by: 1 | -1) => boolean;
+  /** places per second of playback, at its usual speed */
+  perSecond: number;
+}
+/**
+ * The panel that follows a particle, as the timeline knows it: its two tracks, and where it stands among the
+ * levels.
+ */
+export interface FollowPanel {
+  open: ReadonlySignal<boolean>;
+  /** that of the particle that is open */
+  level: ReadonlySignal<number | null>;
+  /** the particle that is open, and its event */
+  place: ReadonlySignal<[number, number] | null>;
+  particles: Track;
+  events: Track;
+  /** follows a particle of the picture */
+  follow: (index: number) => void;
+  /** opens a particle of the run at an event */
+  goTo: (place: [number, number]) => void;
+  /** opens the first particle of a level */
+  goToLevel: (level: number) => void;
+  close: () => void;
+  onKey: (listener: (event: KeyboardEvent) => void) => void;
 }

@@ -6,7 +6,7 @@ import { fakeCore } from './fake-core.js';
 
 /**
  * @import { Memory } from '../../src/engine/sampling/job.js'
- * @import { FromWorker, Job, SampleJob } from '../../src/engine/sampling/protocol.js'
+ * @import { FromWorker, Job, SampleJob } from '../../src/engine/sampling/types.js'
  */
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */

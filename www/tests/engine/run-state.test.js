@@ -11,8 +11,8 @@ import {
 import { description } from './description.js';
 
 /**
- * @import { Outcome } from '../../src/engine/sampling/protocol.js'
- * @import { RunEvent, RunState, SampleRequest } from '../../src/engine/sampling/run-state.js'
+ * @import { Outcome } from '../../src/engine/sampling/types.js'
+ * @import { RunEvent, RunState, SampleRequest } from '../../src/engine/sampling/types.js'
  * @import { Bounds } from '../../src/engine/types.js'
  */
 

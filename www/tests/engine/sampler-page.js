@@ -5,7 +5,7 @@ import { Sampler } from '../../src/engine/sampling/sampler.js';
 import { createStore } from '../../src/engine/store.js';
 import { description } from './description.js';
 
-/** @import { SampleRequest } from '../../src/engine/sampling/run-state.js' */
+/** @import { SampleRequest } from '../../src/engine/sampling/types.js' */
 
 /** @type {any[]} */
 export let workers = [];

@@ -7,7 +7,7 @@ import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
 import { seedAt } from '../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
-/** @import { Control } from '../../src/learn/whatifs.js' */
+/** @import { Control } from '../../src/learn/types.js' */
 
 const SURFACE = {
   formula: 'x^2 + y^2 = a − é',

@@ -11,7 +11,7 @@ import { setLocale } from '../../src/ui/format.js';
 
 /**
  * @import { LessonEvent } from '../../src/engine/types.js'
- * @import { Rest } from '../../src/figures/rest.js'
+ * @import { Rest } from '../../src/figures/types.js'
  */
 
 beforeAll(() => setLocale('en'));

@@ -8,7 +8,7 @@ import { Supervisor } from './supervisor.js';
 
 /**
  * @import { MeshFormat } from '../types.js'
- * @import { FromWorker, ToWorker } from './protocol.js'
+ * @import { FromWorker, ToWorker } from './types.js'
  * @import { Clock, Crash, WorkerLike } from './supervisor.js'
  */
 

@@ -6,7 +6,7 @@
 
 /**
  * @import { Notice } from '../types.js'
- * @import { RunRequest } from './run-state.js'
+ * @import { RunRequest } from './types.js'
  * @import { Crash } from './supervisor.js'
  */
 

@@ -14,7 +14,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  * @import { Core } from '../../wasm/core/core.js'
  * @import { Figures } from '../columns.js'
  * @import { CoreProgress, CoreReport, Seconds } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, FromWorker, Job, Mesh } from './protocol.js'
+ * @import { ColumnsMessage, DoneMessage, FromWorker, Job, Mesh } from './types.js'
  */
 
 /**

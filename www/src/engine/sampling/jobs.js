@@ -9,7 +9,7 @@
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FieldAnswer } from '../types.js'
- * @import { FromWorker, Job, SampleJob } from './protocol.js'
+ * @import { FromWorker, Job, SampleJob } from './types.js'
  */
 
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */

@@ -8,7 +8,7 @@ import { BEAT_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { Mesh } from './protocol.js'
+ * @import { Mesh } from './types.js'
  */
 
 /** First budgets, in slices of up to a tenth of a millisecond, and of a millisecond for files. */

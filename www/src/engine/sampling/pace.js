@@ -7,7 +7,7 @@ import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
  * @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js'
- * @import { Run, RunRequest, SampleRequest } from './run-state.js'
+ * @import { Run, RunRequest, SampleRequest } from './types.js'
  */
 
 /**

@@ -13,8 +13,8 @@ import { MOST_REMEMBERED } from './protocol.js';
  * @import { Columns } from '../columns.js'
  * @import { Store } from '../store.js'
  * @import { Bounds, CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, PastMessage, ReportMessage } from './protocol.js'
- * @import { Run, RunRequest } from './run-state.js'
+ * @import { ColumnsMessage, DoneMessage, PastMessage, ReportMessage } from './types.js'
+ * @import { Run, RunRequest } from './types.js'
  */
 
 /**

@@ -7,8 +7,9 @@
 import { clampSettings } from '../share/state.js';
 
 /**
- * @import { Bounds, Description, FieldRequest, Settings } from '../types.js'
- * @import { Outcome } from './protocol.js'
+ * @import { SampleRequest, RunRequest, Stage, Run, Shown, RunState, RunEvent } from './types.js'
+ * @import { Description } from '../types.js'
+ * @import { Outcome } from './types.js'
  */
 
 /**
@@ -16,68 +17,6 @@ import { clampSettings } from '../share/state.js';
  * finish.
  */
 const PATIENCE_MS = 150;
-
-/**
- * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
- * question about a large number of particles. `restoring` completes the surface on the page while the state names
- * another one that cannot be sampled.
- * @typedef {object} SampleRequest
- * @property {'sample'} kind
- * @property {FieldRequest} field
- * @property {Settings} settings
- * @property {boolean} grow
- * @property {boolean} live
- * @property {boolean} fit
- * @property {boolean} [confirmed]
- * @property {boolean} [restoring]
- * @property {boolean} [coarse]  of fewer particles than the settings of the state ask for, or of the coarse level alone
- */
-/**
- * @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}}
- *   RelaxRequest
- */
-/** @typedef {SampleRequest | RelaxRequest} RunRequest */
-/**
- * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are, and
- * the report is pending; `over`: the run has ended.
- * @typedef {'seeding' | 'growing' | 'measuring' | 'over'} Stage
- */
-/**
- * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted, and final
- * once the box is found.
- * @typedef {{id: number, request: RunRequest, bounds: Bounds | null, stage: Stage, sinceMs: number}} Run
- */
-/** @typedef {{request: SampleRequest, reported: boolean}} Shown */
-/**
- * Which jobs there are: at most one waits here, those that are asked wait at the worker, and one is current.
- * @typedef {object} RunState
- * @property {number} lastId  id of the job sent last, 0 before the first
- * @property {RunRequest | null} waiting  the request that is sent once the worker has ended a job
- * @property {readonly Run[]} asked  jobs whose field has not been answered yet, in the order sent
- * @property {Run | null} current  the job whose messages count: the last one whose field was accepted
- * @property {number} held  the job whose particles the worker holds, 0 for none
- * @property {SampleRequest | null} accepted  the last sampling that the core accepted
- * @property {Shown | null} shown  the request whose particles are on the page, and whether their report has arrived
- * @property {boolean} astray  whether the surface on the page differs from the one requested last
- * @property {number} stoppedUpTo  id of the last job sent before a stop; no job up to it continues
- * @property {string} crashedInput  the input on which the worker crashed last, from {@link inputOf}
- */
-/**
- * The events. `particles`: the first particles of the current run have arrived; `lost`: the worker and its jobs are
- * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
- * @typedef {{type: 'waits', request: RunRequest}
- *   | {type: 'sent', request: RunRequest, nowMs: number}
- *   | {type: 'accepted', id: number, bounds: Bounds}
- *   | {type: 'boxed', bounds: Bounds}
- *   | {type: 'refused', id: number}
- *   | {type: 'particles', description: Description | null}
- *   | {type: 'done', outcome: Outcome, particles: number, reportFollows: boolean}
- *   | {type: 'reported'}
- *   | {type: 'stopped'}
- *   | {type: 'lost'}
- *   | {type: 'crashed', input: string, again: boolean}
- *   | {type: 'revived'}} RunEvent
- */
 
 /** @type {RunState} */
 export const IDLE = Object.freeze({

@@ -30,8 +30,8 @@ import {
  * @import { Store } from '../store.js'
  * @import { Description, FieldAnswer, FieldOk } from '../types.js'
  * @import { Picture } from './presenter.js'
- * @import { ColumnsMessage, DoneMessage, FromWorker, Job } from './protocol.js'
- * @import { Run, RunEvent, RunRequest, SampleRequest } from './run-state.js'
+ * @import { ColumnsMessage, DoneMessage, FromWorker, Job } from './types.js'
+ * @import { Run, RunEvent, RunRequest, SampleRequest } from './types.js'
  * @import { Clock, Crash, WorkerLike } from './supervisor.js'
  */
 

@@ -7,7 +7,7 @@
 import coreUrl from '../../wasm/core/core_bg.wasm?url';
 import { LoadError, loadModule, words } from '../bundle/load.js';
 
-/** @import { ToWorker } from './protocol.js' */
+/** @import { ToWorker } from './types.js' */
 
 /** The compiled core; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;

@@ -8,7 +8,7 @@
  */
 import { SILENCE_MS } from './protocol.js';
 
-/** @import { FromWorker, ToWorker } from './protocol.js' */
+/** @import { FromWorker, ToWorker } from './types.js' */
 
 /** @typedef {import('../bundle/types.js').WorkerLike<ToWorker, FromWorker>} WorkerLike */
 /**

@@ -12,8 +12,8 @@ import { formatCount, plural } from '../../ui/format.js';
 import { createRange } from '../parts.js';
 
 /**
- * @import { Opened } from '../../figures/particle.js'
- * @import { LabRun } from '../lab.js'
+ * @import { Opened } from '../../figures/types.js'
+ * @import { LabRun } from '../types.js'
  * @import { Context } from './index.js'
  */
 

@@ -8,8 +8,9 @@ import { createBars, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
 /**
- * @import { Lab, LabRun } from '../lab.js'
- * @import { Mark } from '../picture.js'
+ * @import { Lab } from '../lab.js'
+ * @import { LabRun } from '../types.js'
+ * @import { Mark } from '../types.js'
  * @import { Context } from './index.js'
  */
 

@@ -23,7 +23,7 @@ import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey } from './
 /**
  * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a
  * step to another one.
- * @typedef {import('../../figures/particle.js').Opened & { picture: { index: number, distance: number } | null }}
+ * @typedef {import('../../figures/types.js').Opened & { picture: { index: number, distance: number } | null }}
  *   Opened
  */
 /**

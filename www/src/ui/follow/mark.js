@@ -7,7 +7,7 @@ import { tangentsOf } from '../../figures/geometry.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Child } from '../../figures/moment.js'
+ * @import { Child } from '../../figures/types.js'
  * @import { Follower } from './follower.js'
  */
 

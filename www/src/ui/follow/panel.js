@@ -23,7 +23,7 @@ import { createViews } from './views.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { FollowPanel, Track } from '../track.js'
+ * @import { FollowPanel, Track } from '../types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
  */
 

@@ -15,7 +15,7 @@ import { settingOf, settingsOf } from './run.js';
 /**
  * @import { Signal } from '@preact/signals-core'
  * @import { LessonChapter, LessonClient } from '../../engine/types.js'
- * @import { Rest } from '../../figures/rest.js'
+ * @import { Rest } from '../../figures/types.js'
  * @import { Children } from '../types.js'
  * @import { Follower, Opened } from './follower.js'
  */

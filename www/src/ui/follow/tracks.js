@@ -8,7 +8,7 @@ import { formatCount } from '../format.js';
 
 /**
  * @import { LessonEvent } from '../../engine/types.js'
- * @import { Track } from '../track.js'
+ * @import { Track } from '../types.js'
  * @import { Follower } from './follower.js'
  */
 

@@ -11,7 +11,7 @@ import { formatCount, formatSignificant, MISSING } from '../format.js';
 import { createRestViews } from './rest.js';
 
 /**
- * @import { Child, Moment } from '../../figures/moment.js'
+ * @import { Child, Moment } from '../../figures/types.js'
  * @import { Children } from '../types.js'
  * @import { Follower, Opened } from './follower.js'
  */

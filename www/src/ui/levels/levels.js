@@ -9,7 +9,7 @@ import { levelTable, shortOf } from './table.js';
 /**
  * @import { Columns } from '../../engine/columns.js'
  * @import { Engine } from '../../engine/types.js'
- * @import { Track } from '../track.js'
+ * @import { Track } from '../types.js'
  */
 
 /** Height of the bar of a relaxation step whose moves are not known, as a share of the highest level. */

@@ -16,7 +16,7 @@ import { describeLevel } from './table.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Bars, FollowPanel } from '../track.js'
+ * @import { Bars, FollowPanel } from '../types.js'
  * @import { ButtonProps } from '../types.js'
  * @import { Move } from './keys.js'
  * @import { Levels } from './levels.js'

@@ -1,0 +1,193 @@
+// Messages between the page and the sampler's worker, and the record of the runs.
+import type { Figures } from '../columns.js';
+import type { Solved } from '../points/protocol.js';
+import type {
+  Bounds,
+  CoreProgress,
+  Description,
+  FieldAnswer,
+  FieldOk,
+  FieldRequest,
+  MeshFormat,
+  Report,
+  Seconds,
+  Settings,
+} from '../types.js';
+
+export type Mesh = import('../types.js').Mesh;
+/**
+ * Samples the field from the start. With `grow` the columns are sent while the front grows; otherwise they are sent
+ * once the front is complete, so that the present picture stays until then. A `live` job comes from a drag: its
+ * columns are sent once, at the end, and it has no report unless it is stopped. With `coarse` it ends where a
+ * refinement has finished its coarse level: the particles that the full run refines. A job with more than
+ * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names.
+ */
+export interface SampleJob {
+  kind: 'sample';
+  id: number;
+  field: FieldRequest;
+  points: Pick<Solved, 'field' | 'info'> | null;
+  settings: Settings;
+  grow: boolean;
+  live: boolean;
+  coarse: boolean;
+  askAbove: number;
+}
+/** Relaxes the particles that the worker holds. They must be those of job `of`. */
+export type RelaxJob = { kind: 'relax'; id: number; of: number; steps: number; live: false; grow: true };
+export type Job = SampleJob | RelaxJob;
+/**
+ * A `job` replaces the running one once the core has accepted its field. If the field is refused, the running job
+ * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it
+ * is sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page
+ * draws a mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the
+ * mesh as a file, once no job is left. The first message is `core`, or `no_core` if the core could not be loaded.
+ */
+export type ToWorker =
+  | { type: 'core'; module: WebAssembly.Module }
+  | { type: 'no_core'; fault: LoadFault; message: string }
+  | { type: 'job'; job: Job }
+  | { type: 'curvature'; on: boolean }
+  | { type: 'mesh'; on: boolean }
+  | { type: 'export'; request: number; format: MeshFormat }
+  | { type: 'stop' }
+  | { type: 'drawn'; id: number }
+  | { type: 'provoke'; fault: Fault };
+/** Faults that tests provoke. */
+export type Fault = 'panic' | 'hang' | 'overflow';
+/**
+ * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than `askAbove` are expected;
+ * `lost`: the worker no longer holds the particles to relax. A job whose field was refused ends with that answer. A
+ * job that is replaced ends without a message.
+ */
+export type Outcome = 'complete' | 'stopped' | 'refused' | 'ask' | 'lost';
+export interface ColumnsMessage {
+  type: 'columns';
+  id: number;
+  first: number;
+  total: number;
+  positions: Float32Array;
+  /** the positions in double precision, in a box far from the origin; else empty */
+  exact?: Float64Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  levels: Uint32Array;
+  parents: Uint32Array;
+  slotsFrom: number;
+  slots: Uint32Array;
+  curvatureFrom: number;
+  /** empty unless the page shows it */
+  curvature: Float32Array;
+  /** null unless the page draws it and the run is over */
+  mesh: Mesh | null;
+  /** null for columns sent after the run */
+  progress: CoreProgress | null;
+}
+/** The positions before each relaxation step of the run, or before the first alone where there are many particles. */
+export type PastMessage = { type: 'past'; id: number; positions: Float32Array[] };
+export interface DoneMessage {
+  type: 'done';
+  id: number;
+  outcome: Outcome;
+  progress: CoreProgress | null;
+  seconds: Seconds;
+  /** particles expected at the start, 0 when unknown */
+  predicted: number;
+  /** words for `refused`, else empty */
+  message: string;
+  reportFollows: boolean;
+}
+export type ReportMessage = { type: 'report'; id: number; report: Report } & Figures;
+export type LoadFault = import('../bundle/load.js').LoadFault;
+export type FromWorker =
+  | { type: 'ready'; description: Description }
+  | { type: 'failed'; fault: LoadFault; message: string }
+  | { type: 'beat' }
+  | { type: 'field'; id: number; answer: FieldAnswer }
+  | { type: 'box'; id: number; answer: FieldOk }
+  | { type: 'started'; id: number; radius: number; predicted: number; warnings: string[] }
+  | { type: 'progress'; id: number; progress: CoreProgress }
+  | ColumnsMessage
+  | PastMessage
+  | DoneMessage
+  | ReportMessage
+  | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
+  | { type: 'crashed'; id: number; message: string; stack: string };
+/**
+ * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
+ * question about a large number of particles. `restoring` completes the surface on the page while the state names
+ * another one that cannot be sampled.
+ */
+export interface SampleRequest {
+  kind: 'sample';
+  field: FieldRequest;
+  settings: Settings;
+  grow: boolean;
+  live: boolean;
+  fit: boolean;
+  confirmed?: boolean;
+  restoring?: boolean;
+  /** of fewer particles than the settings of the state ask for, or of the coarse level alone */
+  coarse?: boolean;
+}
+export type RelaxRequest = {
+  kind: 'relax';
+  of: number;
+  steps: number;
+  live: false;
+  grow: true;
+  fit: false;
+  restoring?: false;
+};
+export type RunRequest = SampleRequest | RelaxRequest;
+/**
+ * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are,
+ * and the report is pending; `over`: the run has ended.
+ */
+export type Stage = 'seeding' | 'growing' | 'measuring' | 'over';
+/**
+ * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted, and
+ * final once the box is found.
+ */
+export type Run = { id: number; request: RunRequest; bounds: Bounds | null; stage: Stage; sinceMs: number };
+export type Shown = { request: SampleRequest; reported: boolean };
+/** Which jobs there are: at most one waits here, those that are asked wait at the worker, and one is current. */
+export interface RunState {
+  /** id of the job sent last, 0 before the first */
+  lastId: number;
+  /** the request that is sent once the worker has ended a job */
+  waiting: RunRequest | null;
+  /** jobs whose field has not been answered yet, in the order sent */
+  asked: readonly Run[];
+  /** the job whose messages count: the last one whose field was accepted */
+  current: Run | null;
+  /** the job whose particles the worker holds, 0 for none */
+  held: number;
+  /** the last sampling that the core accepted */
+  accepted: SampleRequest | null;
+  /** the request whose particles are on the page, and whether their report has arrived */
+  shown: Shown | null;
+  /** whether the surface on the page differs from the one requested last */
+  astray: boolean;
+  /** id of the last job sent before a stop; no job up to it continues */
+  stoppedUpTo: number;
+  /** the input on which the worker crashed last, from {@link inputOf} */
+  crashedInput: string;
+}
+/**
+ * The events. `particles`: the first particles of the current run have arrived; `lost`: the worker and its jobs are
+ * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
+ */
+export type RunEvent =
+  | { type: 'waits'; request: RunRequest }
+  | { type: 'sent'; request: RunRequest; nowMs: number }
+  | { type: 'accepted'; id: number; bounds: Bounds }
+  | { type: 'boxed'; bounds: Bounds }
+  | { type: 'refused'; id: number }
+  | { type: 'particles'; description: Description | null }
+  | { type: 'done'; outcome: Outcome; particles: number; reportFollows: boolean }
+  | { type: 'reported' }
+  | { type: 'stopped' }
+  | { type: 'lost' }
+  | { type: 'crashed'; input: string; again: boolean }
+  | { type: 'revived' };

@@ -1,0 +1,89 @@
+// What is known of a particle and drawn of it.
+import type { LessonEvent, LessonIterate, LessonPush, Vec3 } from '../engine/types.js';
+import type { Subject } from './words.js';
+
+export type Of<T extends LessonEvent['type']> = Extract<LessonEvent, { type: T }>;
+/** A child as far as it is known. `fate` is `open` until it is decided; `particle` is the one that it became or met. */
+export interface Child {
+  slot: number;
+  start: Of<'slot'> | null;
+  iterates: Of<'iterate'>[];
+  landed: Of<'landed'> | null;
+  compared: Of<'compared'> | null;
+  /** the way of an adaptive child in the tangent plane */
+  pushes: (Of<'start'> | Of<'push'> | Of<'push_on_circle'>)[];
+  /** the angle that an adaptive child takes, and the free one */
+  room: Of<'room'> | null;
+  fate: Of<'fate'>['fate'];
+  particle: number | null;
+}
+export interface Moment {
+  /** the one that is shown */
+  event: LessonEvent;
+  frame: Of<'frame'> | null;
+  gathered: Of<'gathered'> | null;
+  /** the free space that an adaptive child is placed in */
+  arc: Of<'arc'> | null;
+  /** by slot: six, and up to ten of an adaptive particle */
+  children: Child[];
+  /** the slot that was spoken of last; null before the first */
+  slot: number | null;
+  /** whether the event itself speaks of that slot */
+  isNow: boolean;
+  /** of f for this particle so far */
+  evaluations: number;
+}
+/**
+ * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's
+ * method from the place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens
+ * is given in radii.
+ */
+export interface Profile {
+  normal: Vec3;
+  direction: Vec3;
+  /** radius of the circle on which the child is looked for */
+  reach: number;
+  section: Float32Array;
+  newton: LessonIterate[];
+  newtonDistance: number | null;
+  lens: { centre: Point; half: number; section: Float32Array } | null;
+}
+/** A particle with its events, and what its drawings show. */
+export interface Opened {
+  subject: Subject;
+  place: Vec3;
+  normal: Vec3;
+  /** of all particles of the run */
+  positions: Float32Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  /** from `taken` to `done`; none if it still waited at the end of the run */
+  events: LessonEvent[];
+  /** by slot */
+  profiles: (Profile | null)[];
+}
+/**
+ * A step of a particle. `pushes` are of those that push it, the strongest first; `moved` is the event of its move;
+ * `radius` its own before the step.
+ */
+export interface Rest {
+  step: number;
+  /** of the run */
+  steps: number;
+  /** of the step: the share of the force by which a particle moves */
+  size: number;
+  /** energy per particle before the step */
+  before: number;
+  after: number;
+  /** longest move of all particles, in radii */
+  largest: number;
+  /** before the step */
+  place: Vec3;
+  normal: Vec3;
+  radius: number;
+  pushes: (LessonPush & { at: Vec3; radius: number })[];
+  moved: Extract<LessonEvent, { type: 'moved' }>;
+}
+export type Point = [number, number];
+/** Two perpendicular unit vectors at a particle, and its radius. */
+export type Plane = { centre: ArrayLike<number>; right: ArrayLike<number>; up: ArrayLike<number>; radius: number };

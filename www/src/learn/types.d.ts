@@ -1,0 +1,73 @@
+// Types of the learn page: its runs, its pictures, its questions and its choices.
+import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/protocol.js';
+import type { LessonClient, LessonParticles } from '../engine/types.js';
+import type { Palette } from '../engine/view/palettes.js';
+import type { Lab } from './lab.js';
+
+/** What an assignment may lock: on its bench, then on the rest of the page. */
+export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
+/** What stands on the bench. */
+export type Setup = { what: string; left: string; right: string };
+/** One choice. `make` is given a value and makes the run; the first two values are shown first. */
+export interface WhatIf {
+  id: string;
+  name: string;
+  /** what to look for */
+  look: string;
+  colouring: Colouring;
+  values: readonly { value: string; label: string }[];
+  make: (lab: Lab, value: string) => Promise<LabRun>;
+}
+/** `right` is compared with the guess; `words` say it in a sentence. */
+export type Answer = { right: string | number; words: string };
+/** `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it. */
+export interface Prediction {
+  kind: 'choice' | 'number' | 'pick';
+  choices?: readonly { value: string; label: string }[];
+  /** of the number */
+  label?: string;
+  /** largest number */
+  most?: number;
+  answer: (lab: Lab, guess: string | number | null) => Promise<Answer>;
+  judge?: (guess: string | number, right: string | number) => string;
+}
+/** What a learner has guessed and what the run said. */
+export type Guessed = { stop: string; question: string; guess: string | number | null; answer: string };
+/** A place that is marked, if its side is in view. */
+export type Mark = { place: ArrayLike<number>; normal: ArrayLike<number>; radius: number; kind: 'ring' | 'cross' };
+/** What a picture shows. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
+export interface Scene {
+  particles: LessonParticles;
+  count?: number;
+  colours: (palette: Palette) => Uint32Array;
+  marks?: readonly Mark[];
+}
+/**
+ * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after
+ * the last; `placing` counts the evaluations of f until then.
+ */
+export interface LabRun {
+  /** closed if the run was not to be kept */
+  client: LessonClient;
+  settings: Partial<LessonSettings>;
+  radius: number;
+  chapters: LessonChapter[];
+  progress: LessonProgress;
+  placed: LessonParticles;
+  end: LessonParticles;
+  placing: number;
+}
+/** How the two pictures are coloured. */
+export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';
+export type Side = { label: string; make: (lab: Lab) => Promise<LabRun> };
+export type Task = { title: string; setup: Setup; locks: Control[]; questions: string[] };
+/** What a learner hands in. */
+export type Work = {
+  assignment: string;
+  surface: string;
+  answers: { question: string; answer: string }[];
+  predictions: Guessed[];
+  runs: object[];
+};
+/** `ready` is fulfilled once it is live, and never if it cannot be made. */
+export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Promise<void> };
