@@ -33,7 +33,7 @@ pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 const MAX_ATTEMPTS: u32 = 4;
 
 /// One attempt at covering the surface.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Attempt {
     /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal radius would cover the surface.
     pub(super) radius: f64,
@@ -64,20 +64,6 @@ pub(super) struct Refining {
     pub(super) failures: u32,
     /// Why the last of them could not.
     pub(super) failure: Option<Refusal>,
-}
-
-impl Default for Attempt {
-    fn default() -> Self {
-        Self {
-            radius: 1.0,
-            sizing: None,
-            area: 0.0,
-            packing: PACKING,
-            refining: None,
-            is_pilot: false,
-            completed: 0,
-        }
-    }
 }
 
 impl Attempt {

@@ -63,7 +63,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
 }
 
 /// Samples one surface at a time.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Sampler {
     settings: Settings,
     bounds: Bounds,
@@ -74,12 +74,12 @@ pub struct Sampler {
     tools: Tools,
     output: Output,
     counts: Counts,
-    /// Most bytes that a run may need.
-    memory_limit: usize,
+    /// Most bytes that a run may need, if they are limited.
+    memory_limit: Option<usize>,
 }
 
 /// What places and moves the particles, with the memory that serves from one run to the next.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Tools {
     memory: ProbeMemory,
     front: Front,
@@ -101,34 +101,11 @@ struct Output {
     moved: bool,
 }
 
-impl Default for Sampler {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Sampler {
     /// A sampler with nothing to do.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            settings: Settings::default(),
-            bounds: Bounds::cube(1.0),
-            survey: Survey::default(),
-            attempt: Attempt::default(),
-            phase: PhaseState::Idle,
-            components: ComponentSearch::default(),
-            tools: Tools {
-                memory: ProbeMemory::default(),
-                front: Front::new(),
-                coarse: CoarseFronts::default(),
-                relaxation: Relaxation::new(),
-                neighbours: PackedNeighbours::default(),
-            },
-            output: Output::default(),
-            counts: Counts::default(),
-            memory_limit: usize::MAX,
-        }
+        Self::default()
     }
 
     /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. What a
@@ -338,7 +315,7 @@ impl Sampler {
 
     /// Refuses runs that need more than about `bytes` from now on.
     pub fn limit_memory(&mut self, bytes: usize) {
-        self.memory_limit = bytes;
+        self.memory_limit = Some(bytes);
     }
 
     /// Whether there is memory for a run of `particles`. It is allocated at once and freed again, because an allocation that fails
@@ -346,7 +323,7 @@ impl Sampler {
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(bytes_per_particle(&self.settings));
         let more = particles.saturating_sub(self.output.particles.position.capacity());
-        bytes(particles).is_some_and(|all| all <= self.memory_limit)
+        bytes(particles).is_some_and(|all| self.memory_limit.is_none_or(|limit| all <= limit))
             && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
     }
 

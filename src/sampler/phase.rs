@@ -67,9 +67,10 @@ pub enum StopReason {
 /// | any before `Marking` | the caller cancels the run | `Marking` |
 ///
 /// `Sampler::next` makes every transition.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum PhaseState {
     /// There is no run.
+    #[default]
     Idle,
     /// Looks for a survey point that no particle covers.
     Seeding(SurveyCursor),

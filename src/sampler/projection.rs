@@ -334,7 +334,7 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
 }
 
 /// How near the surface particles have to be. The paper stops "when the child has converged" (§4.3) and gives no number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Accuracy {
     /// The distance that single precision resolves on this field.
     pub(crate) finest: f32,

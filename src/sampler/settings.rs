@@ -6,10 +6,11 @@ use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 /// Whether all particles have one size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// One radius everywhere (paper §4).
+    #[default]
     Uniform,
     /// The radius follows the curvature (paper §5).
     Adaptive,

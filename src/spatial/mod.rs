@@ -101,8 +101,8 @@ pub(crate) static LANES_OF: [LanesOf; 1 << LANES] = {
     all
 };
 
-/// A sparse grid of cubic cells.
-#[derive(Clone)]
+/// A sparse grid of cubic cells. The default one takes no points until it is [reset](Self::reset).
+#[derive(Clone, Default)]
 pub struct CellGrid {
     inverse_cell: f32,
     table: Vec<Brick>,
@@ -118,7 +118,7 @@ impl CellGrid {
     /// If the side is not positive and finite.
     #[must_use]
     pub fn new(cell_side: f32) -> Self {
-        let mut grid = Self { inverse_cell: 0.0, table: Vec::new(), bricks: 0, blocks: Vec::new() };
+        let mut grid = Self::default();
         grid.reset(cell_side);
         grid
     }

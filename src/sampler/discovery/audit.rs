@@ -31,8 +31,8 @@ pub(crate) const MOST_NAMED: usize = 256;
 const MOST_FAILED: u64 = 512;
 /// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0.
 const ROUNDING: f64 = 1e-12;
-/// Distance, in radii, to which a component without a particle is followed. A larger one has room for a child: its edge is 2r from
-/// the first particle, and as much again from the next.
+/// Distance, in radii, to which a component without a particle is followed. One that reaches farther has room
+/// for a child, at two radii.
 pub(super) const FOLLOWED: f64 = 4.0;
 
 /// A particle near a witness.

@@ -123,18 +123,12 @@ pub(crate) struct Seed {
 }
 
 /// The region in which the components of the surface are searched.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region {
     /// The box of the run with a margin around it.
     pub(crate) bounds: Bounds,
     /// Width of the margin.
     pub(crate) margin: f64,
-}
-
-impl Default for Region {
-    fn default() -> Self {
-        Self { bounds: Bounds::cube(0.0), margin: 0.0 }
-    }
 }
 
 /// The search for witnesses, and what it has found.

@@ -55,9 +55,10 @@ impl FrontSetup<'_> {
 }
 
 /// What a front does next within a level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum LevelStage {
     /// Predict the children of a parent.
+    #[default]
     Place,
     /// Project children onto the surface.
     Project,
@@ -66,7 +67,7 @@ enum LevelStage {
 }
 
 /// How far a front has come, and its limits.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct FrontLevel {
     stage: LevelStage,
     /// Next parent of the stage, or next child.
@@ -84,16 +85,7 @@ pub(crate) struct FrontLevel {
 
 impl FrontLevel {
     pub(crate) fn new(bounds: Bounds, max_particles: usize) -> Self {
-        Self {
-            stage: LevelStage::Place,
-            next: 0,
-            first_child: 0,
-            settled: 0,
-            bounds,
-            max_particles,
-            fates: FateCounts::default(),
-            capped: false,
-        }
+        Self { bounds, max_particles, ..Self::default() }
     }
 
     /// Begins a level. Its children follow the particles that are final.
@@ -117,17 +109,19 @@ pub(crate) struct ProvisionalChildren<C, P, L> {
     pub(crate) solutions: Vec<L>,
 }
 
-impl<C, P, L> ProvisionalChildren<C, P, L> {
-    pub(crate) fn new() -> Self {
+impl<C, P, L> Default for ProvisionalChildren<C, P, L> {
+    fn default() -> Self {
         Self {
             list: Vec::new(),
             landings: Vec::new(),
             drift: 0.0,
-            problems: Vec::with_capacity(BATCH),
-            solutions: Vec::with_capacity(BATCH),
+            problems: Vec::new(),
+            solutions: Vec::new(),
         }
     }
+}
 
+impl<C, P, L> ProvisionalChildren<C, P, L> {
     pub(crate) fn clear(&mut self) {
         self.list.clear();
         self.landings.clear();

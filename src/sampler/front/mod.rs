@@ -21,7 +21,7 @@ const MAX_DIP: f32 = 0.9;
 const SIN_60: f32 = 0.866_025_4;
 
 /// The fronts of both kinds, of which one works. The other one keeps its memory.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Front {
     sampling: Sampling,
     uniform: UniformFront,
@@ -29,10 +29,6 @@ pub(crate) struct Front {
 }
 
 impl Front {
-    pub(crate) fn new() -> Self {
-        Self { sampling: Sampling::Uniform, uniform: UniformFront::new(), adaptive: AdaptiveFront::new() }
-    }
-
     /// Prepares the front that the settings ask for.
     pub(crate) fn reset(&mut self, setup: &FrontSetup) {
         self.sampling = setup.settings.sampling;

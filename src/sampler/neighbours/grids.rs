@@ -28,7 +28,7 @@ impl RadiusRange {
 }
 
 /// The layers and their ranges of radii.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Layers {
     count: usize,
     /// Geometric mean of the range of each layer.
@@ -88,17 +88,13 @@ pub(crate) struct GridHandle {
 }
 
 /// One grid for each layer of radii.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct RadiusGrids {
     grids: Vec<CellGrid>,
     layers: Layers,
 }
 
 impl RadiusGrids {
-    pub(crate) fn new() -> Self {
-        Self { grids: Vec::new(), layers: Layers::between(RadiusRange::of(1.0)) }
-    }
-
     /// Empties the grids for particles with these radii; the usual query reaches `reach` radii.
     pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32) {
         self.layers = Layers::between(radii);
@@ -140,17 +136,13 @@ impl RadiusGrids {
 }
 
 /// Linked lists of particles by layer and cell. They hold indices alone; the particles stay in their columns.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct RadiusChains {
     chains: Chains,
     layers: Layers,
 }
 
 impl RadiusChains {
-    pub(crate) fn new() -> Self {
-        Self { chains: Chains::default(), layers: Layers::between(RadiusRange::of(1.0)) }
-    }
-
     /// Empties the lists for up to `particles` particles with these radii; the usual query reaches `reach` radii.
     pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32, particles: usize) {
         self.layers = Layers::between(radii);

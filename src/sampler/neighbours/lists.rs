@@ -35,7 +35,7 @@ impl Travel {
 }
 
 /// The state of all neighbour lists, and the grid from which they are renewed.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct NeighbourLists {
     /// For each particle, how far it has travelled since its list was made.
     travel: Vec<Travel>,
@@ -62,23 +62,6 @@ pub(crate) struct NeighbourLists {
 }
 
 impl NeighbourLists {
-    pub(crate) fn new() -> Self {
-        Self {
-            travel: Vec::new(),
-            has_stale: false,
-            sheets: Vec::new(),
-            grid: RadiusChains::new(),
-            share: 1.0,
-            grid_travel: f32::INFINITY,
-            farthest: 0.0,
-            group: Vec::new(),
-            found: Vec::new(),
-            chunks: Vec::new(),
-            near: Vec::new(),
-            is_weighted: false,
-        }
-    }
-
     /// Takes the lists of this many particles as just made, and the grid as empty.
     pub(crate) fn reset(&mut self, particles: usize) {
         refill(&mut self.travel, particles, Travel::ZERO);

@@ -39,8 +39,8 @@ pub(super) struct Forces {
     batch: Box<PairBatch>,
 }
 
-impl Forces {
-    pub(super) fn new() -> Self {
+impl Default for Forces {
+    fn default() -> Self {
         let batch = PairBatch {
             offset: [Vec4::ZERO; MOST_PAIRS],
             mean: [1.0; MOST_PAIRS],
@@ -50,7 +50,9 @@ impl Forces {
         };
         Self { force: Vec::new(), batch: Box::new(batch) }
     }
+}
 
+impl Forces {
     /// Sets the forces on this many particles to zero.
     pub(super) fn reset(&mut self, particles: usize) {
         refill(&mut self.force, particles, Vec4::ZERO);

@@ -45,7 +45,7 @@ use core::ops::Range;
 const RENEWAL_UNITS: u32 = 10;
 
 /// What a relaxation does next, particle by particle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum RelaxationStage {
     /// Put all particles into the grid.
     FillGrid,
@@ -62,17 +62,19 @@ enum RelaxationStage {
     /// Bring the particles onto the surface as close as single precision allows.
     Polish,
     /// Nothing: the relaxation has ended.
+    #[default]
     Done,
 }
 
 /// What follows once the lists are renewed and the radii graded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Purpose {
     /// A step: the particles have not moved, or were put back.
     Step,
     /// The judgement of the step just made, and the next one.
     Judge,
     /// The end.
+    #[default]
     End,
 }
 
@@ -83,6 +85,12 @@ pub(crate) enum RepulsionLaw {
     Gaussian { radius: f32, tolerance: Tolerance },
     /// For particles of many radii.
     Overlap { accuracy: Accuracy, min_gradient: f32 },
+}
+
+impl Default for RepulsionLaw {
+    fn default() -> Self {
+        Self::Gaussian { radius: 1.0, tolerance: Tolerance::default() }
+    }
 }
 
 impl RepulsionLaw {
@@ -100,7 +108,7 @@ impl RepulsionLaw {
 }
 
 /// What keeps particles where they belong.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MoveLimits {
     /// The box.
     pub(crate) bounds: Bounds,
@@ -109,7 +117,7 @@ pub(crate) struct MoveLimits {
 }
 
 /// A relaxation under way.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Relaxation {
     law: RepulsionLaw,
     /// Steps to be done in all.
@@ -127,20 +135,6 @@ pub(crate) struct Relaxation {
 }
 
 impl Relaxation {
-    pub(crate) fn new() -> Self {
-        Self {
-            law: RepulsionLaw::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
-            target: 0,
-            stage: RelaxationStage::Done,
-            purpose: Purpose::End,
-            next: 0,
-            debt: 0,
-            is_steep: false,
-            lists: NeighbourLists::new(),
-            stepper: Stepper::new(),
-        }
-    }
-
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
         self.stage = RelaxationStage::Done;

@@ -16,7 +16,6 @@ mod placement;
 mod prediction;
 mod vicinity;
 
-use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
@@ -35,25 +34,31 @@ use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
 
-/// Radius of the query around a parent, in its radii: it covers every collision of a child of usual size. The second ring of a
-/// lattice is at 3.46.
+/// Radius of the query around a parent, in its radii: it covers every collision of a child of usual size, 2 + 2 × 0.7, and some more.
+/// The second ring of a lattice is at 3.46.
 const REACH: f32 = 3.7;
 
 /// Particles within this share of r_i + r_j enter each other's neighbour lists for the relaxation.
 const LISTED: f32 = 0.5 * (OVERLAP_RANGE + OVERLAP_SKIN);
 
-/// Neighbours within this share of r_i + r_j count as touching.
+/// Neighbours within this share of r_i + r_j count as touching: they get one of the parent's slots. It moves no particle.
 const TOUCHING: f32 = 1.25;
 
-/// Neighbours within this many radii enter the fit of the radius's gradient.
+/// Neighbours within this many radii enter the fit of the radius's gradient: those between the rings of a lattice, which are at 2 and
+/// at 3.46. From 2.2 to 3.5 the figures of random surfaces are the same within 2 %.
 const RING: f32 = 2.8;
 
-/// A child and its parent take part in the filling if the child's radius differs from the prediction by more than this share.
-/// The radii around them are known by then.
+/// A child and its parent take part in the filling if the child's radius differs from the prediction by more than this share:
+/// the radii around them are known by then. On creased surfaces the holes beside small particles are 1 % narrower so.
 const SURPRISE: f32 = 0.1;
 
-/// Largest number of rounds of filling.
+/// Largest number of rounds of filling. On creased surfaces the largest hole is 3 % narrower with them. Two place as many particles on
+/// most, but not on all; eight place no more.
 const MAX_FILLS: u32 = 4;
+
+/// Bound for the slope of the radius along the way to a child, above the steepest grading that a run may ask for: only where the law
+/// jumps is the slope so large.
+const MAX_SLOPE: f32 = 0.7;
 
 /// A child on its way to the surface. Its provisional place stands in the particle columns.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +73,7 @@ struct AdaptiveChild {
 }
 
 /// The settings of a run and what its survey found, as far as the front needs them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct FrontRules {
     /// Largest change of the radius per unit of length.
     grading: f32,
@@ -89,7 +94,7 @@ impl FrontRules {
 }
 
 /// The front of particles of different radii.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct AdaptiveFront {
     rules: FrontRules,
     level: FrontLevel,
@@ -110,30 +115,6 @@ pub(crate) struct AdaptiveFront {
 }
 
 impl AdaptiveFront {
-    pub(crate) fn new() -> Self {
-        Self {
-            rules: FrontRules {
-                grading: 0.2,
-                match_tolerance: 0.7,
-                reach: REACH,
-                accuracy: Accuracy::UNLIMITED,
-                gradient_scale: 1.0,
-                sheets: SheetRule::default(),
-            },
-            level: FrontLevel::new(Bounds::cube(1.0), 0),
-            parents: Parents::default(),
-            children: ProvisionalChildren::new(),
-            growth: 0.0,
-            grids: RadiusGrids::new(),
-            seed: GridHandle::default(),
-            found: Vec::new(),
-            around: Vicinity::default(),
-            solver: DirectPlacement::new(),
-            fills: 0,
-            filled: 0,
-        }
-    }
-
     /// Makes a child a particle at its final place, unless another particle is in its way.
     fn settle_at(&mut self, context: &mut FrontContext, child: usize, spot: SurfacePoint) -> SlotFate {
         let FrontContext { probe, particles, .. } = context;

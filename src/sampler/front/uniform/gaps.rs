@@ -16,14 +16,15 @@ use crate::spatial::Neighbour;
 use glam::Vec2;
 
 /// A slot lies on a seam if the particle that matches it is farther away than this share of 2r. Inside a lattice the distance
-/// is below 0.2.
+/// is below 0.2. With half of it random surfaces come out the same; with twice as much the gaps stay.
 pub(crate) const SEAM: f32 = 0.35;
 
 /// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of a lattice have 0.577; a
 /// hole of 1.45 times the ideal size has 0.84.
 const GAP: f32 = 0.8;
 
-/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap.
+/// A circle of a larger radius, in 2r, lies at the border of the surface and is no gap. Twice the bound changes
+/// nothing on closed random surfaces.
 const WIDEST: f32 = 1.25;
 
 /// Largest number of neighbours considered. The two rings of a lattice have 18.

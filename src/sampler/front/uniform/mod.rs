@@ -15,7 +15,6 @@ mod gaps;
 mod surroundings;
 
 use crate::field::Field;
-use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::level::{
     FrontContext, FrontLevel, FrontSetup, LevelFront, ProvisionalChildren, SlotFrame, initial_slots,
@@ -54,7 +53,7 @@ struct UniformChild {
 }
 
 /// The front of particles of one radius.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct UniformFront {
     radius: f32,
     match_radius: f32,
@@ -74,23 +73,6 @@ pub(crate) struct UniformFront {
 }
 
 impl UniformFront {
-    pub(crate) fn new() -> Self {
-        Self {
-            radius: 1.0,
-            match_radius: 1.0,
-            tolerance: Tolerance::default(),
-            rule: SheetRule::default(),
-            level: FrontLevel::new(Bounds::cube(1.0), 0),
-            parents: 0..0,
-            children: ProvisionalChildren::new(),
-            grid: CellGrid::new(1.0),
-            seed: CellHandle::default(),
-            found: Vec::new(),
-            around: Surroundings::default(),
-            gaps: SeamPass::default(),
-        }
-    }
-
     /// Radius of the query around a parent: it covers every collision of a child and every neighbour that repels the parent.
     fn reach(&self) -> f32 {
         self.collision_reach().max((GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius)
