@@ -1,9 +1,9 @@
 //! How far a surface reaches: the box that fits it.
 //!
-//! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether
-//! it goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
-//! extremes. Where it goes on for ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where its
-//! bends are, or is known to pass near the origin. What no interval decides is looked at on a grid.
+//! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether it
+//! goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
+//! extremes. Where it goes on for ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where
+//! its bends are, or is known to pass near the origin. What no interval decides is looked at on a grid.
 //!
 //! The work is counted in cells and can be left and gone on with; the result is the same to the last bit everywhere.
 
@@ -17,7 +17,7 @@ use glam::DVec3;
 use scan::{Scan, ScanOutcome};
 use serde::Serialize;
 
-/// Half-widths of the cubes that are searched, the largest first.
+/// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one before.
 const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
 /// Half-width of the box of a surface that goes on for ever and passes near the origin. A gyroid has one and a quarter periods in
 /// it.
@@ -26,12 +26,12 @@ const USUAL_HALF: f64 = 4.0;
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
 /// Half-width of the box where there is no surface, or nothing is known of it.
 const FALLBACK_HALF: f64 = 2.0;
-/// Room around the bends of an endless surface, as a share of their box.
+/// Room around the bends of an endless surface, as a share of their box: how they go on is seen on all sides of them.
 const ROOM: f64 = 0.25;
 /// Room around a surface on every side, as a share of its box, and in radii of particles: children are proposed at two radii.
 const MARGIN: f64 = 0.05;
 const MARGIN_RADII: f64 = 3.0;
-/// The room in radii is not more than this share of the longest side.
+/// The room in radii is not more than this share of the longest side: the surface fills at least half of it.
 const MOST_MARGIN: f64 = 0.5;
 /// Cells visited at most for a short formula: 20 to 50 milliseconds.
 const MOST_CELLS: usize = 32_768;

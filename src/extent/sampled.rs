@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid.
 const CELLS: usize = 32;
-/// The grid is laid anew over what it found, until that fills this share of it.
+/// The grid is laid anew over what it found, with a cell around it, until that fills this share of it or has been so many times.
 const FULL: f64 = 0.6;
 const MOST_GRIDS: u32 = 12;
 

@@ -14,15 +14,16 @@ use glam::DVec3;
 const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
 /// What the cube is larger by, so that it still reaches to its half-width.
 const LARGER: f64 = 1.02;
-/// The extremes are known to this share of the longest side of their box.
+/// The extremes are known to this share of the longest side of their box: less than the room that is left around it.
 const FINE: f64 = 1.0 / 64.0;
 /// Where there are many cells, this share will do.
 const COARSE: f64 = 1.0 / 16.0;
-/// Halvings after which what is still in the cells at the faces counts as passing through them.
+/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts as passing through them.
 const FACE_LEVEL: u32 = 7;
 /// Halvings at most: for an isolated point, or a surface of less than 1e-7 of the cube.
 const DEPTH: u32 = 30;
-/// Cells of a level that are many, while some lie at the faces and when none does.
+/// Cells of a level that are many, while some lie at the faces and when none does: shares of the cells that a scan may visit,
+/// which leave room for the next levels.
 const MANY_AT_FACES: usize = 1_500;
 const MANY_INSIDE: usize = 4_000;
 /// Where a level of this depth drops less than a tenth of its cells, the bounds say nothing.

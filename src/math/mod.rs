@@ -46,7 +46,7 @@ pub fn grouped(count: usize) -> String {
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.
 pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
-/// An axis-aligned box, in the field's coordinates; by default it holds the origin alone.
+/// An axis-aligned box, in the field's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Bounds {

@@ -1,5 +1,5 @@
-//! Triangles across gaps of the surface. Where a box cuts the surface into pieces, or where it ends, points on both sides of the gap
-//! are natural neighbours, and nothing between them is surface.
+//! Triangles across gaps of the surface. Where a box cuts the surface into pieces, or where it ends, points on both sides of the
+//! gap are natural neighbours, and nothing between them is surface.
 
 use super::scene::Scene;
 use crate::field::Field;

@@ -18,8 +18,8 @@ use rand_core::{Rng, SeedableRng};
 /// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
 /// than one of the front, and a caller that derives its budget from the front's pace must not wait.
 const SEARCH_SLICE: u32 = 8_192;
-/// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a factor
-/// of ten.
+/// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a
+/// factor of ten.
 const RELAXATION_SLICE: u32 = 16_384;
 /// Seeds that may be taken back in an attempt, and one more for every particle.
 const MOST_LONE_SEEDS: usize = 256;
@@ -338,8 +338,8 @@ impl Sampler {
         }
     }
 
-    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing where
-    /// the front stands.
+    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing
+    /// where the front stands.
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
         let target = self.attempt.target(&self.settings)?;
         let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;

@@ -184,8 +184,8 @@ impl SheetRule {
 /// Whether two points of the surface, the first at `position`, seem to lie on one sheet. One evaluation of the field between
 /// them decides.
 ///
-/// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of
-/// this middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
+/// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of this
+/// middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
 /// two sheets the middle is half the lift away from both.
 fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
     /// Smallest lift, as a share of the distance, that rounding leaves meaningful.

@@ -203,7 +203,8 @@ impl Audit {
     }
 }
 
-/// The particles, of those near a witness, that lie on the factor of the field which vanishes there: the others are on other sheets.
+/// The particles, of those near a witness, that lie on the factor of the field which vanishes there: the others are on other
+/// sheets.
 fn on_factor(
     field: &mut dyn Bounded,
     factor: usize,

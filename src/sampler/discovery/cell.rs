@@ -78,8 +78,8 @@ pub(super) fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
         || cell.axes().sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
 }
 
-/// The most by which a surface that passes through a box rises or falls over its footprint, by bounds of the gradient over the box:
-/// the mean value theorem makes it Σ max|∂f/∂side| · width / min|∂f/∂up|. None where the surface may not be a graph over the
+/// The most by which a surface that passes through a box rises or falls over its footprint, by bounds of the gradient over the
+/// box: the mean value theorem makes it Σ max|∂f/∂side| · width / min|∂f/∂up|. None where the surface may not be a graph over the
 /// footprint: where f jumps, is not defined, or is not monotone along up. An axis along which the box has no width is no side.
 pub(super) fn rise(bounds: &Bounds, up: usize, known: &Enclosure) -> Option<f64> {
     let least = known.gradient[up].away_from_zero()?;

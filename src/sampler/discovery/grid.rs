@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
 pub(crate) const CELLS: f64 = 32.0;
-/// Grid cells along the longest side of the box for fields without bounds, of which only the grid shows the surface. It does not miss a sphere whose radius is
-/// 1.4 % of the box's longest side.
+/// Grid cells along the longest side of the box for fields without bounds, of which only the grid shows the surface. It does not
+/// miss a sphere whose radius is 1.4 % of the box's longest side.
 const DENSE_CELLS: f64 = 64.0;
 
 /// The regular grid at whose nodes the field is evaluated.

@@ -6,10 +6,10 @@
 //! f(m) = ∂f/∂up(p) · d_up + ½ dᵀ H d  and  ∂f/∂side(m) = (H d)_side,
 //!
 //! where H holds second derivatives at points between. The sides occur in the first equation only through H. Bounds of H over the
-//! cell make both equations linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel). Those of the
-//! sides are first multiplied by the inverse of their midpoint matrix, as Krawczyk's and Hansen's forms of the interval Newton
-//! method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell holds no
-//! such point; near one, the range shrinks with the square of the cell's width.
+//! cell make both equations linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel). Those of
+//! the sides are first multiplied by the inverse of their midpoint matrix, as Krawczyk's and Hansen's forms of the interval
+//! Newton method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell
+//! holds no such point; near one, the range shrinks with the square of the cell's width.
 
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};

@@ -13,37 +13,37 @@
 //! J. Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*, the other free ones are
 //! *sides*, and q satisfies as many equations as there are free coordinates: as a rule such points are isolated, and few.
 //!
-//! Each stratum is therefore subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is *discarded* if an
-//! interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is monotone along up, not
-//! only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface through any point of C cannot
-//! leave it over that footprint: by the mean value theorem it rises or falls by no more than t = Σ max|∂f/∂side| · width /
-//! min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole footprint, connected, and meets the
-//! line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder, "Interval analysis for computer
-//! graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic approximation of implicit curves
-//! and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that meets the surface, and obtain its
-//! topology; one point on each component is cheaper.) If the highest point of a component lies in C, the witness lies on that
-//! component: along the graph it never leaves through the top of the box, because nothing of the component is higher, and a graph
-//! that might leave through the bottom is not accepted.
+//! Each stratum is therefore subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is
+//! *discarded* if an interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is
+//! monotone along up, not only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface
+//! through any point of C cannot leave it over that footprint: by the mean value theorem it rises or falls by no more than t = Σ
+//! max|∂f/∂side| · width / min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole footprint,
+//! connected, and meets the line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder,
+//! "Interval analysis for computer graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
+//! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that
+//! meets the surface, and obtain its topology; one point on each component is cheaper.) If the highest point of a component lies
+//! in C, the witness lies on that component: along the graph it never leaves through the top of the box, because nothing of the
+//! component is higher, and a graph that might leave through the bottom is not accepted.
 //!
-//! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value forms:
-//! g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the derivatives (with bounds of the second derivatives) and for f itself.
-//! Their excess falls with the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
-//! one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
+//! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value
+//! forms: g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the derivatives (with bounds of the second derivatives) and for
+//! f itself. Their excess falls with the square of the width (Moore 1966). A product is searched factor by factor: near the zeros
+//! of one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
 //!
 //! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around it through whose boundary every
 //! component in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the
 //! rest.
 //!
 //! A cell that is neither discarded nor decided is [narrowed](super::interval_newton) to the part that can hold a highest point.
-//! The rest is halved along its longer sides, down to [`DEPTH`]. Cells that are still open then are *undecided* and reported: where
-//! the gradient vanishes on the surface no interval decides.
+//! The rest is halved along its longer sides, down to [`DEPTH`]. Cells that are still open then are *undecided* and reported:
+//! where the gradient vanishes on the surface no interval decides.
 //!
 //! # What is proven
 //!
-//! If no cell is left undecided, every connected component of the surface in the box holds a witness; without a witness there is no
-//! surface. The box is enlarged by [`MARGIN`] for it, so that a surface that touches its box from inside is inside. At
-//! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
-//! defined the surface may end, and nothing is concluded from slopes.
+//! If no cell is left undecided, every connected component of the surface in the box holds a witness; without a witness there is
+//! no surface. The box is enlarged by [`MARGIN`] for it, so that a surface that touches its box from inside is inside. At kinks
+//! the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not defined
+//! the surface may end, and nothing is concluded from slopes.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3};
@@ -56,12 +56,12 @@ use glam::{DVec3, Vec3};
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed.
 const DEPTH: u8 = 16;
-/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie along curves and faces, so there are
-/// many.
+/// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie along curves and faces, so there
+/// are many.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third of
-/// a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add
-/// none; Barth's sextic with fifty takes 36,000.
+/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third
+/// of a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points
+/// add none; Barth's sextic with fifty takes 36,000.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Largest number of cells visited where each level has hardly more of them than the one before it: the search is then near its

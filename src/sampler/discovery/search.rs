@@ -1,5 +1,5 @@
-//! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of the
-//! survey are covered, and the [audit](super::audit) at the end.
+//! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of
+//! the survey are covered, and the [audit](super::audit) at the end.
 
 use crate::field::descent::Descent;
 use crate::field::{Bounded, Field};
@@ -218,8 +218,8 @@ impl ComponentSearch {
     }
 
     /// Why it is not proven that there is a witness on every component, and of each witness that it is on the component of a
-    /// particle or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have seen
-    /// one.
+    /// particle or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have
+    /// seen one.
     pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
         let nearness = [surveyed, self.unresolved].into_iter().flatten();
         let nearest = nearness.min_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|near| near.gap < least_gap);
@@ -268,8 +268,8 @@ impl ComponentSearch {
             .then_some(self.octree.undecided.len() as u64 + self.lost)
     }
 
-    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not know whether their component holds
-    /// particles; none without a search.
+    /// Cells left undecided, witnesses that were lost, and witnesses of which the audit does not know whether their component
+    /// holds particles; none without a search.
     pub(crate) fn open_questions(&self) -> Option<u64> {
         self.unwitnessed().map(|open| open + self.audit.open)
     }

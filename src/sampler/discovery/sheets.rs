@@ -1,5 +1,5 @@
-//! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects them. What only seems so is told by
-//! the rules of [`sheet`](crate::sampler::sheet).
+//! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects them. What only seems so is told
+//! by the rules of [`sheet`](crate::sampler::sheet).
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval};
@@ -41,8 +41,8 @@ impl Prover<'_> {
     /// box `within`, if there is one.
     ///
     /// The proof is that of the [octree](super::octree), on a box around both points. f is monotone along the axis nearest the
-    /// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function over
-    /// the rectangle between the two, and meets the line through the second point exactly once.
+    /// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function
+    /// over the rectangle between the two, and meets the line through the second point exactly once.
     pub(crate) fn are_connected(
         &mut self,
         segments: &[Segment],
@@ -195,8 +195,8 @@ struct GraphBox {
 
 impl GraphBox {
     fn around(&Segment { from, to }: &Segment, slack: f64) -> Self {
-        /// Room above and below the ends: times the rise of the tangent plane between them; as a share of the longest side, for what
-        /// the surface bends; and for the slack, of which the proof takes four.
+        /// Room above and below the ends: times the rise of the tangent plane between them; as a share of the longest side, for
+        /// what the surface bends; and for the slack, of which the proof takes four.
         const RISES: f64 = 1.5;
         const BEND: f64 = 0.25;
         const SLACKS: f64 = 8.0;

@@ -3,8 +3,8 @@
 //! # Why a box around one can be left out of the search
 //!
 //! Let B be a box in the interior of which f has no local extremum. Then every connected component of the surface S in B reaches
-//! the boundary of B. For suppose that a component K does not. It has a neighbourhood U in B on whose boundary f is not 0; take the
-//! part of U that holds K, and with it the holes in it: an open set W with a connected boundary, on which f has one sign, say
+//! the boundary of B. For suppose that a component K does not. It has a neighbourhood U in B on whose boundary f is not 0; take
+//! the part of U that holds K, and with it the holes in it: an open set W with a connected boundary, on which f has one sign, say
 //! the positive one. Every neighbourhood of a point of K holds places where f is negative, else that point were a minimum. So f
 //! has a negative minimum in W: a local extremum.
 //!
@@ -35,10 +35,11 @@ const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
 /// Largest number of Newton steps to a singular point. At a cusp each step only halves the distance.
 const MOST_STEPS: u32 = 24;
-/// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It is
-/// far above rounding.
+/// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It
+/// is far above rounding.
 const LARGEST_VALUE: f64 = 1e-8;
-/// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search treats as a singular point.
+/// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search
+/// treats as a singular point.
 const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
 /// curve: the Newton step does not run along it.

@@ -112,8 +112,8 @@ impl Candidates {
         }
     }
 
-    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the layer above; the last layer has
-    /// none.
+    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the layer above; the last layer
+    /// has none.
     fn look_at(
         &mut self,
         grid: &Grid,
@@ -286,8 +286,8 @@ fn project(
     out.residual = coarse.residual;
 }
 
-/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient without
-/// a change of sign, both may be of any size.
+/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient
+/// without a change of sign, both may be of any size.
 fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
     let crosses = |area: f32| area != NO_CROSSING;
     let by_crossings = areas.iter().any(|&area| crosses(area));
@@ -444,8 +444,8 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
     out.weight.truncate(kept);
 }
 
-/// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there may
-/// be another sheet.
+/// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there
+/// may be another sheet.
 fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     let stride = survey.position.len().div_ceil(RESOLUTION_SAMPLES).max(1);
     let (mut same, mut seen) = (0, 0);

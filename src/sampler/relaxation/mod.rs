@@ -331,13 +331,13 @@ impl Relaxation {
         let mut landing = LandingBatch::new();
         for range in batches(range) {
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
-            // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another sheet a
-            // short correction may lead far away.
+            // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
+            // sheet a short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
             match stage {
                 RelaxationStage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
                 RelaxationStage::TakeBack => {
-                    stepper.take_back(law, lists, particles, range.clone(), &mut landing)
+                    stepper.take_back(law, lists, particles, range.clone(), &mut landing);
                 }
                 _ => {
                     (landing.trust, landing.renews_radii) = (0.0, true);

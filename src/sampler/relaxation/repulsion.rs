@@ -13,12 +13,12 @@ use crate::sampler::projection::{Accuracy, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
-/// Largest number of evaluations to bring a particle back onto the surface. Three are enough on smooth random formulas; where a field through
-/// points takes more than six, the particle stays.
+/// Largest number of evaluations to bring a particle back onto the surface. Three are enough on smooth random formulas; where a
+/// field through points takes more than six, the particle stays.
 const MAX_NEWTON: u32 = 6;
 
-/// Largest distance that a particle moves in one step, in radii: it stays far from the next one, at 2. Half of it and twice as much give
-/// the same figures on random surfaces within 0.5 %.
+/// Largest distance that a particle moves in one step, in radii: it stays far from the next one, at 2. Half of it and twice as
+/// much give the same figures on random surfaces within 0.5 %.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
 /// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves

@@ -25,12 +25,12 @@ const MAX_STEPS: u32 = 8;
 /// half of it and twice as much give the same figures there within 2.5 %.
 const MAX_PULL: f32 = 0.3;
 
-/// Rounds of the safeguarded search, of which each finds a root on the circle and then corrects the distance. Only creased surfaces
-/// take any; three and twelve give the same figures there within 3 %.
+/// Rounds of the safeguarded search, of which each finds a root on the circle and then corrects the distance. Only creased
+/// surfaces take any; three and twelve give the same figures there within 3 %.
 const MAX_ROUNDS: u32 = 6;
 
-/// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most this share of its radius. Half of it
-/// gives the same particles on creased surfaces.
+/// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most this share of its radius. Half
+/// of it gives the same particles on creased surfaces.
 const LOOSE_TOUCH: f32 = 0.5;
 
 /// A child to be placed: the data of the problem |c − p| = r_p + r(c).
@@ -47,8 +47,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest radius
-    /// of the law.
+    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest
+    /// radius of the law.
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.

@@ -46,8 +46,8 @@ pub(super) struct Vicinity {
 
 impl Vicinity {
     /// Reads the particles `found` around `parent`: into the ring those that its children may collide with, and into the
-    /// neighbour `lists`, if it has none there yet, those before it that repel it. The ones before it are final, and so is its list.
-    /// Particles before `settled` have their exact radius. Says whether all that were found are of the parent's sheet.
+    /// neighbour `lists`, if it has none there yet, those before it that repel it. The ones before it are final, and so is its
+    /// list. Particles before `settled` have their exact radius. Says whether all that were found are of the parent's sheet.
     pub(super) fn read(
         &mut self,
         found: &[Neighbour],

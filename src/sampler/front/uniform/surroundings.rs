@@ -8,8 +8,8 @@ use glam::{Vec3, Vec4};
 /// at 3.46; from 2.1 to 3.2 random surfaces come out the same.
 const RING: f32 = 2.6;
 
-/// Weight of the prior "equal curvature in all directions" in the fit. It decides where the neighbours determine no curvature; half of
-/// it and twice as much change the evaluations of random surfaces by 0.01 %, and no figure.
+/// Weight of the prior "equal curvature in all directions" in the fit. It decides where the neighbours determine no curvature;
+/// half of it and twice as much change the evaluations of random surfaces by 0.01 %, and no figure.
 const ISOTROPY: f32 = 0.005;
 
 /// Particles in a chunk.
