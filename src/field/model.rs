@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 
 /// Numbers of centres that can be asked for.
 pub const CENTRES: RangeInclusive<u32> = 100..=800;
+/// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
+/// interpolant can have centres.
+pub const MAX_FILE_BYTES: u32 = 50_000_000;
 /// Default number of centres, which is that of the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
 

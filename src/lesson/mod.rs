@@ -53,7 +53,7 @@ pub use settings::{LessonError, LessonField, MAX_PARTICLES, Method, Placing, See
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::paper::{ImplicitSurface, Particle, Push};
-use crate::sampler::{FateCounts, Sampling};
+use crate::sampler::FateCounts;
 use course::{Course, Moment, Setup};
 use glam::DVec3;
 use serde::Serialize;
@@ -457,11 +457,7 @@ fn check_count(
     }
     // A little more, since the area is an estimate and the number is shown rounded.
     let factor = 1.01 * (expected / limit).sqrt();
-    let (expected, limit) = (expected as u64, most);
-    Err(match settings.sampling {
-        Sampling::Uniform => LessonError::TooMany { expected, limit, radius: factor * settings.radius },
-        Sampling::Adaptive => LessonError::TooManySizes { expected, limit, factor },
-    })
+    Err(LessonError::TooMany { expected: expected as u32, limit: most, factor })
 }
 
 /// FNV-1a hash of the bits of all particles.

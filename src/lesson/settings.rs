@@ -285,24 +285,11 @@ pub enum LessonError {
     /// More particles than a run follows.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \
-         choose a radius of {radius:.2e} or more"
+         choose radii {factor:.2} times as large"
     )]
     TooMany {
         /// Particles to expect.
-        expected: u64,
-        /// The most that are followed.
-        limit: u32,
-        /// Radius with which there would be no more.
-        radius: f64,
-    },
-    /// More particles than a run follows, in adaptive sampling.
-    #[error(
-        "about {expected} particles are to be expected, and the event log follows at most {limit}: \
-         choose radii {factor:.2} times as large"
-    )]
-    TooManySizes {
-        /// Particles to expect.
-        expected: u64,
+        expected: u32,
         /// The most that are followed.
         limit: u32,
         /// By what all radii have to be multiplied.

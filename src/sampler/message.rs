@@ -15,7 +15,7 @@ impl Sampler {
                 self.settings.max_particles
             ),
             StopReason::NoSurface if self.survey.absence == Absence::Proven => {
-                "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
+                "f has no zero in this box (proven by interval arithmetic).".into()
             }
             StopReason::NoSurface | StopReason::OneParticle
                 if !self.components.singular().is_empty() && (self.output.particles.is_empty() || self.survey.touches) =>
@@ -33,12 +33,11 @@ impl Sampler {
                 )
             }
             StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
-                "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
+                "f keeps one sign at every grid point of this box. Enlarge or move the box."
                     .into()
             }
             StopReason::NoSurface => {
-                "No surface found in this box: f changes its sign there, but only where it jumps, has a pole or \
-                 loses its gradient."
+                "f changes its sign in this box, but only where it jumps, has a pole or loses its gradient."
                     .into()
             }
             StopReason::Constant => {

@@ -62,6 +62,8 @@ pub struct Limits {
     pub centres_max: u32,
     /// Number of points that are fitted by default.
     pub centres: u32,
+    /// Size of the largest file of points that is read.
+    pub file_bytes: u32,
 }
 
 /// A gallery surface.
@@ -199,6 +201,7 @@ pub fn describe() -> Description {
             centres_min: *model::CENTRES.start(),
             centres_max: *model::CENTRES.end(),
             centres: model::DEFAULT_CENTRES,
+            file_bytes: model::MAX_FILE_BYTES,
         },
     }
 }

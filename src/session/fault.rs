@@ -14,6 +14,8 @@ pub enum FaultKind {
     Request,
     /// A setting is out of its range, or the memory does not hold the run.
     Settings,
+    /// A run would have more particles than are followed, see [`Fault::excess`].
+    TooMany,
     /// No surface of that name.
     UnknownSurface,
     /// The clip box is not one.
@@ -26,7 +28,7 @@ pub enum FaultKind {
 }
 
 /// The error with which a command is refused.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fault {
     /// What it is about.
@@ -43,6 +45,20 @@ pub struct Fault {
     pub mended: Option<Box<Mended>>,
     /// Unknown names that could become sliders.
     pub names: Vec<String>,
+    /// By how much there would be too many particles, if that is what it is about.
+    pub excess: Option<Excess>,
+}
+
+/// By how much a run would have more particles than are followed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Excess {
+    /// Particles to expect.
+    pub expected: u32,
+    /// The most that are followed.
+    pub limit: u32,
+    /// By what all radii have to be multiplied.
+    pub factor: f64,
 }
 
 impl Fault {
@@ -50,7 +66,16 @@ impl Fault {
     #[must_use]
     pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self { kind, message, start: 0, end: 0, suggestion: None, mended: None, names: Vec::new() }
+        Self {
+            kind,
+            message,
+            start: 0,
+            end: 0,
+            suggestion: None,
+            mended: None,
+            names: Vec::new(),
+            excess: None,
+        }
     }
 
     /// What is wrong with the formula `text`.
@@ -65,6 +90,7 @@ impl Fault {
             suggestion: error.suggestion,
             mended: error.mended,
             names: error.names,
+            excess: None,
         }
     }
 

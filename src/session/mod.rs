@@ -7,7 +7,7 @@ mod fitting;
 mod setting;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
-pub use fault::{Fault, FaultKind};
+pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::BoxMode;
 pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value, settings};
 

@@ -4,10 +4,10 @@ use super::values::{answer, to_js};
 use crate::field::formula::Formula;
 use crate::field::rbf::{RbfData, RbfField};
 use crate::field::{Field, Jet};
-use crate::lesson::{self, LessonField, Settings};
+use crate::lesson::{self, LessonError, LessonField, Settings};
 use crate::math::Bounds;
 use crate::paper::Particle;
-use crate::session::{Fault, FaultKind};
+use crate::session::{Excess, Fault, FaultKind};
 use glam::DVec3;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
@@ -205,14 +205,24 @@ impl Lesson {
         self.run = None;
         let settings = read::<Settings>(settings, FaultKind::Settings);
         answer(field.and_then(|(field, bounds)| {
-            let run = lesson::Lesson::new(field, &bounds, &settings?)
-                .map_err(|error| Fault::new(FaultKind::Settings, &error))?;
+            let run = lesson::Lesson::new(field, &bounds, &settings?).map_err(|error| refusal(&error))?;
             Ok(self.run.insert(run).progress())
         }))
     }
 
     fn column<T>(&self, of: impl Fn(&Particle) -> T) -> Vec<T> {
         self.run.as_ref().map(lesson::Lesson::particles).unwrap_or_default().iter().map(of).collect()
+    }
+}
+
+/// Why a run cannot begin.
+fn refusal(error: &LessonError) -> Fault {
+    match *error {
+        LessonError::TooMany { expected, limit, factor } => Fault {
+            excess: Some(Excess { expected, limit, factor }),
+            ..Fault::new(FaultKind::TooMany, error)
+        },
+        _ => Fault::new(FaultKind::Settings, error),
     }
 }
 

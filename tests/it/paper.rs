@@ -373,7 +373,7 @@ fn what_cannot_be_followed_is_refused_in_words() {
         Err(error) => error.to_string(),
     };
     let words = refused(settings!(radius: 0.005; ..Settings::default()));
-    assert!(words.starts_with("about 14") && words.contains("choose a radius of 1.3"), "{words}");
+    assert!(words.starts_with("about 14") && words.contains("times as large"), "{words}");
     assert!(refused(settings!(radius: f64::NAN; ..Settings::default())).starts_with("radius is NaN"));
     assert!(refused(settings!(match_tolerance: 2.0; ..coarse())).starts_with("match_tolerance is 2"));
     assert!(refused(settings!(placing: Placing::LevelByLevel; ..coarse())).contains("needs a queue"));

@@ -16,12 +16,12 @@ mod xyz;
 pub use format::Format;
 pub use mesh::FileMesh;
 
+use crate::field::model::MAX_FILE_BYTES;
 use crate::slices::pause;
 use input::Input;
 
-/// Maximum size of a file in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
-/// interpolant can have centres.
-pub const MAX_BYTES: u64 = 50_000_000;
+/// Maximum size of a file in bytes.
+pub const MAX_BYTES: u64 = MAX_FILE_BYTES as u64;
 
 /// Rows read in a slice of work, which so takes about a tenth of a millisecond natively.
 const ROWS: usize = 500;

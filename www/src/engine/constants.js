@@ -4,7 +4,5 @@
 export const FILE_SURFACE = 'file';
 /** Disc radius as a share of the repulsion radius. */
 export const DISC_SIZE = { initial: 0.92, min: 0.2, max: 1.5, step: 0.01 };
-/** Size of the largest file that is read. */
-export const LARGEST_FILE_BYTES = 50e6;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
 export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.txt';

@@ -89,6 +89,16 @@ export type Description = {
   limits: Limits,
 };
 
+/** By how much a run would have more particles than are followed. */
+export type Excess = {
+  /** Particles to expect. */
+  expected: number,
+  /** The most that are followed. */
+  limit: number,
+  /** By what all radii have to be multiplied. */
+  factor: number,
+};
+
 /** What can become of a child. */
 export type Fate = {
   /** Name, as in the report's counts. */
@@ -131,10 +141,12 @@ export type Fault = {
   mended: Mended | null,
   /** Unknown names that could become sliders. */
   names: Array<string>,
+  /** By how much there would be too many particles, if that is what it is about. */
+  excess: Excess | null,
 };
 
 /** What a refused command was about. */
-export type FaultKind = "request" | "settings" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+export type FaultKind = "request" | "settings" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
@@ -730,6 +742,8 @@ export type Limits = {
   centres_max: number,
   /** Number of points that are fitted by default. */
   centres: number,
+  /** Size of the largest file of points that is read. */
+  file_bytes: number,
 };
 
 /** Element of MathML Core with child elements. */

@@ -97,5 +97,6 @@ export const description = {
     centres_min: 100,
     centres_max: 800,
     centres: 200,
+    file_bytes: 50_000_000,
   },
 };

@@ -96,6 +96,7 @@ export function fakeCore({
             suggestion: null,
             mended: null,
             names: [],
+            excess: null,
           },
         };
       return field(formula ?? '', { min: [-1, -1, -1], max: [1, 1, 1] });

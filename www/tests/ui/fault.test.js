@@ -12,6 +12,7 @@ const fault = {
   suggestion: null,
   mended: null,
   names: ['foo'],
+  excess: null,
 };
 
 describe('a fault in a formula', () => {

@@ -1,9 +1,10 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { FILE_SURFACE } from '../../src/engine/constants.js';
 import { factsOf, fittedOf } from '../../src/ui/field/facts.js';
-import { carriesFiles, describeLoadingError, FORMATS, LIMIT, listOf } from '../../src/ui/field/files.js';
+import { carriesFiles, describeLoadingError, filesOf } from '../../src/ui/field/files.js';
 import { storyOf } from '../../src/ui/field/story.js';
 import { setLocale } from '../../src/ui/format.js';
+import { description } from '../engine/description.js';
 
 /** @import { ModelInfo } from '../../src/engine/types.js' */
 
@@ -23,9 +24,8 @@ const info = /** @type {ModelInfo} */ ({
 
 describe('a file of points', () => {
   it('has its formats and its limit named', () => {
-    expect(listOf(FORMATS)).toBe('PLY, OBJ, STL or XYZ');
-    expect(listOf(['PLY'])).toBe('PLY');
-    expect(LIMIT).toBe('50\u202fMB');
+    const engine = /** @type {any} */ ({ description: { value: description } });
+    expect(filesOf(engine)).toBe('PLY, OBJ, STL or XYZ, up to 50\u202fMB');
   });
 
   it('is told from a drag of text', () => {
@@ -49,7 +49,7 @@ describe('a file of points', () => {
       advice: '',
     });
     expect(describeLoadingError({ ...error, message: 'the second number is missing.' }).line).toBe('Line 7');
-    expect(describeLoadingError({ ...error, kind: 'too_large', line: null }).advice).toContain(LIMIT);
+    expect(describeLoadingError({ ...error, kind: 'too_large', line: null }).advice).toContain('Thin the points out');
   });
 });
 

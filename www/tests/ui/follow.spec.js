@@ -221,7 +221,7 @@ test('the place of a particle on the timeline, in the picture and in words', asy
     await settled(page);
     await followSeed(page);
     await expect(
-      panel(page).getByText(/The picture has 2\d,\d+ particles\. The events of at most 20,000/),
+      panel(page).getByText(/about 2\d,\d+ particles are to be expected\. The events of at most 20,000/),
     ).toBeVisible();
     await panel(page)
       .getByRole('button', { name: /^Follow at a coarser radius/ })

@@ -6,8 +6,9 @@
  * @module
  */
 import { batch } from '@preact/signals-core';
-import { FILE_SURFACE, LARGEST_FILE_BYTES } from '../constants.js';
+import { FILE_SURFACE } from '../constants.js';
 import { defaultState, fromPoints, modelOf } from '../share/state.js';
+import { description } from '../store.js';
 import { PointsClient } from './client.js';
 
 /**
@@ -133,11 +134,12 @@ export class ModelLoader {
 
   /** @param {File} file */
   async openFile(file) {
-    if (file.size > LARGEST_FILE_BYTES) {
+    const most = description(this.store).limits.file_bytes;
+    if (file.size > most) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
       this.refused(FILE_SURFACE, file.name, {
         kind: 'too_large',
-        message: `the file has ${mb(file.size)} MB; up to ${mb(LARGEST_FILE_BYTES)} MB are read`,
+        message: `the file has ${mb(file.size)} MB; up to ${mb(most)} MB are read`,
         line: null,
       });
       return;

@@ -1,6 +1,6 @@
 /** Opens a file that is dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 import { h } from '../dom.js';
-import { carriesFiles, FORMATS, LIMIT, listOf } from './files.js';
+import { carriesFiles, filesOf } from './files.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -19,7 +19,7 @@ export function mountDrop(engine, toast) {
       'div',
       { class: 'drop-text' },
       h('strong', null, 'Drop to sample its surface'),
-      h('span', { class: 'quiet' }, `${listOf(FORMATS)}, up to ${LIMIT}`),
+      h('span', { class: 'quiet' }, () => filesOf(engine)),
     ),
   );
   document.body.append(target);

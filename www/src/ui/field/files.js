@@ -1,18 +1,19 @@
 /** Describes the point files that can be read, and the errors in reading them. */
-import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/constants.js';
+import { FILE_TYPES } from '../../engine/constants.js';
 
-/** @import { LoadingError } from '../../engine/types.js' */
+/** @import { Engine, LoadingError } from '../../engine/types.js' */
 
 /** Names of the file formats, such as PLY and OBJ. `.txt` is only another extension of XYZ. */
-export const FORMATS = FILE_TYPES.split(',')
+const FORMATS = FILE_TYPES.split(',')
   .filter((type) => type !== '.txt')
   .map((type) => type.slice(1).toUpperCase());
 
 /** @param {string[]} words */
-export const listOf = (words) =>
-  words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`;
+const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
 
-export const LIMIT = `${Math.round(LARGEST_FILE_BYTES / 1e6)}\u202fMB`;
+/** What files can be opened. @param {Engine} engine */
+export const filesOf = ({ description }) =>
+  `${listOf(FORMATS)}, up to ${Math.round((description.value?.limits.file_bytes ?? 0) / 1e6)}\u202fMB`;
 
 /**
  * Returns whether a drag carries files rather than text or an image of the page.
@@ -22,7 +23,7 @@ export const carriesFiles = (transfer) => transfer?.types.includes('Files') ?? f
 
 /** Advice after the refusal of a file or model, by the kind of error. @type {Record<string, string>} */
 const ADVICE = {
-  too_large: `Thin the points out, or save fewer decimals: files up to ${LIMIT} are read.`,
+  too_large: 'Thin the points out, or save fewer decimals.',
   unreadable: 'Check that the file is still there and may be read.',
   crashed: 'The page is not harmed. Try another file; the report is worth sending with this one.',
   silent: 'Try fewer points.',

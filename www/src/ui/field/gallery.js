@@ -8,7 +8,7 @@ import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { icon } from '../icons.js';
-import { FORMATS, LIMIT, listOf } from './files.js';
+import { filesOf } from './files.js';
 
 /**
  * @import { Description, Engine } from '../../engine/types.js'
@@ -225,7 +225,7 @@ function createOpen(engine) {
   const opener = button({ class: 'open-file', press: () => chooser.click() }, 'Open file…');
   explain(opener, () => ({
     title: 'A file of points',
-    text: `${listOf(FORMATS)}, up to ${LIMIT}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.`,
+    text: `${filesOf(engine)}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.`,
   }));
   return [opener, chooser];
 }

@@ -12,7 +12,7 @@ import { clamp } from '../scale.js';
 import { surfaceWords } from '../surface-link.js';
 import { nearest, standIn } from './find.js';
 import { Relaxation } from './rest.js';
-import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey } from './run.js';
+import { alikeIn, settingsOf, surfaceKey } from './run.js';
 
 /**
  * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
@@ -36,6 +36,9 @@ import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey } from './
  * A particle that is to be opened, and the event to begin with.
  * @typedef {{ particle: number, at: number | 'last', picture: Opened['picture'] }} Wish
  */
+
+/** The least factor by which the radius of a coarser run grows. */
+const LEAST_COARSER = 1.25;
 
 export class Follower {
   /** @param {Engine} engine @param {(text: string) => void} say  tells what a link names and is not there */
@@ -163,10 +166,6 @@ export class Follower {
     const run = this.run.peek();
     const surface = surfaceKey(engine);
     if (run && run.surface === surface && run.own === own && (coarser === null || run.radius === coarser)) return run;
-    if (coarser === null && !columns.adaptive && columns.count > MOST_PARTICLES) {
-      this.tooMany(radius);
-      return null;
-    }
     const { adaptive } = columns;
     const field = engine.field.peek();
     const words = field?.kind === 'formula' ? surfaceWords(field) : 'a model from points';
@@ -250,32 +249,19 @@ export class Follower {
     return this.asked;
   }
 
-  /** @param {number} radius */
-  tooMany(radius) {
-    this.next();
-    const { count } = this.engine.columns;
-    batch(() => {
-      this.opened.value = null;
-      this.status.value = {
-        kind: 'too_many',
-        text: `The picture has ${plural(count, 'particle')}. The events of at most ${formatCount(MOST_PARTICLES)} are followed.`,
-        radius: coarserThan(radius, count),
-      };
-    });
-  }
-
   /** @param {any} error @param {number} radius */
   fail(error, radius) {
     const words = error instanceof Error ? error.message : String(error);
     if (error?.kind === 'given_up') return;
     if (error?.kind === 'crashed' || error?.kind === 'bundle') this.run.value = null;
     this.opened.value = null;
-    if (error?.kind === 'refused' && /are to be expected/.test(words)) {
-      const expected = Number(/about (\d+)/.exec(words)?.[1] ?? MOST_PARTICLES);
+    const excess = error?.fault?.excess;
+    if (excess) {
+      const sizes = this.engine.columns.adaptive ? 'these sizes' : `the radius ${formatSignificant(radius, 3)}`;
       this.status.value = {
         kind: 'too_many',
-        text: `With ${this.engine.columns.adaptive ? 'these sizes' : `the radius ${formatSignificant(radius, 3)}`} about ${plural(expected, 'particle')} are to be expected. The events of at most ${formatCount(MOST_PARTICLES)} are followed.`,
-        radius: coarserThan(radius, expected),
+        text: `With ${sizes} about ${plural(excess.expected, 'particle')} are to be expected. The events of at most ${formatCount(excess.limit)} are followed.`,
+        radius: radius * Math.max(LEAST_COARSER, excess.factor),
       };
     } else if (error?.kind === 'refused') {
       this.status.value = { kind: 'failed', text: `This surface cannot be followed: ${words}.` };

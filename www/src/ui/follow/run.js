@@ -25,12 +25,6 @@ import { distanceSq } from './find.js';
  * @property {number} alike  how many of its first particles are those of the picture
  */
 
-/** The most particles whose events are followed, as the core has it. */
-export const MOST_PARTICLES = 20_000;
-/** The particles that a coarser run aims at, and the least factor by which its radius grows. */
-const COARSER_PARTICLES = 16_000;
-const LEAST_COARSER = 1.25;
-
 /**
  * Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own
  * front.
@@ -93,13 +87,6 @@ function seedsOf({ columns }) {
     if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.placed, i));
   return seeds;
 }
-
-/**
- * A radius with which there are few enough particles.
- * @param {number} radius
- * @param {number} count  with that radius
- */
-export const coarserThan = (radius, count) => radius * Math.max(LEAST_COARSER, Math.sqrt(count / COARSER_PARTICLES));
 
 /**
  * Counts the first particles of a run that are those of the picture: at the same place, up to rounding.

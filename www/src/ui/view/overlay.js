@@ -99,10 +99,7 @@ function emptyState(engine) {
       : ['No surface inside the box', 'Change the formula, or widen the box.']);
   return [
     h('h2', null, title),
-    // The title already contains the first half of the message.
-    message && !nowhere
-      ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, ''))
-      : null,
+    message && !nowhere ? h('p', { class: 'quiet reason' }, message) : null,
     h(
       'p',
       { class: 'quiet' },
