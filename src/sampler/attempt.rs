@@ -111,8 +111,7 @@ impl Attempt {
         let bend = most.map_or(Vec3::ZERO, |i| points[i]);
         sort_numbers(&mut curvature);
         let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
-        let is_graded = self.sizing.is_some();
-        let halvings_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count, is_graded);
+        let halvings_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count);
         // What bends too much may be a component of its own, beside which others can be refined.
         let is_mostly_smooth =
             || largest.is_finite() && halvings_at(curvature[curvature.len() / 2]).is_some();
@@ -122,7 +121,7 @@ impl Attempt {
         }
         // There is no radius where there is no surface.
         let expected = if radius > 0.0 { count } else { 0.0 };
-        if refine::halvings(0.0, expected, is_graded).is_none() {
+        if refine::halvings(0.0, expected).is_none() {
             return Some(Refusal::Few { expected: expected as u64 });
         }
         let Some(halvings) = halvings else {

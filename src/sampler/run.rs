@@ -122,7 +122,7 @@ impl Sampler {
             radii: self.attempt.radii(),
             expected,
         });
-        if self.tools.coarse.seed().is_none() {
+        if self.tools.coarse.known().is_none() {
             self.counts.seeds = 0;
             (self.counts.left_out, self.counts.ended_early) = (0, false);
             self.counts.front_evaluations = 0;
@@ -134,8 +134,8 @@ impl Sampler {
 
     /// Looks for the next survey point that no particle covers and starts a front there.
     fn find_seed(&mut self, probe: &mut Probe, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
-        if let Some((position, normal)) = self.tools.coarse.seed() {
-            let seed = OrientedPoint { position, normal };
+        if let Some(known) = self.tools.coarse.known() {
+            let seed = OrientedPoint::of(known, 0);
             return self.begin_front(probe, seed, None).unwrap_or(PhaseState::Search);
         }
         while *left > 0 {
@@ -170,7 +170,7 @@ impl Sampler {
         }
         let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed));
         is_started.then(|| {
-            self.counts.seeds += u32::from(self.tools.coarse.seed().is_none());
+            self.counts.seeds += u32::from(self.tools.coarse.known().is_none());
             PhaseState::Generation(after)
         })
     }
@@ -194,7 +194,7 @@ impl Sampler {
     fn drop_lone_seed(&mut self, probe: &mut Probe, is_witness: bool) -> bool {
         let is_lone = self.with_front(probe, |front, context| front.has_lone_seed(context.particles));
         let is_kept =
-            is_lone && is_witness && self.tools.coarse.seed().is_none() && self.is_on_own_piece(probe);
+            is_lone && is_witness && self.tools.coarse.known().is_none() && self.is_on_own_piece(probe);
         if is_lone && !is_kept {
             self.with_front(probe, |front, context| front.drop_last_seed(context));
         }
@@ -253,7 +253,7 @@ impl Sampler {
         if self.tools.front.is_capped() {
             return self.end_generation(probe);
         }
-        if self.tools.coarse.seed().is_some() {
+        if self.tools.coarse.known().is_some() {
             return self.begin_filling(probe);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
@@ -349,9 +349,7 @@ impl Sampler {
         } else if self.tools.front.is_capped() {
             Err(Refusal::Full)
         } else {
-            let witnesses = self.components.points().iter().map(|seed| seed.position);
             let surface = SurfaceFacts {
-                points: self.survey.position.iter().copied().chain(witnesses).collect(),
                 bounds: self.bounds,
                 sizing: sizing.as_ref(),
                 bend: *bend,

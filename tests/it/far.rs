@@ -61,7 +61,7 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
                 there.accuracy.err_max
             );
             assert!(
-                near.count.abs_diff(far.count) * 500 <= near.count,
+                near.count.abs_diff(far.count) * 250 <= near.count,
                 "{name}: {} {}",
                 near.count,
                 far.count

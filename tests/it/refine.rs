@@ -367,10 +367,7 @@ fn a_refusal_names_the_place() {
         let sampler = sampled(&mut field, &surface.bounds, &refined(count, 0), 10_000);
         let refusal = sampler.counts().refusal.expect("too few particles for this surface");
         let at = match refusal {
-            Refusal::Bent { at }
-            | Refusal::Sharp { at }
-            | Refusal::Doubtful { at }
-            | Refusal::Folded { at } => at,
+            Refusal::Bent { at } | Refusal::Doubtful { at } | Refusal::Folded { at } => at,
             other => panic!("{id}: {other:?}"),
         };
         let far = quality::measure(

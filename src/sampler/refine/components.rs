@@ -6,7 +6,7 @@
 
 use super::coarse::{halvings, largest_curvatures};
 use super::refusal::Refusal;
-use super::{Count, Refinement, Target, border};
+use super::{Count, Refinement, Target};
 use crate::differential::{Curvature, curvatures};
 use crate::math::{Bounds, Forest};
 use crate::mesh::build::{Options, triangulate};
@@ -40,16 +40,12 @@ struct Component {
 struct Candidate {
     component: usize,
     halvings: u32,
-    /// A point of the component, and the unit normal there.
-    seed: (Vec3, Vec3),
 }
 
 /// What is known of the surface before it is refined.
 pub(crate) struct SurfaceFacts<'a> {
     /// The box that is sampled. Coarse fronts grow beyond it.
     pub(crate) bounds: Bounds,
-    /// Points spread over the surface in the box, by which a part of it is missed.
-    pub(crate) points: Vec<Vec3>,
     /// The sizes that are wanted, where they differ.
     pub(crate) sizing: Option<&'a Sizing>,
     /// Where it bends most.
@@ -86,9 +82,10 @@ pub(crate) enum Next {
 }
 
 impl CoarseFronts {
-    /// Where the next front begins, if it covers one component only.
-    pub(crate) fn seed(&self) -> Option<(Vec3, Vec3)> {
-        self.candidates.last().map(|candidate| candidate.seed)
+    /// The particles known of the component that the next front covers alone, from the first of which it grows; none if it covers all
+    /// components.
+    pub(crate) fn known(&self) -> Option<&Particles> {
+        self.candidates.last().map(|candidate| &self.components[candidate.component].particles)
     }
 
     /// Gives up the candidates. Returns the particles of the first front, if another one has begun.
@@ -135,7 +132,7 @@ impl CoarseFronts {
         particles: &Particles,
         target: Target,
     ) -> Result<(), Refusal> {
-        let &SurfaceFacts { ref bounds, ref points, sizing, failures, .. } = surface;
+        let &SurfaceFacts { ref bounds, sizing, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
@@ -153,8 +150,7 @@ impl CoarseFronts {
                 let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.halvings));
                 let candidate = Candidate {
                     component: self.components.len(),
-                    halvings: halvings(bend, count, sizing.is_some()).unwrap_or(0).saturating_sub(failures),
-                    seed: (part.position[0], part.normal[0]),
+                    halvings: halvings(bend, count).unwrap_or(0).saturating_sub(failures),
                 };
                 if candidate.halvings > target.halvings {
                     self.candidates.push(candidate);
@@ -166,12 +162,6 @@ impl CoarseFronts {
             let particles = if self.are_several { part } else { Particles::default() };
             self.components.push(Component { refinement, area, weight, particles });
         }
-        let radius = particles.radius.first().copied().unwrap_or(0.0);
-        border::judge_cover(
-            self.components.iter().map(|known| &known.refinement.layer),
-            points,
-            2.0 * radius,
-        )?;
         self.candidates.reverse();
         if !self.candidates.is_empty() {
             self.first = particles.clone();
@@ -428,8 +418,7 @@ mod tests {
         let mut memory = ProbeMemory::default();
         let mut probe = Probe::new(&mut field, &mut memory);
         let bounds = Bounds::cube(1.5);
-        let surface =
-            SurfaceFacts { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
+        let surface = SurfaceFacts { bounds, sizing: None, bend: Vec3::ZERO, failures: 0 };
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
         let refinement = Refinement::new(&mut probe, &known, &bounds, target(1)).expect("a good front");
@@ -439,8 +428,7 @@ mod tests {
             are_several: true,
             ..CoarseFronts::default()
         };
-        let seed = (Vec3::Z, Vec3::Z);
-        fronts.candidates.push(Candidate { component: 0, halvings: 4, seed });
+        fronts.candidates.push(Candidate { component: 0, halvings: 4 });
         let mut tried = Vec::new();
         while let Some(candidate) = fronts.candidates.pop() {
             tried.push(candidate.halvings);
@@ -453,7 +441,7 @@ mod tests {
         assert_eq!(fronts.components[0].refinement.target.halvings, 2);
         assert_eq!(fronts.components[0].particles.len(), 1_000);
         // None is tried that is no coarser than what there is.
-        let candidate = Candidate { component: 0, halvings: 3, seed };
+        let candidate = Candidate { component: 0, halvings: 3 };
         fronts.take_coarser(&mut probe, &surface, &sphere(20), target(3), candidate);
         assert!(fronts.candidates.is_empty());
         assert_eq!(fronts.components[0].particles.len(), 1_000);

@@ -21,7 +21,7 @@
 mod border;
 mod coarse;
 mod components;
-mod layer;
+mod net;
 mod recipe;
 mod refusal;
 mod rings;
@@ -36,24 +36,15 @@ pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
 pub use refusal::{Refusal, Spot};
 
 use crate::math::{Bounds, SQRT_3};
-use crate::mesh::half_edge::{Stage, Subdivision};
+use crate::mesh::half_edge::{NONE, Stage, Subdivision};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
-use core::ops::RangeInclusive;
-use layer::{BLOCK, Block, Ground, Layer, Springs};
-use recipe::{Pass, Recipe};
+use net::{BLOCK, Block, Ground, Net, Springs};
+use recipe::{LevelFacts, Pass, Recipe, TUNING};
 use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
-
-/// Area of the faces after a subdivision over that before. On a dome it grows, and on a saddle it shrinks, by 2.5 % on a gyroid as
-/// coarse as may be. Below, something was lost; above, two sheets have been joined.
-const AREA_GAIN: RangeInclusive<f64> = 0.95..=1.15;
-
-/// Share of faces missing or too many from which on the first level tries every particle. Defects alone cannot make up for
-/// the front: where it leaves fives only, none would be inserted.
-const SLACK: f32 = 0.002;
 
 /// Rounds in which the spacing and the number of edges on the border are found from each other.
 const BORDER_ROUNDS: u32 = 4;
@@ -87,9 +78,9 @@ pub(crate) struct Target {
 /// How many particles the last level has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Count {
-    /// So many.
+    /// A number of particles.
     Total(f64),
-    /// So many per hexagonal cell 2√3 r².
+    /// A number of particles per hexagonal cell 2√3 r².
     PerCell(f64),
 }
 
@@ -97,14 +88,12 @@ pub(crate) enum Count {
 #[derive(Clone, Debug)]
 struct Refinement {
     target: Target,
-    layer: Layer,
+    net: Net,
     shape: Shape,
-    level: Level,
-    tools: Tools,
-    /// Of the pass under way.
+    level: Goals,
+    memory: Memory,
+    /// Sums over the faces, as far as the pass under way has come.
     tally: Tally,
-    /// Area of the faces of the level before, until this one has been compared with it.
-    area_before: Option<f64>,
     task: Task,
     /// The finished mesh, by the particles at the corners of its faces.
     corners: Vec<u32>,
@@ -119,21 +108,21 @@ struct Shape {
     wanted: f64,
 }
 
-/// What is to be done on the level under way.
+/// What the level under way is to come to, and how.
 #[derive(Clone, Debug)]
-struct Level {
-    /// Levels still to come after it.
+struct Goals {
+    /// Levels still to come after this one.
     to_come: u32,
     recipe: Recipe,
     /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
     spacing: f32,
-    /// Faces of that lattice.
+    /// Number of faces that this level is to have.
     faces: f32,
 }
 
-/// The memory of the passes.
+/// Memory that the passes of all levels reuse.
 #[derive(Clone, Debug, Default)]
-struct Tools {
+struct Memory {
     block: Block,
     surgeon: Surgeon,
     /// Particles near defects, in ascending order.
@@ -142,7 +131,7 @@ struct Tools {
     crowded: Vec<u32>,
 }
 
-/// What is being done.
+/// What a refinement is doing.
 #[derive(Clone, Debug)]
 enum Task {
     /// A pass of the recipe, come to `next` of the particles or half-edges below `end`.
@@ -151,19 +140,19 @@ enum Task {
     Show(Rings),
     /// Every face is divided into four.
     Divide(Subdivision),
-    /// The particles of the finer level are put onto the surface, come to the number of those in its columns.
-    Lift { coarse: Box<Layer>, ends: Vec<[u32; 2]> },
+    /// The particles of the finer level are put onto the surface, come to the number of those in its columns, of which so many have
+    /// a defect.
+    Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
     /// The corners of the finished mesh are named by their particles, come to the corner `next` of those before, of which `kept`
     /// belong to a face. The particles are handed on with the last one.
     Name { rings: Rings, next: usize, kept: usize },
-    /// Nothing.
+    /// All levels are finished and handed on.
     Done,
 }
 
-impl Level {
-    fn new(target: &Target, to_come: u32, has_border: bool) -> Self {
-        let recipe = Recipe::of(target.halvings, to_come, target.grading.is_some(), has_border);
-        Self { to_come, recipe, spacing: 0.0, faces: 0.0 }
+impl Goals {
+    fn new(facts: &LevelFacts) -> Self {
+        Self { to_come: facts.to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
     }
 }
 
@@ -182,20 +171,26 @@ impl Refinement {
     ) -> Result<Self, Refusal> {
         let mut block = Block::default();
         let mut ground = Ground { probe, block: &mut block };
-        let layer = coarse::join(&mut ground, particles, bounds, target.halvings)?;
-        Ok(Self::of_layer(layer, block, target))
+        let net = coarse::join(&mut ground, particles, bounds, target.halvings)?;
+        Ok(Self::of_layer(net, block, target))
     }
 
-    fn of_layer(layer: Layer, block: Block, target: Target) -> Self {
-        let shape = Shape { euler: layer.mesh.euler(), has_border: layer.has_border(), wanted: 0.0 };
+    fn of_layer(net: Net, block: Block, target: Target) -> Self {
+        let shape = Shape { euler: net.mesh.euler(), has_border: net.has_border(), wanted: 0.0 };
         let mut refinement = Self {
             target,
-            level: Level::new(&target, target.halvings, shape.has_border),
-            layer,
+            level: Goals::new(&LevelFacts {
+                halvings: target.halvings,
+                to_come: target.halvings,
+                is_graded: target.grading.is_some(),
+                has_border: shape.has_border,
+                // The first recipe does not depend on it.
+                defects: 0.0,
+            }),
+            net,
             shape,
-            tools: Tools { block, ..Tools::default() },
+            memory: Memory { block, ..Memory::default() },
             tally: Tally::default(),
-            area_before: None,
             task: Task::Done,
             corners: Vec::new(),
         };
@@ -206,7 +201,7 @@ impl Refinement {
     /// Area of the surface.
     fn area(&self) -> f64 {
         let mut tally = Tally::default();
-        tally.measure(&self.layer, 0..(self.layer.mesh.half_edge_slots() / 3) as u32);
+        tally.measure(&self.net, 0..(self.net.mesh.half_edge_slots() / 3) as u32);
         tally.area()
     }
 
@@ -255,7 +250,7 @@ impl Refinement {
                 Task::Pass { pass, next, end } => self.pass(probe, sizing, pass, next, end)?,
                 Task::Show(rings) => self.show(rings, particles),
                 Task::Divide(subdivision) => self.divide(subdivision),
-                Task::Lift { coarse, ends } => self.lift(probe, coarse, ends)?,
+                Task::Lift { coarse, ends, defects } => self.lift(probe, coarse, ends, defects)?,
                 Task::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
                 Task::Done => (Task::Done, 0),
             };
@@ -267,17 +262,8 @@ impl Refinement {
     }
 
     /// Takes in what the faces of this level have been measured to be: the wanted numbers follow.
-    ///
-    /// # Errors
-    ///
-    /// If the area is not that of the level before.
-    fn measure(&mut self) -> Result<(), Refusal> {
+    fn measure(&mut self) {
         let tally = self.tally;
-        if let Some(before) = self.area_before.take()
-            && !AREA_GAIN.contains(&(tally.flat_area() / before))
-        {
-            return Err(Refusal::Folded { at: tally.widest().into() });
-        }
         if self.shape.wanted == 0.0 {
             let radius = f64::from(self.target.radius);
             self.shape.wanted = match self.target.count {
@@ -291,7 +277,7 @@ impl Refinement {
         }
         let share = f64::from(1_u32 << (2 * self.level.to_come));
         let euler = self.shape.euler as f64;
-        let is_graded = self.layer.is_graded();
+        let is_graded = self.net.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
         let closed = 2.0 * (self.shape.wanted - euler) / share;
         // Each particle has the area of two faces.
@@ -313,21 +299,20 @@ impl Refinement {
         }
         self.level.faces = faces as f32;
         self.level.spacing = spacing(faces) as f32;
-        Ok(())
     }
 
     /// The start of a pass of the recipe, or what follows after the last one.
     fn begin_pass(&mut self, pass: usize) -> Task {
-        let mesh = &self.layer.mesh;
+        let mesh = &self.net.mesh;
         let Some(&kind) = self.level.recipe.passes.get(pass) else {
             // Before the columns of the finished level take their place.
-            self.tools = Tools { block: core::mem::take(&mut self.tools.block), ..Tools::default() };
-            return Task::Show(Rings::new(&self.layer));
+            self.memory = Memory { block: core::mem::take(&mut self.memory.block), ..Memory::default() };
+            return Task::Show(Rings::new(&self.net));
         };
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
             Pass::Thin => {
-                self.tools.crowded.clear();
+                self.memory.crowded.clear();
                 mesh.half_edge_slots()
             }
             Pass::Measure | Pass::Inspect => {
@@ -335,11 +320,11 @@ impl Refinement {
                 mesh.half_edge_slots() / 3
             }
             Pass::Find => {
-                self.tools.near.clear();
+                self.memory.near.clear();
                 mesh.vertex_slots()
             }
-            Pass::Centre => self.tools.near.len(),
-            Pass::Size(_) | Pass::Limit { .. } | Pass::Sweep | Pass::Mend { .. } | Pass::Land => {
+            Pass::Centre => self.memory.near.len(),
+            Pass::Size { .. } | Pass::Limit { .. } | Pass::Sweep | Pass::Mend { .. } | Pass::Land => {
                 mesh.vertex_slots()
             }
         };
@@ -356,9 +341,9 @@ impl Refinement {
         end: u32,
     ) -> Result<(Task, u32), Refusal> {
         let springs =
-            Springs { spacing: self.level.spacing, theta: self.level.recipe.theta, omega: recipe::OMEGA };
-        let layer = &mut self.layer;
-        let mut ground = Ground { probe, block: &mut self.tools.block };
+            Springs { spacing: self.level.spacing, theta: self.level.recipe.theta, omega: TUNING.omega };
+        let net = &mut self.net;
+        let mut ground = Ground { probe, block: &mut self.memory.block };
         let kind = self.level.recipe.passes[pass];
         let per_unit = match kind {
             Pass::Flip | Pass::Thin => HALF_EDGES_PER_UNIT,
@@ -368,46 +353,47 @@ impl Refinement {
         let last = end.min(next + per_unit * BLOCK as u32);
         let mut units = BLOCK as u32;
         match kind {
-            Pass::Size(quarters) => {
+            Pass::Size { is_whole } => {
                 if let Some(sizing) = sizing {
-                    layer.find_sizes(&mut ground, sizing, self.target.radius, quarters, next..last);
+                    net.find_sizes(&mut ground, sizing, self.target.radius, is_whole, next..last);
                 }
             }
             Pass::Limit { back } => {
                 let rise = self.rise();
                 let way = |k: u32| if back { end - 1 - k } else { k };
-                self.layer.limit_sizes(rise, (next..last).map(way));
+                self.net.limit_sizes(rise, (next..last).map(way));
             }
-            Pass::Measure => self.tally.measure(layer, next..last),
-            Pass::Inspect => self.tally.inspect(layer, next..last),
-            Pass::Sweep => layer.relax(&mut ground, springs, next..last),
-            Pass::Flip => layer.flip(next..last),
+            Pass::Measure => self.tally.measure(net, next..last),
+            Pass::Inspect => self.tally.inspect(net, next..last),
+            Pass::Sweep => net.relax(&mut ground, springs, next..last),
+            Pass::Flip => net.flip(next..last),
             Pass::Mend { loss } => {
-                let slack = if self.level.to_come == self.target.halvings { SLACK } else { f32::INFINITY };
+                let slack =
+                    if self.level.to_come == self.target.halvings { TUNING.slack } else { f32::INFINITY };
                 let aim =
                     Aim { springs, delta: self.level.recipe.delta, faces: self.level.faces, slack, loss };
                 for v in next..last {
-                    units += TRIAL_UNITS * u32::from(self.tools.surgeon.mend(layer, &mut ground, aim, v));
+                    units += TRIAL_UNITS * u32::from(self.memory.surgeon.mend(net, &mut ground, aim, v));
                 }
             }
             Pass::Find => {
                 let has_border = self.shape.has_border;
                 let is_defect = |&v: &u32| {
-                    layer.mesh.has_vertex(v)
-                        && layer.excess(v) != 0
-                        && (!has_border || layer.mesh.is_border(v) || layer.excess(v) > 1)
+                    net.mesh.has_vertex(v)
+                        && net.excess(v) != 0
+                        && (!has_border || net.mesh.is_border(v) || net.excess(v) > 1)
                 };
-                self.tools.near.extend((next..last).filter(is_defect));
+                self.memory.near.extend((next..last).filter(is_defect));
             }
             Pass::Centre => {
-                let near = self.tools.near[next as usize..last as usize].iter().copied();
-                layer.centre(&mut ground, springs, near);
+                let near = self.memory.near[next as usize..last as usize].iter().copied();
+                net.centre(&mut ground, springs, near);
             }
             Pass::Thin => {
-                self.tools.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.level.spacing)));
+                self.memory.crowded.extend((next..last).filter(|&h| net.is_crowded(h, self.level.spacing)));
             }
             Pass::Land => {
-                layer.land(&mut ground, self.level.spacing, next..last);
+                net.land(&mut ground, self.level.spacing, next..last);
             }
         }
         if last < end {
@@ -427,35 +413,28 @@ impl Refinement {
     fn end_pass(&mut self, kind: Pass) -> Result<(), Refusal> {
         match kind {
             Pass::Measure => self.measure(),
-            Pass::Find => {
-                self.tools.surgeon.widen(&self.layer.mesh, &mut self.tools.near);
-                Ok(())
-            }
-            Pass::Thin => {
-                self.layer.thin(&mut self.tools.crowded, self.level.spacing);
-                Ok(())
-            }
+            Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
+            Pass::Thin => self.net.thin(&mut self.memory.crowded, self.level.spacing),
             Pass::Inspect => {
-                self.area_before = Some(self.tally.flat_area());
-                match self.tally.inverted() {
-                    Some(at) if self.level.to_come == 0 => Err(Refusal::Folded { at: at.into() }),
-                    _ => Ok(()),
+                if let Some(at) = self.tally.inverted() {
+                    return Err(Refusal::Folded { at: at.into() });
                 }
             }
-            _ => Ok(()),
+            _ => {}
         }
+        Ok(())
     }
 
     fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Task, u32) {
         let radius = self.target.radius * (1_u32 << self.level.to_come) as f32;
-        let task = if !rings.step(&self.layer, radius) {
+        let task = if !rings.step(&self.net, radius) {
             Task::Show(rings)
         } else if self.level.to_come > 0 {
             rings.hand_on(particles);
-            Task::Divide(Subdivision::new(&self.layer.mesh))
+            Task::Divide(Subdivision::new(&self.net.mesh))
         } else {
-            // Of the layer nothing else is needed any more.
-            self.corners = core::mem::take(&mut self.layer).mesh.into_corners();
+            // Of the net nothing else is needed any more.
+            self.corners = core::mem::take(&mut self.net).mesh.into_corners();
             Task::Name { rings, next: 0, kept: 0 }
         };
         (task, BLOCK as u32)
@@ -480,36 +459,47 @@ impl Refinement {
     }
 
     fn divide(&mut self, mut subdivision: Subdivision) -> (Task, u32) {
-        subdivision.step(&self.layer.mesh, BLOCK as u32);
+        subdivision.step(&self.net.mesh, BLOCK as u32);
         if subdivision.stage() != Stage::Done {
             return (Task::Divide(subdivision), BLOCK as u32);
         }
         let (mesh, ends) = subdivision.finish();
-        let coarse = Box::new(core::mem::replace(&mut self.layer, Layer::with_room(mesh, ends.len())));
-        self.layer.walls = coarse.walls.finer(ends.len());
-        (Task::Lift { coarse, ends }, BLOCK as u32)
+        let coarse = Box::new(core::mem::replace(&mut self.net, Net::with_room(mesh, ends.len())));
+        self.net.walls = coarse.walls.finer(ends.len());
+        (Task::Lift { coarse, ends, defects: 0 }, BLOCK as u32)
     }
 
     fn lift(
         &mut self,
         probe: &mut Probe,
-        coarse: Box<Layer>,
+        coarse: Box<Net>,
         ends: Vec<[u32; 2]>,
+        mut defects: u32,
     ) -> Result<(Task, u32), Refusal> {
-        let layer = &mut self.layer;
-        let start = layer.position.len();
+        let net = &mut self.net;
+        let start = net.position.len();
         let end = ends.len().min(start + BLOCK);
-        ends[start..end].iter().for_each(|&ends| layer.push_from(&coarse, ends));
-        let mut ground = Ground { probe, block: &mut self.tools.block };
-        layer.land(&mut ground, self.level.spacing, start as u32..end as u32);
+        for &ends in &ends[start..end] {
+            net.push_from(&coarse, ends);
+            // A particle on the middle of an edge has none.
+            defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
+        }
+        let mut ground = Ground { probe, block: &mut self.memory.block };
+        net.land(&mut ground, self.level.spacing, start as u32..end as u32);
         let refused = core::mem::take(&mut ground.block.refused);
-        if let Some(&v) = refused.iter().find(|&&v| !layer.rescue(&mut ground, self.level.spacing, v)) {
-            return Err(Refusal::Folded { at: layer.position[v as usize].into() });
+        if let Some(&v) = refused.iter().find(|&&v| !net.rescue(&mut ground, self.level.spacing, v)) {
+            return Err(Refusal::Folded { at: net.position[v as usize].into() });
         }
         if end < ends.len() {
-            return Ok((Task::Lift { coarse, ends }, BLOCK as u32));
+            return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
         }
-        self.level = Level::new(&self.target, self.level.to_come - 1, self.shape.has_border);
+        self.level = Goals::new(&LevelFacts {
+            halvings: self.target.halvings,
+            to_come: self.level.to_come - 1,
+            is_graded: self.target.grading.is_some(),
+            has_border: self.shape.has_border,
+            defects: defects as f32 / ends.len() as f32,
+        });
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }

@@ -1,12 +1,10 @@
 //! What is done at each level: how many sweeps, how much surgery, and in which order.
 
-use super::sizes::WHOLE;
-
 /// One pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// Takes the sizes from the radius field, to the power of so many quarters.
-    Size(u8),
+    /// Takes the sizes from the radius field, or their square roots: half-way to them from one size.
+    Size { is_whole: bool },
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
     /// Measures the surface: the spacing follows.
@@ -35,159 +33,177 @@ pub(super) struct Recipe {
     pub(super) passes: Vec<Pass>,
     /// Rest length of the springs over the spacing.
     pub(super) theta: f32,
-    /// Price of a defect.
+    /// Price of a defect, in units of the spacing squared.
     pub(super) delta: f32,
 }
 
-/// Sweeps, then rounds of surgery with sweeps after each, then Lloyd's method near the defects that are left. A flip follows every
-/// sweep.
+/// What is done at a level: sweeps, then rounds of surgery with sweeps after each. A flip follows every sweep.
 #[derive(Clone, Copy)]
-struct Plan {
+pub(super) struct Plan {
     /// Sweeps at the start.
     sweeps: usize,
     /// Rounds of surgery.
     rounds: usize,
-    /// Sweeps after each.
+    /// Sweeps after each round.
     calm: usize,
-    /// Lloyd steps near defects.
-    centre: usize,
+    /// Rest length of the springs over the spacing.
     theta: f32,
+    /// Price of a defect, in units of the spacing squared.
     delta: f32,
     /// Loss that the first round of surgery accepts, in units of the spacing squared.
     loss: f32,
 }
 
-/// The first round of surgery accepts trials that lose up to the `loss` of the plan, each later round less, and from this share of
-/// the rounds on none does. A scar in a bad place can so pass through a worse one to a better: threshold accepting, G. Dueck and T.
-/// Scheuer, Journal of Computational Physics 90, 1990.
-const LOSING_ROUNDS: f32 = 0.7;
+/// All that the recipe is tuned by.
+pub(super) struct Tuning {
+    /// Where order is made: the coarse level, whose particles are few.
+    first: Plan,
+    /// Where order is kept while scars grow. On the last of these levels, which costs most, the first half of the rounds is left out.
+    between: Plan,
+    /// Where the lattice comes to rest. Surgery would add more defects than it takes.
+    last: Plan,
+    /// Share of the rounds from which on none accepts a loss. The loss falls steadily until then.
+    losing: f32,
+    /// Over-relaxation of the sweeps.
+    pub(super) omega: f32,
+    /// What the rest length of the last level falls by for each share of particles with a defect: the more there are, the more the
+    /// lattice between them is strained, and the stiffer in shear it has to be.
+    theta_per_defect: f32,
+    /// Shortest rest length of the last level.
+    least_theta: f32,
+    /// Longest rest length of the last level.
+    most_theta: f32,
+    /// Steps of Lloyd's method near the defects of the last level.
+    lloyd: usize,
+    /// Share of faces missing or too many from which on the first level tries every particle, and not only those with a defect.
+    pub(super) slack: f32,
+    /// Sweeps half-way from one size to those of the radius field, and again at those.
+    blend_sweeps: usize,
+    /// Rounds of surgery half-way; the rest of the plan's follow at the sizes of the radius field.
+    blend_rounds: usize,
+}
 
-/// Over-relaxation of the sweeps.
-pub(super) const OMEGA: f32 = 1.5;
+/// The values, chosen on random surfaces that no test or table names: blends of ellipsoids and tori, bumpy ellipsoids, quartics, sums of
+/// waves, and surfaces cut by random boxes, with 1,500 to 40,000 particles. Angles are means of the smallest angle of a triangle, holes
+/// and pairs the largest and the closest over those of the hexagonal lattice.
+pub(super) const TUNING: Tuning = Tuning {
+    // 20 rounds take a tenth longer, and the share of particles with six neighbours changes by less than 0.1 points. With δ = 0.02 and
+    // no loss it is 0.2 points lower on closed surfaces.
+    first: Plan { sweeps: 10, rounds: 16, calm: 3, theta: 0.8, delta: 0.03, loss: 0.03 },
+    // With θ = 0.8 holes are 1 % wider. Half as many rounds with one sweep each cost 0.1° where several such levels follow each other.
+    between: Plan { sweeps: 4, rounds: 10, calm: 2, theta: 0.9, delta: 0.015, loss: 0.06 },
+    // θ without a defect, before the limits below.
+    last: Plan { sweeps: 6, rounds: 0, calm: 0, theta: 1.3, delta: 0.0, loss: 0.0 },
+    // So that the last three rounds of ten regain what losses have left.
+    losing: 0.7,
+    // Beyond 1.6 sweeps with flips do not come to rest.
+    omega: 1.5,
+    // The limits below then hold for one defect in a hundred particles and for one in forty.
+    theta_per_defect: 30.0,
+    // With θ below it angles gain nothing more.
+    least_theta: 0.6,
+    // With θ = 0.9 everywhere pairs are at 0.80 and angles of 57.0°; with 0.7 at 0.75 and of 57.5°.
+    most_theta: 0.98,
+    // Without, pairs are at 0.75 in place of 0.80. A third step makes the smallest angle of all 0.4° smaller.
+    lloyd: 2,
+    // A front may leave fives only, and none would be inserted. Without, 0.2 points fewer have six neighbours.
+    slack: 0.002,
+    // At the sizes of the field at once, neighbours tangle: 2 of 22 surfaces are refused.
+    blend_sweeps: 3,
+    // Four steps of two rounds each instead of two steps make angles 0.2° smaller.
+    blend_rounds: 2,
+};
 
-/// The first level. Its particles are few, and what is mended here holds on every finer level.
-const FIRST: Plan = Plan { sweeps: 10, rounds: 20, calm: 3, centre: 0, theta: 0.8, delta: 0.02, loss: 0.0 };
-/// The levels between, on which scars grow. Ten rounds that accept losses, in place of five that do not, gain 0.2° to 0.3° of the
-/// mean smallest angle with 56,000 particles on ellipsoid, sphere and torus, for a sixth more evaluations. Longer rest lengths than
-/// those of the first level keep distances and holes even: the closest pair on the ellipsoid is at 0.80 of the ideal instead of
-/// 0.78, for 0.1° of the mean angle.
-const MIDDLE: Plan = Plan { sweeps: 4, rounds: 10, calm: 2, centre: 0, theta: 0.9, delta: 0.015, loss: 0.06 };
-/// The last level but one, where surgery costs most.
-const LAST_BUT_ONE: Plan =
-    Plan { sweeps: 4, rounds: 4, calm: 1, centre: 0, theta: 0.9, delta: 0.012, loss: 0.0 };
-/// The last level: surgery would add more defects than it takes.
-const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 3, theta: 0.98, delta: 0.0, loss: 0.0 };
-/// A front that is refined so many times at most has a surface that bends much between neighbours, and plans of its own.
-const FEW_LEVELS: u32 = 2;
-/// Defects are dearer, and losses are accepted here, since there is no level between.
-const FIRST_OF_FEW: Plan = Plan { delta: 0.03, loss: 0.03, ..FIRST };
-const LAST_BUT_ONE_OF_FEW: Plan = Plan { loss: 0.02, ..LAST_BUT_ONE };
-/// Defects lie nearer to each other, and Lloyd's method would stretch the triangles between them: fewer steps of it, and a stiffer
-/// lattice.
-const LAST_OF_FEW: Plan = Plan { sweeps: 6, centre: 2, theta: 0.93, ..LAST };
-/// The last level of a front that is refined once: stiffer springs do more for the angles than they cost the closest pairs. On the
-/// decocube with 20,000 particles the mean smallest angle is 55.8° instead of 55.3° and no triangle is above 90° instead of ten,
-/// with the closest pair at 0.777 instead of 0.786.
-const LAST_OF_ONE: Plan = Plan { theta: 0.7, ..LAST_OF_FEW };
-/// The last two levels of a surface with a border. Those that repeat in space are saddles throughout, with three times the defects
-/// of a closed surface. In the strain between these, stiffer springs and cheaper defects do more for the angles than Lloyd's
-/// method, which is left to the border. On the gyroid with 20,000 particles the mean smallest angle is 55.6° instead of 54.4°, and
-/// the largest hole 1.32 instead of 1.24; on Schwarz's surface 56.5° instead of 55.3°, and 1.28 instead of 1.21.
-const LAST_BUT_ONE_WITH_BORDER: Plan = Plan { rounds: 8, theta: 0.8, delta: 0.002, ..LAST_BUT_ONE };
-const LAST_WITH_BORDER: Plan = Plan { sweeps: 6, centre: 4, theta: 0.65, ..LAST };
-
-/// Steps in which the first level goes from one size to those of the radius field. At once, neighbours would tangle.
-const BLEND: u8 = WHOLE;
-/// Sweeps and rounds of surgery in each of them; the rest of the plan's rounds come in the last one. With six rounds the distances
-/// spread by 0.061 on the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
-const BLEND_SWEEPS: usize = 3;
-const BLEND_ROUNDS: usize = 2;
-/// Passes that limit the slope of the sizes: there and back, twice. What is far in that order is near on the surface at some pass,
-/// since the order is breadth first.
-const LIMITS: usize = 4;
+/// The level for which a recipe is made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LevelFacts {
+    /// Levels after the first one.
+    pub(super) halvings: u32,
+    /// Levels still to come after this one.
+    pub(super) to_come: u32,
+    /// Whether sizes differ.
+    pub(super) is_graded: bool,
+    pub(super) has_border: bool,
+    /// Share of the particles that have a defect.
+    pub(super) defects: f32,
+}
 
 impl Plan {
-    /// Loss that a round of surgery accepts.
-    fn loss_in(&self, round: usize) -> f32 {
-        let done = round as f32 / self.rounds as f32;
-        self.loss * (1.0 - done / LOSING_ROUNDS).max(0.0)
+    /// The rounds of surgery, by the loss that each of them accepts: threshold accepting.
+    fn losses(self) -> impl Iterator<Item = f32> {
+        (0..self.rounds).map(move |round| {
+            let done = round as f32 / self.rounds as f32;
+            self.loss * (1.0 - done / TUNING.losing).max(0.0)
+        })
     }
 }
 
 impl Recipe {
-    /// The recipe of a level with so many to come of all `levels`, of one size or of sizes that differ, with a border or without.
-    pub(super) fn of(halvings: u32, to_come: u32, is_graded: bool, has_border: bool) -> Self {
-        let (is_first, are_few) = (to_come == halvings, halvings <= FEW_LEVELS);
-        let mut plan = match (is_first, to_come) {
-            (true, _) if are_few => FIRST_OF_FEW,
-            (true, _) => FIRST,
-            (false, 0) if has_border => LAST_WITH_BORDER,
-            (false, 0) if halvings == 1 => LAST_OF_ONE,
-            (false, 0) if are_few => LAST_OF_FEW,
-            (false, 0) => LAST,
-            (false, 1) if has_border => LAST_BUT_ONE_WITH_BORDER,
-            (false, 1) if are_few => LAST_BUT_ONE_OF_FEW,
-            (false, 1) => LAST_BUT_ONE,
-            (false, _) => MIDDLE,
+    pub(super) fn of(level: &LevelFacts) -> Self {
+        let &LevelFacts { halvings, to_come, is_graded, has_border, defects } = level;
+        let (is_first, is_last) = (to_come == halvings, to_come == 0);
+        let plan = match (is_first, is_last) {
+            (true, _) => TUNING.first,
+            (false, false) => TUNING.between,
+            (false, true) => {
+                let theta = TUNING.last.theta - TUNING.theta_per_defect * defects;
+                Plan { theta: theta.clamp(TUNING.least_theta, TUNING.most_theta), ..TUNING.last }
+            }
         };
-        if is_graded {
-            // Lloyd's method is for one size: it would draw small particles and large ones to one distance. On 22 random surfaces
-            // the mean smallest angle is 0.5° larger without it, on each of them.
-            plan.centre = 0;
-        }
-        let Plan { theta, delta, .. } = plan;
-        let mut recipe = Self { passes: Vec::new(), theta, delta };
-        recipe.passes.push(Pass::Measure);
+        let mut recipe = Self { passes: vec![Pass::Measure], theta: plan.theta, delta: plan.delta };
+        let left_out = if !is_first && to_come == 1 { plan.rounds / 2 } else { 0 };
+        let losses = plan.losses().skip(left_out);
         match (is_graded, is_first) {
-            (false, _) => recipe.even(plan),
+            (false, _) => recipe.even(plan, losses),
             (true, true) => recipe.blend(plan),
-            (true, false) => recipe.graded(plan),
+            (true, false) => recipe.graded(plan, losses),
         }
-        if plan.centre > 0 {
+        // Lloyd's method is for one size: it would draw small particles and large ones to one distance.
+        if is_last && !is_first && !is_graded {
             recipe.passes.push(Pass::Find);
-            recipe.passes.extend([Pass::Centre].repeat(plan.centre));
+            recipe.passes.extend([Pass::Centre].repeat(TUNING.lloyd));
         }
-        if has_border && to_come == 0 {
+        if has_border && is_last {
             recipe.passes.extend([Pass::Thin, Pass::Flip]);
         }
         recipe.passes.push(Pass::Land);
-        if is_graded && to_come == 0 {
-            recipe.passes.push(Pass::Size(WHOLE));
+        if is_graded && is_last {
+            recipe.passes.push(Pass::Size { is_whole: true });
         }
-        recipe.passes.push(Pass::Inspect);
+        if is_last {
+            recipe.passes.push(Pass::Inspect);
+        }
         recipe
     }
 
-    fn even(&mut self, plan: Plan) {
+    fn even(&mut self, plan: Plan, losses: impl Iterator<Item = f32>) {
         self.sweep(plan.sweeps);
-        for round in 0..plan.rounds {
-            self.passes.push(Pass::Mend { loss: plan.loss_in(round) });
+        for loss in losses {
+            self.passes.push(Pass::Mend { loss });
             self.sweep(plan.calm);
         }
     }
 
-    /// The first level of sizes that differ: it is brought to rest with one size, and led to the others step by step.
+    /// The first level of sizes that differ: it is brought to rest with one size, and led to the others in two steps.
     fn blend(&mut self, plan: Plan) {
-        let before = usize::from(BLEND - 1) * BLEND_ROUNDS;
         self.sweep(plan.sweeps);
-        for quarters in 1..=BLEND {
-            self.size(quarters);
-            self.sweep(BLEND_SWEEPS);
-            let rounds = if quarters == BLEND { plan.rounds - before } else { BLEND_ROUNDS };
+        for (is_whole, rounds) in [(false, TUNING.blend_rounds), (true, plan.rounds - TUNING.blend_rounds)] {
+            self.size(is_whole);
+            self.sweep(TUNING.blend_sweeps);
             for _ in 0..rounds {
                 self.passes.push(Pass::Mend { loss: 0.0 });
                 self.sweep(plan.calm);
-                self.size(quarters);
+                self.size(is_whole);
             }
         }
     }
 
-    fn graded(&mut self, plan: Plan) {
-        self.size(WHOLE);
+    fn graded(&mut self, plan: Plan, losses: impl Iterator<Item = f32>) {
+        self.size(true);
         self.sweep(plan.sweeps);
-        for round in 0..plan.rounds {
-            self.size(WHOLE);
-            self.passes.push(Pass::Mend { loss: plan.loss_in(round) });
+        for loss in losses {
+            self.size(true);
+            self.passes.push(Pass::Mend { loss });
             self.sweep(plan.calm);
         }
     }
@@ -196,28 +212,65 @@ impl Recipe {
         self.passes.extend([Pass::Sweep, Pass::Flip].repeat(count));
     }
 
-    fn size(&mut self, quarters: u8) {
-        self.passes.push(Pass::Size(quarters));
-        self.passes.extend((0..LIMITS).map(|k| Pass::Limit { back: k % 2 == 1 }));
-        self.passes.push(Pass::Measure);
+    fn size(&mut self, is_whole: bool) {
+        // There and back: what is far in that order is near on the surface at one of the two, since the order is breadth first.
+        self.passes.extend([
+            Pass::Size { is_whole },
+            Pass::Limit { back: false },
+            Pass::Limit { back: true },
+            Pass::Measure,
+        ]);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Pass, Recipe};
+    use super::{LevelFacts, Pass, Recipe, TUNING};
+
+    fn passes(to_come: u32, is_graded: bool) -> Vec<Pass> {
+        Recipe::of(&LevelFacts { halvings: 3, to_come, is_graded, has_border: false, defects: 0.0 }).passes
+    }
+
+    fn rounds(passes: &[Pass]) -> usize {
+        passes.iter().filter(|pass| matches!(pass, Pass::Mend { .. })).count()
+    }
 
     #[test]
-    fn a_level_is_measured_first_and_inspected_last() {
+    fn a_level_is_measured_first_and_the_last_one_inspected_in_the_end() {
         for to_come in 0..=3 {
             for is_graded in [false, true] {
-                let passes = Recipe::of(3, to_come, is_graded, false).passes;
-                assert_eq!((passes[0], passes[passes.len() - 1]), (Pass::Measure, Pass::Inspect));
-                let surgery = passes.iter().filter(|pass| matches!(pass, Pass::Mend { .. })).count();
-                assert_eq!(surgery > 0, to_come > 0, "{to_come} levels to come");
-                let has_sizes = passes.iter().any(|pass| matches!(pass, Pass::Size(_)));
+                let passes = passes(to_come, is_graded);
+                assert_eq!(passes[0], Pass::Measure);
+                assert_eq!(passes.last() == Some(&Pass::Inspect), to_come == 0);
+                assert_eq!(rounds(&passes) > 0, to_come > 0, "{to_come} levels to come");
+                let has_sizes = passes.iter().any(|pass| matches!(pass, Pass::Size { .. }));
                 assert_eq!(has_sizes, is_graded);
             }
         }
+    }
+
+    #[test]
+    fn losses_fall_to_none_and_the_last_level_but_one_has_the_second_half_of_the_rounds() {
+        let losses = |to_come| {
+            let loss = |pass: &Pass| if let Pass::Mend { loss } = *pass { Some(loss) } else { None };
+            passes(to_come, false).iter().filter_map(loss).collect::<Vec<_>>()
+        };
+        let whole = losses(2);
+        assert_eq!(whole.len(), TUNING.between.rounds);
+        assert!(whole.is_sorted_by(|a, b| a >= b) && whole[0] == TUNING.between.loss, "{whole:?}");
+        assert_eq!(whole.last(), Some(&0.0));
+        assert_eq!(losses(1), whole[whole.len() / 2..]);
+    }
+
+    #[test]
+    fn more_defects_make_the_last_level_stiffer() {
+        let theta = |to_come, defects| {
+            Recipe::of(&LevelFacts { halvings: 2, to_come, is_graded: false, has_border: false, defects })
+                .theta
+        };
+        let thetas = [0.0, 0.01, 0.015, 0.02, 0.03, 1.0].map(|defects| theta(0, defects));
+        assert!(thetas.is_sorted_by(|a, b| a >= b) && thetas[1] > thetas[4], "{thetas:?}");
+        assert_eq!((thetas[0], thetas[5]), (TUNING.most_theta, TUNING.least_theta));
+        assert_eq!(theta(1, 0.0), theta(1, 1.0));
     }
 }

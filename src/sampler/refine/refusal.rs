@@ -55,23 +55,6 @@ pub enum Refusal {
         /// A place there.
         at: Spot,
     },
-    /// A part of the surface within the box was missed.
-    #[error(
-        "The front stands, and is not refined: near {at} the box leaves a part of the surface that is too small for a coarse front."
-    )]
-    Missed {
-        /// A place there.
-        at: Spot,
-    },
-    /// Most of what the box leaves is near its border.
-    #[error(
-        "The front stands, and is not refined: near {at} and elsewhere the box leaves strips that are too narrow for a coarse front. \
-         With more particles they may do."
-    )]
-    Narrow {
-        /// A place on a border.
-        at: Spot,
-    },
     /// A component has too few particles.
     #[error(
         "The front stands, and is not refined: the part of the surface near {at} has fewer than {LEAST_PARTICLES} particles."
@@ -87,12 +70,6 @@ pub enum Refusal {
     )]
     Doubtful {
         /// A place there.
-        at: Spot,
-    },
-    /// The surface bends too much between neighbours.
-    #[error("The front stands, and is not refined: near {at} the surface bends too much between neighbours.")]
-    Sharp {
-        /// Where it bends most.
         at: Spot,
     },
     /// A refinement has left the surface, or has led onto another sheet.
@@ -131,11 +108,8 @@ impl Refusal {
             | Self::Singular { at }
             | Self::Border { at }
             | Self::Cut { at }
-            | Self::Missed { at }
-            | Self::Narrow { at }
             | Self::Small { at }
             | Self::Doubtful { at }
-            | Self::Sharp { at }
             | Self::Folded { at } => *at = (origin + Vec3::from(at.0).as_dvec3()).as_vec3().into(),
         }
         self

@@ -1,6 +1,6 @@
 //! The particles of a level in the order of their rings around the first one, as a run shows them.
 
-use super::layer::Layer;
+use super::net::Net;
 use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
 
@@ -26,27 +26,27 @@ pub(super) struct Rings {
 }
 
 impl Rings {
-    pub(super) fn new(layer: &Layer) -> Self {
-        let n = layer.position.len();
+    pub(super) fn new(net: &Net) -> Self {
+        let n = net.position.len();
         let mut ready = Particles::default();
         ready.reserve(n);
         Self { order: Vec::with_capacity(n), place: vec![NONE; n], next: 0, root: 0, is_walked: false, ready }
     }
 
-    /// Goes on for a slice. Returns whether the particles of the layer are all there, with this radius where their size is 1. Only
+    /// Goes on for a slice. Returns whether the particles of the net are all there, with this radius where their size is 1. Only
     /// then are they handed on, so that a run that is cancelled has a whole level.
-    pub(super) fn step(&mut self, layer: &Layer, radius: f32) -> bool {
+    pub(super) fn step(&mut self, net: &Net, radius: f32) -> bool {
         if !self.is_walked {
-            self.is_walked = !(0..SLICE).all(|_| self.walk(layer));
+            self.is_walked = !(0..SLICE).all(|_| self.walk(net));
             return false;
         }
         let start = self.ready.len();
         let end = self.order.len().min(start + SLICE);
         for &v in &self.order[start..end] {
-            self.ready.position.push(layer.position[v as usize]);
-            self.ready.normal.push(layer.normal[v as usize]);
-            self.ready.radius.push(radius * layer.size_of(v));
-            self.ready.slots.push(layer.fates(v));
+            self.ready.position.push(net.position[v as usize]);
+            self.ready.normal.push(net.normal[v as usize]);
+            self.ready.radius.push(radius * net.size_of(v));
+            self.ready.slots.push(net.fates(v));
         }
         end == self.order.len()
     }
@@ -62,17 +62,17 @@ impl Rings {
     }
 
     /// Visits the neighbours of the next vertex; false if there is none.
-    fn walk(&mut self, layer: &Layer) -> bool {
+    fn walk(&mut self, net: &Net) -> bool {
         if self.next == self.order.len() {
             let slots = self.place.len() as u32;
-            let is_new = |&v: &u32| self.place[v as usize] == NONE && layer.mesh.has_vertex(v);
+            let is_new = |&v: &u32| self.place[v as usize] == NONE && net.mesh.has_vertex(v);
             let Some(root) = (self.root..slots).find(is_new) else { return false };
             self.root = root + 1;
             self.meet(root, Particles::NO_PARENT, 0);
         }
         let k = self.next;
         self.next += 1;
-        for other in layer.mesh.neighbours(self.order[k]) {
+        for other in net.mesh.neighbours(self.order[k]) {
             if self.place[other as usize] == NONE {
                 self.meet(other, k as u32, self.ready.level[k] + 1);
             }

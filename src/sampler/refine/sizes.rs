@@ -1,16 +1,14 @@
 //! Sizes that differ: those that the radius field asks for, and the slope at which a level can follow them.
 
-use super::layer::{Ground, Layer};
+use super::net::{Ground, Net};
 use crate::differential::{Curvature, curvatures};
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
 /// Steepest slope of the spacing along the surface, whatever the level. The sizes of neighbours then differ by a factor of 1.7 at
-/// most; beyond it triangles of the wanted sizes have angles that no mesh of six neighbours each has.
+/// most; beyond it triangles of the wanted sizes have angles that no mesh of six neighbours each has. Without a limit the largest hole
+/// on 22 random surfaces is 2.1, in place of 1.6.
 const MAX_SLOPE: f32 = 0.5;
-
-/// Most steps of a blend.
-pub(super) const WHOLE: u8 = 4;
 
 /// Slope of the spacing at a level with so many to come, where that of the radius is `grading`: with the spacing, the slope doubles
 /// from level to level.
@@ -19,15 +17,15 @@ pub(super) fn slope(grading: f32, to_come: u32) -> f32 {
     (own * (1_u32 << to_come) as f32).min(own.max(MAX_SLOPE))
 }
 
-impl Layer {
-    /// Takes the sizes of some particles from the radius field, in units of the radius `unit`. Of a blend, `quarters` says how far
-    /// from one size everywhere it has come.
+impl Net {
+    /// Takes the sizes of some particles from the radius field, in units of the radius `unit`: wholly, or half-way from one size
+    /// everywhere.
     pub(super) fn find_sizes(
         &mut self,
         ground: &mut Ground,
         sizing: &Sizing,
         unit: f32,
-        quarters: u8,
+        is_whole: bool,
         particles: Range<u32>,
     ) {
         self.size.resize(self.position.len(), 1.0);
@@ -39,13 +37,7 @@ impl Layer {
         curvatures(ground.probe.field, points, curvature);
         for ((size, &p), curvature) in self.size[range].iter_mut().zip(points).zip(curvature) {
             let whole = sizing.radius(p, curvature) / unit;
-            let (half, quarter) = (whole.sqrt(), whole.sqrt().sqrt());
-            *size = match quarters {
-                1 => quarter,
-                2 => half,
-                3 => half * quarter,
-                _ => whole,
-            };
+            *size = if is_whole { whole } else { whole.sqrt() };
         }
     }
 

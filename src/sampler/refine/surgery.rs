@@ -1,7 +1,7 @@
 //! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept that pay.
 
-use super::layer::{Ground, Layer, Springs};
-use super::walls::Planes;
+use super::net::{Ground, Net, Springs};
+use super::walls::{Planes, Site};
 use crate::math::sort_by_key;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
@@ -19,8 +19,8 @@ const OMEGA: f32 = 1.3;
 const LEAST_GAIN: f32 = 5e-4;
 /// What a particle costs, in units of the spacing squared, for each share of faces above the wanted number.
 const COUNT_PRICE: f32 = 20.0;
-/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. With
-/// 0.75 and 1.3 the distances on the ellipsoid spread by 0.058, with these by 0.053.
+/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. Without,
+/// the distances on 22 random surfaces spread by 0.084 in place of 0.074, and the mean smallest angle is 0.6° smaller.
 const CROWDED: f32 = 0.96;
 const SPARSE: f32 = 1.04;
 
@@ -56,6 +56,16 @@ pub(super) enum Operation {
     Split(u32),
 }
 
+/// What an operation has done.
+struct Effect {
+    /// The particle that was added, or into which another one was merged.
+    at: u32,
+    /// Change of Σ (valence − wanted)².
+    badness: i32,
+    /// Particles added; one on the border counts half, as it has half the faces.
+    added: f32,
+}
+
 /// The memory of the trials.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surgeon {
@@ -64,8 +74,8 @@ pub(super) struct Surgeon {
     /// Trial in which a particle was last in the patch.
     stamp: Vec<u32>,
     trial: u32,
-    /// Particles of the patch with place, normal and faces of the box before the trial.
-    saved: Vec<(u32, Vec3, Vec3, Planes)>,
+    /// Where each particle of the patch was before the trial.
+    saved: Vec<Site>,
     /// A half-edge of every edge with an end in the patch.
     edges: Vec<u32>,
 }
@@ -73,31 +83,31 @@ pub(super) struct Surgeon {
 impl Surgeon {
     /// Tries to mend `v`, if it has not six neighbours: with fewer it is merged with the nearest of them, with more another one is
     /// inserted into the widest of its faces. Returns whether it was tried.
-    pub(super) fn mend(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, v: u32) -> bool {
-        if !layer.mesh.has_vertex(v) {
+    pub(super) fn mend(&mut self, net: &mut Net, ground: &mut Ground, aim: Aim, v: u32) -> bool {
+        if !net.mesh.has_vertex(v) {
             return false;
         }
-        if layer.mesh.is_border(v) {
-            return self.mend_border(layer, ground, aim, v);
+        if net.mesh.is_border(v) {
+            return self.mend_border(net, ground, aim, v);
         }
-        let Some(wish) = wish(layer, aim, v) else { return false };
-        let mesh = &layer.mesh;
-        let p = layer.position[v as usize];
+        let Some(wish) = wish(net, aim, v) else { return false };
+        let mesh = &net.mesh;
+        let p = net.position[v as usize];
         let operation = match wish {
             Wish::OneFewer => {
-                let length = |h: u32| (layer.position[mesh.target(h) as usize] - p).length_squared();
+                let length = |h: u32| (net.position[mesh.target(h) as usize] - p).length_squared();
                 let shortest = mesh.around(v).min_by(|&g, &h| length(g).total_cmp(&length(h)));
-                shortest.filter(|&h| layer.can_merge(h)).map(Operation::Collapse)
+                shortest.filter(|&h| net.can_merge(h)).map(Operation::Collapse)
             }
             Wish::OneMore => {
                 let area = |h: u32| {
-                    layer.area_vector([h, next(h), previous(h)].map(|h| mesh.origin(h))).length_squared()
+                    net.area_vector([h, next(h), previous(h)].map(|h| mesh.origin(h))).length_squared()
                 };
                 mesh.around(v).max_by(|&g, &h| area(g).total_cmp(&area(h))).map(Operation::Insert)
             }
         };
         let Some(operation) = operation else { return false };
-        self.attempt(layer, ground, aim, operation, layer.size_of(v));
+        self.attempt(net, ground, aim, operation, net.size_of(v));
         true
     }
 
@@ -105,7 +115,7 @@ impl Surgeon {
     /// the particles there.
     pub(super) fn attempt(
         &mut self,
-        layer: &mut Layer,
+        net: &mut Net,
         ground: &mut Ground,
         aim: Aim,
         operation: Operation,
@@ -113,43 +123,42 @@ impl Surgeon {
     ) -> bool {
         let a = aim.springs.spacing * size;
         let a_sq = a * a;
-        self.gather(layer, operation);
-        let before = self.energy(layer, aim.springs);
-        let state =
-            |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize], layer.walls.planes(v));
+        self.gather(net, operation);
+        let before = self.energy(net, aim.springs);
         self.saved.clear();
-        self.saved.extend(self.patch.iter().map(state));
-        let slots = layer.position.len();
-        layer.mesh.begin();
-        let (v, mut defects, added) = self.operate(layer, operation);
-        let is_flat = layer.has_face_along_border(v);
-        self.collect_edges(layer);
-        defects += self.flip(layer);
+        self.saved.extend(self.patch.iter().map(|&v| net.site(v)));
+        let slots = net.position.len();
+        net.mesh.begin();
+        let Effect { at, badness: mut defects, added } = self.operate(net, operation);
+        let is_flat = net.has_face_along_border(at);
+        self.collect_edges(net);
+        defects += self.flip(net);
         let springs = Springs { omega: OMEGA, ..aim.springs };
         for _ in 0..SWEEPS {
-            layer.relax(ground, springs, self.patch.iter().copied());
-            defects += self.flip(layer);
+            net.relax(ground, springs, self.patch.iter().copied());
+            defects += self.flip(net);
         }
         // Half-way through the operation, so that it and its opposite cost the same.
-        let excess = layer.mesh.faces() as f32 - added - aim.faces;
+        let excess = net.mesh.faces() as f32 - added - aim.faces;
         // On a surface of fixed area, a particle more lowers the energy of the springs by the first term.
         let theta = springs.theta;
         let potential = 3.0 * theta * (1.0 - theta) + COUNT_PRICE * excess / aim.faces;
         let price = a_sq * (potential * added + aim.delta * defects as f32);
-        let gain = before - self.energy(layer, aim.springs) - price;
+        let gain = before - self.energy(net, aim.springs) - price;
         if gain > (LEAST_GAIN - aim.loss) * a_sq && !is_flat {
-            layer.mesh.keep();
+            net.mesh.keep();
             return true;
         }
-        layer.mesh.undo();
-        for &(v, position, normal, planes) in &self.saved {
-            layer.put(v, position, normal, planes);
+        net.mesh.undo();
+        // A particle that the trial added comes after those that were there.
+        for (&v, &site) in self.patch.iter().zip(&self.saved) {
+            net.put(v, site);
         }
-        layer.position.truncate(slots);
-        layer.normal.truncate(slots);
-        layer.slots.truncate(slots);
-        layer.size.truncate(slots);
-        layer.walls.truncate(slots);
+        net.position.truncate(slots);
+        net.normal.truncate(slots);
+        net.slots.truncate(slots);
+        net.size.truncate(slots);
+        net.walls.truncate(slots);
         false
     }
 
@@ -181,8 +190,8 @@ impl Surgeon {
     }
 
     /// Gathers the patch: [`RINGS`] rings around the particle that is merged or inserted.
-    fn gather(&mut self, layer: &Layer, operation: Operation) {
-        let mesh = &layer.mesh;
+    fn gather(&mut self, net: &Net, operation: Operation) {
+        let mesh = &net.mesh;
         self.trial += 1;
         self.patch.clear();
         // One more than there are: an insertion may take it.
@@ -207,15 +216,15 @@ impl Surgeon {
     }
 
     /// Energy of the edges with an end in the patch.
-    fn energy(&self, layer: &Layer, springs: Springs) -> f32 {
+    fn energy(&self, net: &Net, springs: Springs) -> f32 {
         let rest = springs.rest();
         let mut sum = 0.0;
-        for &v in self.patch.iter().filter(|&&v| layer.mesh.has_vertex(v)) {
-            let p = layer.position[v as usize];
-            for other in layer.mesh.neighbours(v) {
+        for &v in self.patch.iter().filter(|&&v| net.mesh.has_vertex(v)) {
+            let p = net.position[v as usize];
+            for other in net.mesh.neighbours(v) {
                 if other > v || !self.is_in(other) {
-                    let rest = rest * layer.size_between(v, other);
-                    let stretch = (layer.position[other as usize] - p).length() - rest;
+                    let rest = rest * net.size_between(v, other);
+                    let stretch = (net.position[other as usize] - p).length() - rest;
                     sum += stretch * stretch;
                 }
             }
@@ -223,70 +232,66 @@ impl Surgeon {
         sum
     }
 
-    /// Does the operation. Returns the particle at which it was done, the change of Σ (valence − wanted)² and the number of
-    /// particles added; one on the border counts half, as it has half the faces.
-    fn operate(&mut self, layer: &mut Layer, operation: Operation) -> (u32, i32, f32) {
+    /// Does the operation.
+    fn operate(&mut self, net: &mut Net, operation: Operation) -> Effect {
         match operation {
             Operation::Collapse(h) => {
-                let mesh = &layer.mesh;
+                let mesh = &net.mesh;
                 let (a, b, twin) = (mesh.origin(h), mesh.target(h), mesh.twin(h));
                 // At the border there is one face only.
                 let d = if twin == NONE { b } else { mesh.origin(previous(twin)) };
                 let around = [b, mesh.origin(previous(h)), d];
                 let around = &around[..if twin == NONE { 2 } else { 3 }];
-                let before = badness(layer, around) + badness(layer, &[a]);
-                let (position, planes) = layer.merged(a, b);
-                layer.mesh.collapse(h);
-                layer.put(b, position, layer.normal[b as usize], planes);
-                (b, badness(layer, around) - before, if twin == NONE { -0.5 } else { -1.0 })
+                let before = badness(net, around) + badness(net, &[a]);
+                let [first, second] = [a, b].map(|v| net.site(v));
+                let mut merged = net.more_bound(a, b);
+                if first.planes == second.planes {
+                    merged.position = (first.position + second.position) * 0.5;
+                }
+                net.mesh.collapse(h);
+                net.put(b, merged);
+                let added = if twin == NONE { -0.5 } else { -1.0 };
+                Effect { at: b, badness: badness(net, around) - before, added }
             }
             Operation::Insert(h) => {
-                let corners = [h, next(h), previous(h)].map(|h| layer.mesh.origin(h));
-                let before = badness(layer, &corners);
+                let corners = [h, next(h), previous(h)].map(|h| net.mesh.origin(h));
+                let before = badness(net, &corners);
                 let mean = |of: &[Vec3]| corners.iter().map(|&v| of[v as usize]).sum::<Vec3>() / 3.0;
-                let (position, normal) = (mean(&layer.position), mean(&layer.normal));
-                let normal = normal.normalize_or(layer.normal[corners[0] as usize]);
-                let size = corners.iter().map(|&v| layer.size_of(v)).sum::<f32>() / 3.0;
-                let v = layer.mesh.insert(h);
-                self.add(layer, v, (position, normal), Planes::INNER, size);
-                (v, badness(layer, &corners) + badness(layer, &[v]) - before, 1.0)
+                let (position, normal) = (mean(&net.position), mean(&net.normal));
+                let normal = normal.normalize_or(net.normal[corners[0] as usize]);
+                let size = corners.iter().map(|&v| net.size_of(v)).sum::<f32>() / 3.0;
+                let v = net.mesh.insert(h);
+                self.add(net, v, Site { position, normal, planes: Planes::INNER }, size);
+                Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added: 1.0 }
             }
             Operation::Split(h) => {
-                let corners = [h, next(h), previous(h)].map(|h| layer.mesh.origin(h));
-                let before = badness(layer, &corners);
-                let planes = layer.planes_between(corners[0], corners[1]);
-                let middle = layer.middle(corners[0], corners[1]);
-                let size = layer.size_between(corners[0], corners[1]);
-                let v = layer.mesh.split(h);
-                self.add(layer, v, middle, planes, size);
-                (v, badness(layer, &corners) + badness(layer, &[v]) - before, 0.5)
+                let corners = [h, next(h), previous(h)].map(|h| net.mesh.origin(h));
+                let before = badness(net, &corners);
+                let middle = net.halfway(corners[0], corners[1]);
+                let size = net.size_between(corners[0], corners[1]);
+                let v = net.mesh.split(h);
+                self.add(net, v, middle, size);
+                Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added: 0.5 }
             }
         }
     }
 
     /// Adds a new particle to the columns and to the patch.
-    fn add(
-        &mut self,
-        layer: &mut Layer,
-        v: u32,
-        (position, normal): (Vec3, Vec3),
-        planes: Planes,
-        size: f32,
-    ) {
-        layer.put(v, position, normal, planes);
-        if layer.is_graded() {
-            layer.size[v as usize] = size;
+    fn add(&mut self, net: &mut Net, v: u32, site: Site, size: f32) {
+        net.put(v, site);
+        if net.is_graded() {
+            net.size[v as usize] = size;
         }
-        layer.slots[v as usize] = Slots::default();
+        net.slots[v as usize] = Slots::default();
         self.stamp[v as usize] = self.trial;
         self.patch.push(v);
     }
 
-    fn collect_edges(&mut self, layer: &Layer) {
+    fn collect_edges(&mut self, net: &Net) {
         self.edges.clear();
-        for &v in self.patch.iter().filter(|&&v| layer.mesh.has_vertex(v)) {
-            for h in layer.mesh.around(v) {
-                let other = layer.mesh.target(h);
+        for &v in self.patch.iter().filter(|&&v| net.mesh.has_vertex(v)) {
+            for h in net.mesh.around(v) {
+                let other = net.mesh.target(h);
                 if other > v || !self.is_in(other) {
                     self.edges.push(h);
                 }
@@ -296,33 +301,33 @@ impl Surgeon {
 
     /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence − wanted)². An edge must keep an end
     /// in the patch, else its energy would be lost.
-    fn flip(&mut self, layer: &mut Layer) -> i32 {
+    fn flip(&mut self, net: &mut Net) -> i32 {
         let mut change = 0;
         for &h in &self.edges {
-            if !layer.wants_flip(h) {
+            if !net.wants_flip(h) {
                 continue;
             }
-            let mesh = &layer.mesh;
+            let mesh = &net.mesh;
             let t = mesh.twin(h);
             let (c, d) = (mesh.origin(previous(h)), mesh.origin(previous(t)));
             if !self.is_in(c) && !self.is_in(d) {
                 continue;
             }
             let corners = [mesh.origin(h), mesh.origin(t), c, d];
-            let before = badness(layer, &corners);
-            layer.mesh.flip(h);
-            change += badness(layer, &corners) - before;
+            let before = badness(net, &corners);
+            net.mesh.flip(h);
+            change += badness(net, &corners) - before;
         }
         change
     }
 }
 
 /// Σ (valence − wanted)² over some particles.
-fn badness(layer: &Layer, particles: &[u32]) -> i32 {
+fn badness(net: &Net, particles: &[u32]) -> i32 {
     particles
         .iter()
         .map(|&v| {
-            let excess = layer.excess(v);
+            let excess = net.excess(v);
             excess * excess
         })
         .sum()
@@ -330,15 +335,15 @@ fn badness(layer: &Layer, particles: &[u32]) -> i32 {
 
 /// Returns what may help at `v`: one particle fewer where its valence is below the wanted one, one more where it is above. Where both are
 /// equal, the number of faces decides if it is far from the wanted one, or else, where sizes differ, the lengths of the edges.
-fn wish(layer: &Layer, aim: Aim, v: u32) -> Option<Wish> {
-    let shortage = 1.0 - layer.mesh.faces() as f32 / aim.faces;
-    match layer.excess(v).cmp(&0) {
+fn wish(net: &Net, aim: Aim, v: u32) -> Option<Wish> {
+    let shortage = 1.0 - net.mesh.faces() as f32 / aim.faces;
+    match net.excess(v).cmp(&0) {
         Ordering::Less => Some(Wish::OneFewer),
         Ordering::Greater => Some(Wish::OneMore),
         Ordering::Equal if shortage.abs() >= aim.slack => {
             Some(if shortage < 0.0 { Wish::OneFewer } else { Wish::OneMore })
         }
-        Ordering::Equal if layer.is_graded() => match layer.mean_stretch(aim.springs, v) {
+        Ordering::Equal if net.is_graded() => match net.mean_stretch(aim.springs, v) {
             stretch if stretch < CROWDED => Some(Wish::OneFewer),
             stretch if stretch > SPARSE => Some(Wish::OneMore),
             _ => None,

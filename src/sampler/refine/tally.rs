@@ -1,6 +1,6 @@
 //! Sums over the faces of a level.
 
-use super::layer::Layer;
+use super::net::Net;
 use crate::math::SQRT_3;
 use core::ops::Range;
 use glam::Vec3;
@@ -18,40 +18,34 @@ pub(super) struct Tally {
     border: f64,
     /// A corner of the first face that looks against the normal of a corner.
     inverted: Option<Vec3>,
-    /// Twice the area of the widest face, and a corner of it.
-    widest: (f64, Vec3),
 }
 
 impl Tally {
     /// Adds the areas of some faces.
-    pub(super) fn measure(&mut self, layer: &Layer, faces: Range<u32>) {
-        self.border += layer.border_of(faces.clone());
+    pub(super) fn measure(&mut self, net: &Net, faces: Range<u32>) {
+        self.border += net.border_of(faces.clone());
         let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
-        for face in faces.filter_map(|f| layer.mesh.face(f)) {
-            let p = face.map(|v| layer.position[v as usize]);
-            let m = [0, 1, 2].map(|k| layer.middle(face[k], face[(k + 1) % 3]).0);
+        for face in faces.filter_map(|f| net.mesh.face(f)) {
+            let p = face.map(|v| net.position[v as usize]);
+            let m = [0, 1, 2].map(|k| net.middle(face[k], face[(k + 1) % 3]));
             let area = twice(p);
-            if area > self.widest.0 {
-                self.widest = (area, p[0]);
-            }
             self.coarse += area;
             self.fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
-            if layer.is_graded() {
-                let size = f64::from(face.map(|v| layer.size_of(v)).iter().sum::<f32>()) / 3.0;
+            if net.is_graded() {
+                let size = f64::from(face.map(|v| net.size_of(v)).iter().sum::<f32>()) / 3.0;
                 self.cells += 2.0 * area / (SQRT_3 * size * size);
             }
         }
     }
 
     /// Looks at some finished faces.
-    pub(super) fn inspect(&mut self, layer: &Layer, faces: Range<u32>) {
-        for face in faces.filter_map(|f| layer.mesh.face(f)) {
-            let area = layer.area_vector(face);
-            self.coarse += f64::from(area.length());
+    pub(super) fn inspect(&mut self, net: &Net, faces: Range<u32>) {
+        for face in faces.filter_map(|f| net.mesh.face(f)) {
+            let area = net.area_vector(face);
             // Written so that NaN counts.
-            let is_upright = face.iter().all(|&v| area.dot(layer.normal[v as usize]) > 0.0);
+            let is_upright = face.iter().all(|&v| area.dot(net.normal[v as usize]) > 0.0);
             if !is_upright && self.inverted.is_none() {
-                self.inverted = Some(layer.position[face[0] as usize]);
+                self.inverted = Some(net.position[face[0] as usize]);
             }
         }
     }
@@ -79,10 +73,5 @@ impl Tally {
     /// A place where a face looks against the normal of a corner, if there is one.
     pub(super) fn inverted(&self) -> Option<Vec3> {
         self.inverted
-    }
-
-    /// A corner of the widest face.
-    pub(super) fn widest(&self) -> Vec3 {
-        self.widest.1
     }
 }

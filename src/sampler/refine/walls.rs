@@ -1,20 +1,20 @@
-//! The box that cuts a layer, and the faces of it on which the particles lie.
+//! The box that cuts a net, and the planes of it on which the particles lie.
 
 use crate::math::Bounds;
 use glam::Vec3;
 
-/// Particles may be beyond a face by this share of the spacing before they are put back onto it: rounding and the last step of
+/// Particles may be beyond a plane by this share of the spacing before they are put back onto it: rounding and the last step of
 /// Newton's method move one that touches the box.
 const SLACK: f32 = 1e-4;
 
-/// The faces of the box on which a particle lies: bit 2k for the lower face of axis k, bit 2k + 1 for the upper one.
+/// The planes of the box on which a particle lies: bit 2k for the lower plane of axis k, bit 2k + 1 for the upper one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Planes(u8);
 
 impl Planes {
-    /// No face.
+    /// No plane.
     pub(super) const INNER: Self = Self(0);
-    /// Number of faces of a box.
+    /// Number of planes of a box.
     pub(super) const ALL: usize = 6;
 
     pub(super) fn of(plane: usize) -> Self {
@@ -25,7 +25,7 @@ impl Planes {
         self.0 == 0
     }
 
-    /// Number of faces.
+    /// Number of planes.
     pub(super) fn count(self) -> u32 {
         self.0.count_ones()
     }
@@ -34,12 +34,12 @@ impl Planes {
         self.count() > 1
     }
 
-    /// The faces on which both lie.
+    /// The planes on which both lie.
     pub(super) fn common(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// The faces on which one of them lies.
+    /// The planes on which one of them lies.
     pub(super) fn joined(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -55,20 +55,30 @@ impl Planes {
     }
 }
 
-/// The box of a layer, and the faces on which its particles lie.
+/// Where a particle lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Site {
+    pub(super) position: Vec3,
+    /// Outward unit normal of the surface there.
+    pub(super) normal: Vec3,
+    /// The planes of the box on which it lies.
+    pub(super) planes: Planes,
+}
+
+/// The box of a net, and the planes on which its particles lie.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Walls {
     /// The largest box of single-precision numbers in the box that is sampled.
     pub(super) lo: Vec3,
     pub(super) hi: Vec3,
-    /// Largest distance beyond a face from which a particle is put back onto it.
+    /// Largest distance beyond a plane from which a particle is put back onto it.
     pub(super) slack: f32,
-    /// The faces of each particle; empty where no particle is near the box.
+    /// The planes of each particle; empty where no particle is near the box.
     pub(super) planes: Vec<Planes>,
 }
 
 impl Walls {
-    /// The walls around particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond
+    /// The walls around particles none of which lies on a plane yet. It does nothing if none is within a `spacing` of a plane, or beyond
     /// it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
@@ -88,19 +98,19 @@ impl Walls {
         Self { slack: 0.5 * self.slack, planes, ..*self }
     }
 
-    /// Whether particles are near the faces of the box.
+    /// Whether particles are near the planes of the box.
     #[inline]
     pub(super) fn is_near(&self) -> bool {
         !self.planes.is_empty()
     }
 
-    /// The faces on which a particle lies.
+    /// The planes on which a particle lies.
     #[inline]
     pub(super) fn planes(&self, v: u32) -> Planes {
         if self.is_near() { self.planes[v as usize] } else { Planes::INNER }
     }
 
-    /// Sets the faces of a particle, which may be the next new one.
+    /// Sets the planes of a particle, which may be the next new one.
     pub(super) fn set(&mut self, v: u32, planes: Planes) {
         if self.is_near() {
             if self.planes.len() == v as usize {
@@ -114,13 +124,13 @@ impl Walls {
         self.planes.truncate(len);
     }
 
-    /// Distance of a point from a face, negative beyond it.
+    /// Distance of a point from a plane, negative beyond it.
     pub(super) fn depth(&self, p: Vec3, plane: usize) -> f32 {
         let axis = plane / 2;
         if plane.is_multiple_of(2) { p[axis] - self.lo[axis] } else { self.hi[axis] - p[axis] }
     }
 
-    /// The point with the coordinates of the faces.
+    /// The point with the coordinates of the planes.
     pub(super) fn pinned(&self, mut p: Vec3, planes: Planes) -> Vec3 {
         for plane in planes.each() {
             p[plane / 2] = if plane.is_multiple_of(2) { self.lo } else { self.hi }[plane / 2];
@@ -128,18 +138,14 @@ impl Walls {
         p
     }
 
-    pub(super) fn contains(&self, p: Vec3) -> bool {
-        p.cmpge(self.lo).all() && p.cmple(self.hi).all()
-    }
-
-    /// The part of a step that a particle with the normal `n` can make: along the surface and the faces on which it lies.
+    /// The part of a step that a particle with the normal `n` can make: along the surface and the planes on which it lies.
     pub(super) fn along(&self, planes: Planes, n: Vec3, step: Vec3) -> Vec3 {
         let (step, n) = (step * planes.free(), n * planes.free());
         let slide = step - n * (step.dot(n) / n.length_squared());
         if planes.is_corner() || !slide.is_finite() { Vec3::ZERO } else { slide }
     }
 
-    /// Where a particle at `p` comes to lie by one step of Newton's method on its faces: on them to the last bit, and in the box.
+    /// Where a particle at `p` comes to lie by one step of Newton's method on its planes: on them to the last bit, and in the box.
     /// None if the step is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,

@@ -1,6 +1,6 @@
 //! Clipping and surgery along the border are held to the invariants of the mesh and of the walls.
 
-use super::super::layer::{Block, Ground, Layer, Springs};
+use super::super::net::{Block, Ground, Net, Springs};
 use super::super::surgery::{Aim, Surgeon};
 use super::super::tally::Tally;
 use super::super::walls::{Planes, Walls};
@@ -21,7 +21,7 @@ fn saddle() -> Formula {
 }
 
 /// A hexagonal grid over z = 0.3xy that reaches beyond the box, moved by `shift`.
-fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
+fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Net {
     const COLUMNS: u32 = 22;
     let point = |k: u32| {
         let (i, j) = ((k % COLUMNS) as f32, (k / COLUMNS) as f32);
@@ -40,7 +40,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
             if j % 2 == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] }
         })
         .collect();
-    let mut layer = Layer {
+    let mut net = Net {
         mesh: HalfEdges::from_triangles(position.len(), &triangles).expect("a grid is a surface"),
         normal: gradient.iter().map(|g| g.normalize_or_zero()).collect(),
         slots: vec![Slots::default(); position.len()],
@@ -50,27 +50,27 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
     };
     // Formulas are moved to one side: which way is up depends on that.
     let mut tally = Tally::default();
-    tally.inspect(&layer, 0..triangles.len() as u32);
+    tally.inspect(&net, 0..triangles.len() as u32);
     if tally.inverted().is_some() {
-        layer.normal.iter_mut().for_each(|n| *n = -*n);
+        net.normal.iter_mut().for_each(|n| *n = -*n);
     }
-    layer
+    net
 }
 
-/// Holds a layer to what the rest of the refinement relies on.
-fn check(layer: &Layer, bounds: &Bounds) {
-    layer.mesh.check().expect("a manifold");
-    assert_eq!(layer.walls.planes.len(), layer.position.len());
-    for v in (0..layer.position.len() as u32).filter(|&v| layer.mesh.has_vertex(v)) {
-        let (p, planes) = (layer.position[v as usize], layer.walls.planes(v));
+/// Holds a net to what the rest of the refinement relies on.
+fn check(net: &Net, bounds: &Bounds) {
+    net.mesh.check().expect("a manifold");
+    assert_eq!(net.walls.planes.len(), net.position.len());
+    for v in (0..net.position.len() as u32).filter(|&v| net.mesh.has_vertex(v)) {
+        let (p, planes) = (net.position[v as usize], net.walls.planes(v));
         assert!(bounds.contains(p), "particle {v} at {p} is outside");
-        assert_eq!(layer.walls.pinned(p, planes), p, "particle {v} at {p} is off its faces");
-        assert_eq!(layer.mesh.is_border(v), !planes.is_inner(), "particle {v} at {p}: {planes:?}");
-        assert!(!layer.has_face_along_border(v), "particle {v} at {p} has a triangle along the border");
+        assert_eq!(net.walls.pinned(p, planes), p, "particle {v} at {p} is off its planes");
+        assert_eq!(net.mesh.is_border(v), !planes.is_inner(), "particle {v} at {p}: {planes:?}");
+        assert!(!net.has_face_along_border(v), "particle {v} at {p} has a triangle along the border");
     }
-    for h in layer.mesh.edges().filter(|&h| layer.mesh.twin(h) == NONE) {
-        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.walls.planes(v));
-        assert!(!a.common(b).is_inner(), "a border edge runs between different faces");
+    for h in net.mesh.edges().filter(|&h| net.mesh.twin(h) == NONE) {
+        let [a, b] = [net.mesh.origin(h), net.mesh.target(h)].map(|v| net.walls.planes(v));
+        assert!(!a.common(b).is_inner(), "a border edge runs between different planes");
     }
 }
 
@@ -97,7 +97,7 @@ fn particles_slide_along_faces_and_corners_stay() {
     let step = walls.along(Planes::of(1), n, Vec3::ONE);
     assert!(step.x == 0.0 && step.dot(n).abs() < 1e-6 && step.length() > 0.5, "{step}");
     assert_eq!(walls.along(Planes::of(1).joined(Planes::of(5)), n, Vec3::ONE), Vec3::ZERO);
-    // The curve in the face is where f = y − 0.25 vanishes.
+    // The curve in the plane is where f = y − 0.25 vanishes.
     let landing = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1);
     assert_eq!(landing, Some(Vec3::new(1.0, 0.25, 0.2)));
     let too_far = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01);
@@ -117,46 +117,46 @@ proptest! {
     ) {
         let bounds = Bounds::symmetric([half[0], half[1], 1.0]);
         let mut field = saddle();
-        let mut layer = grid(&mut field, &bounds, shift);
+        let mut net = grid(&mut field, &bounds, shift);
         let mut block = Block::default();
         let mut memory = ProbeMemory::default();
         let mut probe = Probe::new(&mut field, &mut memory);
         let mut ground = Ground { probe: &mut probe, block: &mut block };
-        clip(&mut layer, &mut ground, SPACING).expect("the saddle can be clipped");
-        check(&layer, &bounds);
-        prop_assert_eq!(layer.mesh.euler(), 1);
-        let corners = |layer: &Layer| {
-            let vertices = 0..layer.position.len() as u32;
-            vertices.filter(|&v| layer.mesh.has_vertex(v) && layer.walls.planes(v).is_corner()).count()
+        clip(&mut net, &mut ground, SPACING).expect("the saddle can be clipped");
+        check(&net, &bounds);
+        prop_assert_eq!(net.mesh.euler(), 1);
+        let corners = |net: &Net| {
+            let vertices = 0..net.position.len() as u32;
+            vertices.filter(|&v| net.mesh.has_vertex(v) && net.walls.planes(v).is_corner()).count()
         };
-        prop_assert_eq!(corners(&layer), 4);
+        prop_assert_eq!(corners(&net), 4);
 
         let mut surgeon = Surgeon::default();
         for (place, size) in places {
             let springs = Springs { spacing: SPACING * size, theta: 0.8, omega: 1.5 };
-            let faces = layer.mesh.faces() as f32;
+            let faces = net.mesh.faces() as f32;
             let aim = Aim { springs, delta: 0.03, faces, slack: f32::INFINITY, loss: 0.0 };
-            let v = place % layer.position.len() as u32;
-            surgeon.mend(&mut layer, &mut ground, aim, v);
-            layer.relax(&mut ground, springs, 0..v);
-            layer.flip(0..layer.mesh.half_edge_slots() as u32);
+            let v = place % net.position.len() as u32;
+            surgeon.mend(&mut net, &mut ground, aim, v);
+            net.relax(&mut ground, springs, 0..v);
+            net.flip(0..net.mesh.half_edge_slots() as u32);
         }
-        check(&layer, &bounds);
-        prop_assert_eq!(layer.mesh.euler(), 1);
-        prop_assert_eq!(corners(&layer), 4);
+        check(&net, &bounds);
+        prop_assert_eq!(net.mesh.euler(), 1);
+        prop_assert_eq!(corners(&net), 4);
 
         // As if the particles were to be farther apart: most edges of the border are crowded.
         let far = 1.8 * SPACING;
-        let crowded = |layer: &Layer| -> Vec<u32> {
-            (0..layer.mesh.half_edge_slots() as u32).filter(|&h| layer.is_crowded(h, far)).collect()
+        let crowded = |net: &Net| -> Vec<u32> {
+            (0..net.mesh.half_edge_slots() as u32).filter(|&h| net.is_crowded(h, far)).collect()
         };
-        let mut found = crowded(&layer);
+        let mut found = crowded(&net);
         let before = found.len();
         prop_assert!(before > 0);
-        layer.thin(&mut found, far);
-        check(&layer, &bounds);
-        prop_assert_eq!(layer.mesh.euler(), 1);
-        prop_assert_eq!(corners(&layer), 4);
-        prop_assert!(crowded(&layer).len() < before);
+        net.thin(&mut found, far);
+        check(&net, &bounds);
+        prop_assert_eq!(net.mesh.euler(), 1);
+        prop_assert_eq!(corners(&net), 4);
+        prop_assert!(crowded(&net).len() < before);
     }
 }

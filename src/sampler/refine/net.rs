@@ -1,6 +1,6 @@
 //! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
 
-use super::walls::{Planes, Walls};
+use super::walls::{Site, Walls};
 use crate::differential::Curvature;
 use crate::mesh::half_edge::{HalfEdges, NONE, previous};
 use crate::particles::Slots;
@@ -10,11 +10,12 @@ use glam::Vec3;
 /// Particles that are brought back onto the surface together: the field is evaluated in lanes.
 pub(super) const BLOCK: usize = 64;
 
-/// No move is longer than this share of the spacing.
+/// No move is longer than this share of the spacing. Without a limit ten times as many triangles have an angle above 90° where sizes
+/// differ.
 const MAX_MOVE: f32 = 0.3;
 /// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was.
 const MAX_CORRECTION: f32 = 0.5;
-/// A move that turns the normal by more than 72° is taken back: it has crossed to another sheet.
+/// A move that turns the normal by more than 72° is taken back: it has crossed to another sheet, or to the other side of its own.
 const MIN_AGREEMENT: f32 = 0.3;
 /// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
 const FLIP_SLACK: f32 = 1e-5;
@@ -74,7 +75,7 @@ impl Block {
 
 /// Particles and the surface between them. Vertex `v` of the surface is particle `v` of every column.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layer {
+pub(super) struct Net {
     pub(super) mesh: HalfEdges,
     pub(super) position: Vec<Vec3>,
     pub(super) normal: Vec<Vec3>,
@@ -82,12 +83,12 @@ pub(super) struct Layer {
     pub(super) slots: Vec<Slots>,
     /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
     pub(super) size: Vec<f32>,
-    /// The box, and the faces of it on which the particles lie.
+    /// The box, and the planes of it on which the particles lie.
     pub(super) walls: Walls,
 }
 
-impl Layer {
-    /// A layer over the surface with columns still to be filled.
+impl Net {
+    /// A net over the surface with columns still to be filled.
     pub(super) fn with_room(mesh: HalfEdges, count: usize) -> Self {
         Self {
             mesh,
@@ -130,15 +131,15 @@ impl Layer {
         let rest = springs.rest();
         // The second derivative of the energy, averaged over all directions, is this per neighbour.
         let stiffness = 1.0 - 0.5 * springs.theta;
-        self.shift(ground, springs.spacing, particles, |layer, v| {
-            let p = layer.position[v as usize];
+        self.shift(ground, springs.spacing, particles, |net, v| {
+            let p = net.position[v as usize];
             let (mut force, mut degree) = (Vec3::ZERO, 0.0_f32);
-            for other in layer.mesh.neighbours(v) {
-                let offset = p - layer.position[other as usize];
-                force += offset * (rest * layer.size_between(v, other) / offset.length() - 1.0);
+            for other in net.mesh.neighbours(v) {
+                let offset = p - net.position[other as usize];
+                force += offset * (rest * net.size_between(v, other) / offset.length() - 1.0);
                 degree += 1.0;
             }
-            force * (springs.omega / (degree * stiffness)) * layer.pace(v)
+            force * (springs.omega / (degree * stiffness))
         });
     }
 
@@ -161,12 +162,8 @@ impl Layer {
         springs: Springs,
         particles: impl Iterator<Item = u32>,
     ) {
-        self.shift(ground, springs.spacing, particles, |layer, v| {
-            if layer.mesh.is_border(v) {
-                layer.way_along_border(v)
-            } else {
-                layer.way_to_centre(v) * springs.omega
-            }
+        self.shift(ground, springs.spacing, particles, |net, v| {
+            if net.mesh.is_border(v) { net.way_along_border(v) } else { net.way_to_centre(v) * springs.omega }
         });
     }
 
@@ -239,7 +236,7 @@ impl Layer {
     }
 
     /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
-    /// faces of the box on which they lie. Those that could not be go back to where they were.
+    /// planes of the box on which they lie. Those that could not be go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32) {
         let Block { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
@@ -324,80 +321,78 @@ impl Layer {
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
     }
 
-    /// The middle of the edge between two particles, lifted to the circle through them with their normals; and its normal.
-    pub(super) fn middle(&self, a: u32, b: u32) -> (Vec3, Vec3) {
-        let (p, n) = (self.position[a as usize], self.normal[a as usize]);
-        let (q, m) = (self.position[b as usize], self.normal[b as usize]);
-        let up = (n + m).normalize_or(n);
-        ((p + q) * 0.5 + up * (0.125 * (q - p).dot(m - n)), up)
+    /// Where a particle lies.
+    pub(super) fn site(&self, v: u32) -> Site {
+        Site {
+            position: self.position[v as usize],
+            normal: self.normal[v as usize],
+            planes: self.walls.planes(v),
+        }
     }
 
-    /// Difference between a particle's valence and the valence of a particle without a defect at that place.
+    /// Outward unit normal between two particles.
+    fn normal_between(&self, a: u32, b: u32) -> Vec3 {
+        let [n, m] = [a, b].map(|v| self.normal[v as usize]);
+        (n + m).normalize_or(n)
+    }
+
+    /// The middle of the edge between two particles, lifted to the circle through them with their normals.
+    pub(super) fn middle(&self, a: u32, b: u32) -> Vec3 {
+        let [p, q] = [a, b].map(|v| self.position[v as usize]);
+        let turn = self.normal[b as usize] - self.normal[a as usize];
+        (p + q) * 0.5 + self.normal_between(a, b) * (0.125 * (q - p).dot(turn))
+    }
+
+    /// Where a particle lies that halves the edge between two others.
+    pub(super) fn halfway(&self, a: u32, b: u32) -> Site {
+        Site {
+            position: self.middle(a, b),
+            normal: self.normal_between(a, b),
+            planes: self.planes_between(a, b),
+        }
+    }
+
+    /// Difference between a particle's valence and that of a particle without a defect: six, and four on the border, where three
+    /// triangles of 60° fill the half-plane.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
-        /// The valence of an inner particle without a defect.
-        const SIX: i32 = 6;
-        let valence = self.mesh.valence(v) as i32;
-        if self.walls.is_near() && self.mesh.is_border(v) {
-            valence - self.wanted_at_border(v)
-        } else {
-            valence - SIX
-        }
+        let wanted = if self.walls.is_near() && self.mesh.is_border(v) { 4 } else { 6 };
+        self.mesh.valence(v) as i32 - wanted
     }
 
-    /// Place and faces of the particle into which two are merged, `a` into `b`: in the middle of two of a kind, else where that
-    /// stays which is bound to more faces.
-    pub(super) fn merged(&self, a: u32, b: u32) -> (Vec3, Planes) {
-        let [p, q] = [a, b].map(|v| self.position[v as usize]);
-        let [m, n] = [a, b].map(|v| self.walls.planes(v));
-        if m == n {
-            ((p + q) * 0.5, n)
-        } else if m.count() > n.count() {
-            (p, m)
-        } else {
-            (q, n)
-        }
+    /// Where that one of two particles lies which is bound to more planes, `b` if they are bound to as many.
+    pub(super) fn more_bound(&self, a: u32, b: u32) -> Site {
+        let [first, second] = [a, b].map(|v| self.site(v));
+        if first.planes.count() > second.planes.count() { first } else { second }
     }
 
-    /// Puts a particle, which may be the next new one, to a place on some faces.
-    pub(super) fn put(&mut self, v: u32, position: Vec3, normal: Vec3, planes: Planes) {
+    /// Puts a particle, which may be the next new one, to a site.
+    pub(super) fn put(&mut self, v: u32, site: Site) {
         if self.position.len() == v as usize {
-            self.position.push(position);
-            self.normal.push(normal);
+            self.position.push(site.position);
+            self.normal.push(site.normal);
             self.slots.push(Slots::default());
             if self.is_graded() {
                 self.size.push(1.0);
             }
         }
-        self.position[v as usize] = position;
-        self.normal[v as usize] = normal;
-        self.walls.set(v, planes);
+        self.position[v as usize] = site.position;
+        self.normal[v as usize] = site.normal;
+        self.walls.set(v, site.planes);
     }
 
     /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between two particles of that, or the old
     /// one v where the ends are `[v, NONE]`.
     pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2]) {
-        let (position, normal, slots, size, planes) = match ends {
-            [old, NONE] => {
-                let v = old as usize;
-                (
-                    coarse.position[v],
-                    coarse.normal[v],
-                    coarse.slots[v],
-                    coarse.size_of(old),
-                    coarse.walls.planes(old),
-                )
-            }
-            [a, b] => {
-                let (position, normal) = coarse.middle(a, b);
-                (position, normal, Slots::default(), coarse.size_between(a, b), coarse.planes_between(a, b))
-            }
+        let (site, slots, size) = match ends {
+            [old, NONE] => (coarse.site(old), coarse.slots[old as usize], coarse.size_of(old)),
+            [a, b] => (coarse.halfway(a, b), Slots::default(), coarse.size_between(a, b)),
         };
-        self.position.push(self.walls.pinned(position, planes));
-        self.normal.push(normal);
+        self.position.push(self.walls.pinned(site.position, site.planes));
+        self.normal.push(site.normal);
         self.slots.push(slots);
         self.size.extend(coarse.is_graded().then_some(size));
-        self.walls.planes.extend(coarse.walls.is_near().then_some(planes));
+        self.walls.planes.extend(coarse.walls.is_near().then_some(site.planes));
     }
 
     /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
