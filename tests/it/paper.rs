@@ -387,9 +387,9 @@ fn what_cannot_be_followed_is_refused_in_words() {
     assert!(refused(settings!(radius_min: 0.5; ..adaptive())).starts_with("radius_min is 0.5"));
     let tiny = settings!(law_scale: 1e-3, radius_min: 1e-3; ..adaptive());
     assert!(refused(tiny).contains("choose radii"));
-    // The radius that the message names is accepted.
-    let named: f64 = words.split(' ').rev().nth(2).and_then(|word| word.parse().ok()).expect("a radius");
-    assert!(start("sphere", &settings!(radius: named; ..Settings::default())).is_ok(), "{words}");
+    // The factor that the message names is large enough.
+    let factor: f64 = words.split(' ').rev().nth(3).and_then(|word| word.parse().ok()).expect("a factor");
+    assert!(start("sphere", &settings!(radius: 0.005 * factor; ..Settings::default())).is_ok(), "{words}");
 }
 
 #[test]
