@@ -90,21 +90,21 @@ pub(super) const TUNING: Tuning = Tuning {
     // 20 rounds take a tenth longer, and the share of particles with six neighbours changes by less than 0.1 points. With δ = 0.02 and
     // no loss it is 0.2 points lower on closed surfaces.
     first: Plan { sweeps: 10, rounds: 16, calm: 3, theta: 0.8, delta: 0.03, loss: 0.03 },
-    // With θ = 0.8 holes are 1 % wider. Half as many rounds with one sweep each cost 0.1° where several such levels follow each other.
+    // With θ = 0.8 and half the δ holes are 1 % wider.
     between: Plan { sweeps: 4, rounds: 10, calm: 2, theta: 0.9, delta: 0.015, loss: 0.06 },
     // θ without a defect, before the limits below.
     last: Plan { sweeps: 6, rounds: 0, calm: 0, theta: 1.3, delta: 0.0, loss: 0.0 },
     // So that the last three rounds of ten regain what losses have left.
     losing: 0.7,
-    // Beyond 1.6 sweeps with flips do not come to rest.
+    // Half-way from 1, where sweeps are slow, to 2, where those of a quadratic energy diverge.
     omega: 1.5,
     // The limits below then hold for one defect in a hundred particles and for one in forty.
     theta_per_defect: 30.0,
-    // With θ below it angles gain nothing more.
+    // The least that was tried.
     least_theta: 0.6,
-    // With θ = 0.9 everywhere pairs are at 0.80 and angles of 57.0°; with 0.7 at 0.75 and of 57.5°.
+    // Pairs are at 0.81 and angles of 56.8° with this everywhere on closed surfaces, at 0.79 and of 57.2° with 0.7.
     most_theta: 0.98,
-    // Without, pairs are at 0.75 in place of 0.80. A third step makes the smallest angle of all 0.4° smaller.
+    // Three bring pairs from 0.79 to 0.81 at θ = 0.9, for 0.2°; the third makes the smallest angle of all 0.4° smaller.
     lloyd: 2,
     // A front may leave fives only, and none would be inserted. Without, 0.2 points fewer have six neighbours.
     slack: 0.002,
