@@ -116,7 +116,7 @@ export class Columns {
   }
 
   /** Grows the columns to hold at least `n` particles and keeps their contents. @param {number} n */
-  reserve(n) {
+  #reserve(n) {
     if (n <= this.radii.length) return;
     const room = Math.max(n, 2 * this.radii.length, 1024);
     this.positions = grown(this.positions, 3 * room);
@@ -138,7 +138,7 @@ export class Columns {
     const { first, total } = range;
     if (first > this.count || first + n > total || range.positions.length !== 3 * n || range.normals.length !== 3 * n)
       return false;
-    this.reserve(total);
+    this.#reserve(total);
     this.positions.set(range.positions, 3 * first);
     if (range.exact?.length) {
       if (this.exact.length === 0) this.exact = new Float64Array(this.positions.length);

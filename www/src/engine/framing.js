@@ -16,6 +16,20 @@ import { effect } from '@preact/signals-core';
 const TYPING_MS = 900;
 
 export class Framing {
+  #store;
+  #columns;
+  #viewer;
+
+  /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
+  #writtenMs;
+
+  /** Whether the formula was typed, which keeps the camera where it is as long as the formula has no surface. */
+  #isTyped;
+
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #timer;
+  #effects;
+
   /**
    * @param {object} parts
    * @param {Store} parts.store
@@ -23,25 +37,23 @@ export class Framing {
    * @param {Viewer} parts.viewer
    */
   constructor({ store, columns, viewer }) {
-    this.store = store;
-    this.columns = columns;
-    this.viewer = viewer;
-    /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
-    this.writtenMs = NaN;
-    /** Whether the formula was typed, which keeps the camera where it is as long as the formula has no surface. */
-    this.isTyped = false;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this.timer = undefined;
+    this.#store = store;
+    this.#columns = columns;
+    this.#viewer = viewer;
+    this.#writtenMs = NaN;
+    this.#isTyped = false;
+    this.#timer = undefined;
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
-    this.effects = [
+    this.#effects = [
       effect(() => {
-        if (!this.rests() || Number.isNaN(this.writtenMs) || this.waits()) return;
+        if (!this.#rests() || Number.isNaN(this.#writtenMs) || this.#waits()) return;
         this.hold();
         // The camera waits for a pause in typing, so that the picture does not move with every key. A link is whole at
         // once.
-        if (this.isTyped) this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
-        else queueMicrotask(() => this.come());
+        if (this.#isTyped)
+          this.#timer = setTimeout(() => this.#come(), this.#writtenMs + TYPING_MS - performance.now());
+        else queueMicrotask(() => this.#come());
       }),
       effect(() => {
         // Without a surface the camera shows the box. It returns to the surface when there is one again.
@@ -49,51 +61,51 @@ export class Framing {
         const rests = !store.busy.value && !store.progress.value.live;
         if (!rests || none === boxShown) return;
         boxShown = none;
-        queueMicrotask(() => this.fit());
+        queueMicrotask(() => this.#fit());
       }),
     ];
   }
 
   /** Notes that the formula changed or a link was read. @param {{typed: boolean}} how */
   written({ typed }) {
-    this.writtenMs = performance.now();
-    this.isTyped = typed;
+    this.#writtenMs = performance.now();
+    this.#isTyped = typed;
   }
 
   /**
    * Returns whether the camera waits for a surface: the last one stays in the picture while a formula without one is
    * typed, and the camera stays with it.
    */
-  waits() {
-    return this.isTyped && this.columns.stale;
+  #waits() {
+    return this.#isTyped && this.#columns.stale;
   }
 
   /** Cancels the fit that the text typed so far would cause. */
   hold() {
-    clearTimeout(this.timer);
+    clearTimeout(this.#timer);
   }
 
-  come() {
-    if (!this.rests() || this.waits()) return;
-    this.writtenMs = NaN;
-    this.fit();
+  #come() {
+    if (!this.#rests() || this.#waits()) return;
+    this.#writtenMs = NaN;
+    this.#fit();
   }
 
-  fit() {
-    if (this.viewer.camera.state.fit) this.viewer.fit();
+  #fit() {
+    if (this.#viewer.camera.state.fit) this.#viewer.fit();
   }
 
   /**
    * Returns whether no run is active and the last one has a report or found no surface. A faulty formula makes no
    * difference: the surface still shown may come from an earlier state of the same text.
    */
-  rests() {
-    const { busy, report, empty } = this.store;
+  #rests() {
+    const { busy, report, empty } = this.#store;
     return !busy.value && (report.value !== null || empty.value);
   }
 
   close() {
     this.hold();
-    for (const stop of this.effects) stop();
+    for (const stop of this.#effects) stop();
   }
 }

@@ -30,6 +30,12 @@ const spawnSolver = () =>
 
 export class Runs {
   /**
+   * Timer of the run that starts when a control or the typing pauses.
+   * @type {ReturnType<typeof setTimeout> | undefined}
+   */
+  #timer;
+
+  /**
    * @param {object} parts
    * @param {Store} parts.store
    * @param {Columns} parts.columns
@@ -38,21 +44,17 @@ export class Runs {
    */
   constructor({ store, columns, picture, onReady }) {
     this.store = store;
-    /**
-     * Timer of the run that starts when a control or the typing pauses.
-     * @type {ReturnType<typeof setTimeout> | undefined}
-     */
-    this.timer = undefined;
+    this.#timer = undefined;
     this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (options) => this.resample(options) });
     this.sampling = new Sampler({
       store,
       columns,
       picture,
       spawn: spawnSampler,
-      whole: () => this.request(),
+      whole: () => this.#request(),
       solved: (key) => this.loader.client.get(key),
       onReady,
-      onAsk: (predicted, asked) => this.askSize(predicted, asked),
+      onAsk: (predicted, asked) => this.#askSize(predicted, asked),
     });
   }
 
@@ -61,7 +63,7 @@ export class Runs {
    * @param {Partial<SampleRequest>} [options]
    * @returns {SampleRequest}
    */
-  request(options = {}) {
+  #request(options = {}) {
     const { loader } = this;
     const about = description(this.store);
     const state = loader.present();
@@ -78,14 +80,14 @@ export class Runs {
 
   /** Samples the present state. @param {RunOptions} [options] */
   resample(options = {}) {
-    if (this.begin(options)) this.sampling.sample(this.request(options));
+    if (this.#begin(options)) this.sampling.sample(this.#request(options));
   }
 
   /** Samples the present state during a drag, coarsely if necessary, and fully once the drag pauses. */
   resampleLive() {
-    if (!this.begin({})) return;
-    this.sampling.sampleLive(this.request(), this.diagonal());
-    this.timer = setTimeout(() => this.sampling.sample(this.request()), REST_MS);
+    if (!this.#begin({})) return;
+    this.sampling.sampleLive(this.#request(), this.#diagonal());
+    this.#timer = setTimeout(() => this.sampling.sample(this.#request()), REST_MS);
   }
 
   /**
@@ -101,12 +103,12 @@ export class Runs {
   /** Does the same after a pause, unless another request comes first. @param {number} pauseMs */
   chooseLater(pauseMs) {
     this.forgetLater();
-    this.timer = setTimeout(() => this.choose(), pauseMs);
+    this.#timer = setTimeout(() => this.choose(), pauseMs);
   }
 
   /** Cancels the run that waits for a pause. */
   forgetLater() {
-    clearTimeout(this.timer);
+    clearTimeout(this.#timer);
   }
 
   stop() {
@@ -119,7 +121,7 @@ export class Runs {
    * Returns whether the state can be sampled now. If its model is not solved yet, the solution is started.
    * @param {RunOptions} options
    */
-  begin(options) {
+  #begin(options) {
     this.forgetLater();
     this.store.spot.value = null;
     const { loader } = this;
@@ -133,7 +135,7 @@ export class Runs {
   }
 
   /** Returns the diagonal of the present clip box. */
-  diagonal() {
+  #diagonal() {
     const { state, field } = this.store;
     const bounds = state.value.bounds ?? field.value?.bounds;
     return bounds ? Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k])) : 0;
@@ -144,7 +146,7 @@ export class Runs {
    * @param {number} predicted
    * @param {SampleRequest} asked
    */
-  askSize(predicted, asked) {
+  #askSize(predicted, asked) {
     const { store } = this;
     const limit = Number(asked.settings.max_particles);
     const raised = Math.ceil(predicted * description(store).limits.count_room);
@@ -158,7 +160,7 @@ export class Runs {
           store.notice.value = null;
           const maxParticles = validSetting(description(store), 'max_particles', raised) ?? limit;
           change(store, { settings: { ...store.state.value.settings, max_particles: maxParticles } });
-          this.sampling.sample(this.request({ confirmed: true, grow: true }));
+          this.sampling.sample(this.#request({ confirmed: true, grow: true }));
         },
       },
     };

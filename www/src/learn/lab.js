@@ -35,25 +35,33 @@ export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', re
 export class NoSurface extends Error {}
 
 export class Lab {
+  #open;
+
+  /** @type {Map<string, Promise<LabRun>>} */
+  #runs;
+
+  /** @type {Map<number, Promise<number>>} */
+  #radii;
+
+  /**
+   * Runs follow one another, so that a page of figures keeps one processor busy and not all.
+   * @type {Promise<unknown>}
+   */
+  #last;
+
   /** @param {FormulaSurface} surface @param {() => Promise<LessonClient>} open */
   constructor(surface, open) {
     this.surface = surface;
-    this.open = open;
-    /** @type {Map<string, Promise<LabRun>>} */
-    this.runs = new Map();
-    /** @type {Map<number, Promise<number>>} */
-    this.radii = new Map();
-    /**
-     * Runs follow one another, so that a page of figures keeps one processor busy and not all.
-     * @type {Promise<unknown>}
-     */
-    this.last = Promise.resolve();
+    this.#open = open;
+    this.#runs = new Map();
+    this.#radii = new Map();
+    this.#last = Promise.resolve();
   }
 
   /** @template T @param {() => Promise<T>} job @returns {Promise<T>} */
-  queued(job) {
-    const done = this.last.then(job, job);
-    this.last = done.catch(() => {});
+  #queued(job) {
+    const done = this.#last.then(job, job);
+    this.#last = done.catch(() => {});
     return done;
   }
 
@@ -63,18 +71,18 @@ export class Lab {
    * @returns {Promise<number>}
    */
   radiusFor(particles) {
-    const known = this.radii.get(particles);
+    const known = this.#radii.get(particles);
     if (known) return known;
-    const found = this.queued(() => this.searchRadius(particles));
-    this.radii.set(particles, found);
-    found.catch(() => this.radii.delete(particles));
+    const found = this.#queued(() => this.#searchRadius(particles));
+    this.#radii.set(particles, found);
+    found.catch(() => this.#radii.delete(particles));
     return found;
   }
 
   /** @param {number} particles */
-  async searchRadius(particles) {
+  async #searchRadius(particles) {
     const { min, max } = this.surface.bounds;
-    const client = await this.open();
+    const client = await this.#open();
     let radius = TRIAL * Math.hypot(...max.map((m, k) => m - min[k]));
     try {
       for (let trial = 0; trial < MOST_TRIALS; trial += 1) {
@@ -102,11 +110,11 @@ export class Lab {
     const radius = change.radius ?? (await this.radiusFor(particles));
     const settings = { ...USUAL, ...change, radius };
     const key = JSON.stringify([settings, keep]);
-    const known = this.runs.get(key);
+    const known = this.#runs.get(key);
     if (known) return known;
-    const made = this.queued(() => this.make(settings, radius, keep));
-    this.runs.set(key, made);
-    made.catch(() => this.runs.delete(key));
+    const made = this.#queued(() => this.#make(settings, radius, keep));
+    this.#runs.set(key, made);
+    made.catch(() => this.#runs.delete(key));
     return made;
   }
 
@@ -128,8 +136,8 @@ export class Lab {
    * @param {Partial<LessonSettings>} settings @param {number} radius @param {boolean} keep
    * @returns {Promise<LabRun>}
    */
-  async make(settings, radius, keep) {
-    const client = await this.open();
+  async #make(settings, radius, keep) {
+    const client = await this.#open();
     try {
       const progress = await client.start(this.surface, settings);
       const chapters = await client.ask('chapters', { first: 0 });

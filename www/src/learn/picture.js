@@ -42,12 +42,14 @@ addEventListener('afterprint', () => {
 
 /** A camera that one or several pictures share. */
 export class Orbit {
+  #home;
+
   /** @param {Bounds} bounds */
   constructor(bounds) {
     this.ball = ballOf(bounds);
     this.camera = new Camera();
     this.camera.calm = true;
-    this.home = { ...this.camera.state };
+    this.#home = { ...this.camera.state };
     this.camera.fit(this.ball, true);
     /** Counts the changes. */
     this.turned = signal(0);
@@ -79,13 +81,21 @@ export class Orbit {
 
   reset() {
     this.change((camera) => {
-      camera.set(this.home);
+      camera.set(this.#home);
       camera.fit(this.ball, true);
     });
   }
 }
 
 export class Picture {
+  #name;
+
+  /** @type {((particle: number) => void) | null} */
+  #onPick;
+  #canvas;
+  #size;
+  #frame;
+
   /**
    * @param {Orbit} orbit
    * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: what the picture shows, for those who
@@ -93,47 +103,46 @@ export class Picture {
    */
   constructor(orbit, { name, onPick }) {
     this.orbit = orbit;
-    this.name = name;
-    /** @type {((particle: number) => void) | null} */
-    this.onPick = null;
+    this.#name = name;
+    this.#onPick = null;
     /** @type {Signal<Scene | null>} */
     this.scene = signal(null);
-    this.canvas = h('canvas', { class: 'picture-canvas' });
-    this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.canvas);
+    this.#canvas = h('canvas', { class: 'picture-canvas' });
+    this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.#canvas);
     this.pickWith(onPick ?? null);
-    const context = this.canvas.getContext('2d');
-    this.painter = context ? new Painter(this.canvas, context) : null;
-    this.size = signal({ width: 0, height: 0 });
-    this.frame = 0;
-    const observer = new ResizeObserver(() => this.measure());
+    const context = this.#canvas.getContext('2d');
+    this.painter = context ? new Painter(this.#canvas, context) : null;
+    this.#size = signal({ width: 0, height: 0 });
+    this.#frame = 0;
+    const observer = new ResizeObserver(() => this.#measure());
     observer.observe(this.element);
     endsWith(this.element, () => observer.disconnect());
     live(this.element, () => {
-      void [this.scene.value, this.size.value, this.orbit.turned.value, isDark.value];
+      void [this.scene.value, this.#size.value, this.orbit.turned.value, isDark.value];
       // Printing does not wait for a frame.
-      if (printing.value) this.draw();
-      else this.ask();
+      if (printing.value) this.#draw();
+      else this.#ask();
     });
-    this.listen();
+    this.#listen();
   }
 
   /** @param {((particle: number) => void) | null} onPick */
   pickWith(onPick) {
-    this.onPick = onPick;
+    this.#onPick = onPick;
     const keys = onPick ? 'Arrow keys turn it, Enter chooses the particle in the middle.' : 'Arrow keys turn it.';
-    this.element.setAttribute('aria-label', `${this.name}. ${keys}`);
+    this.element.setAttribute('aria-label', `${this.#name}. ${keys}`);
   }
 
-  measure() {
+  #measure() {
     const { clientWidth: width, clientHeight: height } = this.element;
-    const old = this.size.peek();
-    if (width !== old.width || height !== old.height) this.size.value = { width, height };
+    const old = this.#size.peek();
+    if (width !== old.width || height !== old.height) this.#size.value = { width, height };
   }
 
-  ask() {
-    this.frame ||= requestAnimationFrame(() => {
-      this.frame = 0;
-      this.draw();
+  #ask() {
+    this.#frame ||= requestAnimationFrame(() => {
+      this.#frame = 0;
+      this.#draw();
     });
   }
 
@@ -142,14 +151,14 @@ export class Picture {
     this.scene.value = scene;
   }
 
-  view() {
-    const { width, height } = this.size.peek();
+  #view() {
+    const { width, height } = this.#size.peek();
     return viewOf(this.orbit.camera.state, width, height, this.orbit.ball);
   }
 
-  draw() {
+  #draw() {
     const scene = this.scene.peek();
-    const { width, height } = this.size.peek();
+    const { width, height } = this.#size.peek();
     if (!scene || !this.painter || width === 0 || height === 0) return;
     const { painter } = this;
     const { particles } = scene;
@@ -161,17 +170,17 @@ export class Picture {
     painter.write(0, positions, normals, radii, levels, scene.colours(palette), -Infinity);
     painter.set_count(scene.count ?? radii.length);
     painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
-    const view = this.view();
+    const view = this.#view();
     painter.set_view(view.packed);
     // The ground is left out, so that the picture stands on that of the page or of the paper.
     painter.draw(0, true);
-    this.drawMarks(painter.context, scene.marks ?? [], view);
+    this.#drawMarks(painter.context, scene.marks ?? [], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }
 
   /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {View} view */
-  drawMarks(context, marks, view) {
-    const { width, height } = this.size.peek();
+  #drawMarks(context, marks, view) {
+    const { width, height } = this.#size.peek();
     const style = getComputedStyle(this.element);
     context.lineWidth = 2 * FINENESS;
     for (const { place, normal, radius, kind } of marks) {
@@ -193,12 +202,12 @@ export class Picture {
   }
 
   /** The particle under a point of the picture; null if there is none. @param {number} xPx @param {number} yPx */
-  pick(xPx, yPx) {
+  #pick(xPx, yPx) {
     const scene = this.scene.peek();
     if (!scene) return null;
     const { positions, normals, radii } = scene.particles;
-    const { width, height } = this.size.peek();
-    const view = this.view();
+    const { width, height } = this.#size.peek();
+    const view = this.#view();
     let best = null;
     let nearest = Infinity;
     for (let i = 0; i < (scene.count ?? radii.length); i += 1) {
@@ -212,7 +221,7 @@ export class Picture {
     return best;
   }
 
-  listen() {
+  #listen() {
     const { element, orbit } = this;
     /** @type {{ x: number, y: number, moved: number } | null} */
     let held = null;
@@ -225,36 +234,36 @@ export class Picture {
       if (!held) return;
       const [dx, dy] = [clientX - held.x, clientY - held.y];
       held = { x: clientX, y: clientY, moved: held.moved + Math.abs(dx) + Math.abs(dy) };
-      const scale = DRAG_RAD / Math.max(1, this.size.peek().height);
+      const scale = DRAG_RAD / Math.max(1, this.#size.peek().height);
       if (held.moved > PRESS_PX) orbit.change((camera) => camera.orbit(dx * scale, dy * scale));
     });
     element.addEventListener('pointerup', ({ clientX, clientY }) => {
       const isPress = held !== null && held.moved <= PRESS_PX;
       held = null;
       const box = element.getBoundingClientRect();
-      if (isPress) this.choose(clientX - box.left, clientY - box.top);
+      if (isPress) this.#choose(clientX - box.left, clientY - box.top);
     });
     element.addEventListener('pointercancel', () => {
       held = null;
     });
     element.addEventListener('dblclick', () => {
-      if (!this.onPick) orbit.reset();
+      if (!this.#onPick) orbit.reset();
     });
     element.addEventListener('keydown', (event) => {
-      if (event.ctrlKey || event.metaKey || event.altKey || !this.press(event.key)) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || !this.#press(event.key)) return;
       event.preventDefault();
       event.stopPropagation();
     });
   }
 
   /** @param {number} x @param {number} y */
-  choose(x, y) {
-    const found = this.onPick ? this.pick(x, y) : null;
-    if (found !== null) this.onPick?.(found);
+  #choose(x, y) {
+    const found = this.#onPick ? this.#pick(x, y) : null;
+    if (found !== null) this.#onPick?.(found);
   }
 
   /** @param {string} key @returns {boolean} whether the key means something here */
-  press(key) {
+  #press(key) {
     const { orbit } = this;
     /** @type {Record<string, [number, number]>} */
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -262,7 +271,7 @@ export class Picture {
     if (turn) orbit.change((camera) => camera.orbit(turn[0] * KEY_STEP_RAD, turn[1] * KEY_STEP_RAD));
     else if (key === '+' || key === '=') orbit.change((camera) => camera.zoom(KEY_ZOOM));
     else if (key === '-' || key === '_') orbit.change((camera) => camera.zoom(1 / KEY_ZOOM));
-    else if (key === 'Enter' && this.onPick) this.choose(this.size.peek().width / 2, this.size.peek().height / 2);
+    else if (key === 'Enter' && this.#onPick) this.#choose(this.#size.peek().width / 2, this.#size.peek().height / 2);
     else return false;
     return true;
   }

@@ -16,11 +16,15 @@ import { reasonOf } from './figure.js';
 
 /** Which predictions are out. Figures show what would give the answer away only then. */
 export class Stops {
+  /** @type {Map<string, Signal<boolean>>} */
+  #open;
+
+  /** @type {Map<string, Signal<number | null>>} */
+  #picks;
+
   constructor() {
-    /** @type {Map<string, Signal<boolean>>} */
-    this.open = new Map();
-    /** @type {Map<string, Signal<number | null>>} */
-    this.picks = new Map();
+    this.#open = new Map();
+    this.#picks = new Map();
     /** @type {Map<string, Guessed>} */
     this.outcomes = new Map();
     /**
@@ -39,15 +43,15 @@ export class Stops {
 
   /** @param {string} stop */
   state(stop) {
-    const known = this.open.get(stop) ?? signal(false);
-    this.open.set(stop, known);
+    const known = this.#open.get(stop) ?? signal(false);
+    this.#open.set(stop, known);
     return known;
   }
 
   /** @param {string} stop */
   pickOf(stop) {
-    const known = this.picks.get(stop) ?? signal(/** @type {number | null} */ (null));
-    this.picks.set(stop, known);
+    const known = this.#picks.get(stop) ?? signal(/** @type {number | null} */ (null));
+    this.#picks.set(stop, known);
     return known;
   }
 

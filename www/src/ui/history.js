@@ -47,26 +47,32 @@ export function difference(before, after) {
 
 /** The undo entries and the present position among them. */
 export class History {
+  #most;
+  #at;
+
+  /**
+   * Name of the value that the newest entry changed, while further changes of it are merged.
+   * @type {string | null}
+   */
+  #open;
+  #lastMs;
+
   /** @param {number} [most] */
   constructor(most = MOST_ENTRIES) {
-    this.most = most;
+    this.#most = most;
     /** @type {Shape[]} */
     this.entries = [];
-    this.at = -1;
-    /**
-     * Name of the value that the newest entry changed, while further changes of it are merged.
-     * @type {string | null}
-     */
-    this.open = null;
-    this.lastMs = 0;
+    this.#at = -1;
+    this.#open = null;
+    this.#lastMs = 0;
   }
 
   get canUndo() {
-    return this.at > 0;
+    return this.#at > 0;
   }
 
   get canRedo() {
-    return this.at < this.entries.length - 1;
+    return this.#at < this.entries.length - 1;
   }
 
   /**
@@ -75,26 +81,26 @@ export class History {
    * @param {boolean} [faulty] whether the previous entry has an invalid formula, which is not worth restoring
    */
   record(shape, nowMs, faulty = false) {
-    const present = this.entries[this.at];
+    const present = this.entries[this.#at];
     if (present && JSON.stringify(present) === JSON.stringify(shape)) return;
     const what = present ? difference(present, shape) : null;
     const goesOn =
-      what !== null && what === this.open && (nowMs - this.lastMs < PAUSE_MS || (faulty && what === 'formula'));
-    this.lastMs = nowMs;
-    this.open = what;
-    this.entries.length = this.at + 1;
-    if (goesOn) this.entries[this.at] = shape;
+      what !== null && what === this.#open && (nowMs - this.#lastMs < PAUSE_MS || (faulty && what === 'formula'));
+    this.#lastMs = nowMs;
+    this.#open = what;
+    this.entries.length = this.#at + 1;
+    if (goesOn) this.entries[this.#at] = shape;
     else this.entries.push(shape);
-    if (this.entries.length > this.most + 1) this.entries.shift();
-    this.at = this.entries.length - 1;
+    if (this.entries.length > this.#most + 1) this.entries.shift();
+    this.#at = this.entries.length - 1;
   }
 
   /** @param {-1 | 1} step @returns {Shape | null} the entry to restore */
   move(step) {
-    const entry = this.entries[this.at + step];
+    const entry = this.entries[this.#at + step];
     if (!entry) return null;
-    this.at += step;
-    this.open = null;
+    this.#at += step;
+    this.#open = null;
     return entry;
   }
 }

@@ -108,18 +108,21 @@ export function createMotion(engine, stage) {
 
 /** A parameter that moves. */
 class Player {
+  /** The value set last. */
+  #value;
+  #crossings;
+
   /** @param {Engine} engine @param {Range} range */
   constructor(engine, range) {
     this.engine = engine;
     this.range = range;
-    /** The value set last. */
-    this.value = this.present();
-    const place = (this.value - range.min) / (range.max - range.min);
-    this.crossings = Math.min(1, Math.max(0, place));
+    this.#value = this.#present();
+    const place = (this.#value - range.min) / (range.max - range.min);
+    this.#crossings = Math.min(1, Math.max(0, place));
   }
 
   /** Returns the parameter's value on the page, NaN if the formula no longer has it. */
-  present() {
+  #present() {
     const { engine, range } = this;
     const parameter = engine.field.peek()?.parameters.find(({ name }) => name === range.name);
     return parameter ? (engine.state.peek().parameters[range.name] ?? parameter.value) : Number.NaN;
@@ -131,13 +134,13 @@ class Player {
    * @returns {boolean} false if somebody else has set the parameter, or the formula no longer has it
    */
   step(passedS, course) {
-    if (this.present() !== this.value) return false;
-    this.crossings += passedS / CROSSING_S;
+    if (this.#present() !== this.#value) return false;
+    this.#crossings += passedS / CROSSING_S;
     // A run that takes longer than a frame is waited for: it would otherwise be replaced before anything of it is seen.
     if (this.engine.busy.peek()) return true;
-    const value = valueAt(this.range, placeAt(this.crossings, course));
-    if (value !== this.value) {
-      this.value = value;
+    const value = valueAt(this.range, placeAt(this.#crossings, course));
+    if (value !== this.#value) {
+      this.#value = value;
       this.engine.setParameter(this.range.name, value, { live: true });
     }
     return true;
@@ -145,6 +148,6 @@ class Player {
 
   /** Ends with a run of full quality. */
   rest() {
-    if (this.present() === this.value) this.engine.setParameter(this.range.name, this.value);
+    if (this.#present() === this.#value) this.engine.setParameter(this.range.name, this.#value);
   }
 }

@@ -111,20 +111,20 @@ class Model {
     range.valueAsNumber = Math.round(place * PLACES);
     range.style.setProperty('--place', place.toFixed(4));
     range.setAttribute('aria-valuetext', this.options.describe(value));
-    if (box && except !== box) box.value = this.numberOf(exact(scale, value));
+    if (box && except !== box) box.value = this.#numberOf(exact(scale, value));
   }
 
   writeScale() {
     const { range, box, scale } = this;
     setAttribute(range, 'aria-label', this.options.name);
     if (!box) return;
-    box.min = this.numberOf(scale.min);
-    box.max = this.numberOf(scale.max);
+    box.min = this.#numberOf(scale.min);
+    box.max = this.#numberOf(scale.max);
     box.step = 'any';
   }
 
   /** Returns a value as the box shows it. @param {number} value */
-  numberOf(value) {
+  #numberOf(value) {
     return String(Number((value * this.factor).toPrecision(12)));
   }
 }

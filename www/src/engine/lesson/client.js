@@ -40,21 +40,31 @@ export const spawnLesson = () =>
 /** @typedef {{resolve: (value: any) => void, reject: (error: LessonError) => void}} Waiting */
 
 export class LessonClient {
+  #spawn;
+  #onProgress;
+
+  /** @type {WorkerLike | null} */
+  #worker;
+  #lastId;
+
+  /** Number of the present run. */
+  #run;
+
+  /** Those who wait, by the number of their message. @type {Map<number, Waiting>} */
+  #waiting;
+
   /**
    * @param {object} [options]
    * @param {() => WorkerLike} [options.spawn]
    * @param {(progress: LessonProgress) => void} [options.onProgress]  of the present run, some fifty times a second
    */
   constructor({ spawn = spawnLesson, onProgress = () => {} } = {}) {
-    this.spawn = spawn;
-    this.onProgress = onProgress;
-    /** @type {WorkerLike | null} */
-    this.worker = null;
-    this.lastId = 0;
-    /** Number of the present run. */
-    this.run = 0;
-    /** Those who wait, by the number of their message. @type {Map<number, Waiting>} */
-    this.waiting = new Map();
+    this.#spawn = spawn;
+    this.#onProgress = onProgress;
+    this.#worker = null;
+    this.#lastId = 0;
+    this.#run = 0;
+    this.#waiting = new Map();
   }
 
   /**
@@ -66,16 +76,16 @@ export class LessonClient {
    * @returns {Promise<LessonProgress>}
    */
   start(surface, settings, holds = false) {
-    this.giveUp('another run has begun');
-    return this.send((id) => {
-      this.run = id;
+    this.#giveUp('another run has begun');
+    return this.#send((id) => {
+      this.#run = id;
       return { type: 'start', id, surface, settings, holds };
     });
   }
 
   /** Ends the present run where it is: its promise is then fulfilled. */
   stop() {
-    this.worker?.postMessage({ type: 'stop' });
+    this.#worker?.postMessage({ type: 'stop' });
   }
 
   /**
@@ -85,89 +95,89 @@ export class LessonClient {
    * @returns {Promise<Questions[K]['answer']>}
    */
   ask(about, ask) {
-    return this.send((id) => /** @type {ToLesson} */ ({ type: 'ask', id, about, ask }));
+    return this.#send((id) => /** @type {ToLesson} */ ({ type: 'ask', id, about, ask }));
   }
 
   /** Ends the worker and frees its memory. The next run starts another one. */
   close() {
-    this.giveUp('the lesson was closed');
-    this.end();
+    this.#giveUp('the lesson was closed');
+    this.#end();
   }
 
   /** @param {(id: number) => ToLesson} message @returns {Promise<any>} */
-  send(message) {
-    this.lastId += 1;
-    const id = this.lastId;
+  #send(message) {
+    this.#lastId += 1;
+    const id = this.#lastId;
     return new Promise((resolve, reject) => {
-      this.waiting.set(id, { resolve, reject });
-      this.worker ??= this.listen(this.spawn());
-      this.worker.postMessage(message(id));
+      this.#waiting.set(id, { resolve, reject });
+      this.#worker ??= this.#listen(this.#spawn());
+      this.#worker.postMessage(message(id));
     });
   }
 
   /** @param {WorkerLike} worker */
-  listen(worker) {
-    worker.onmessage = ({ data }) => this.receive(data);
-    worker.onerror = (event) => this.fail('bundle', event.message || 'the lesson did not load');
+  #listen(worker) {
+    worker.onmessage = ({ data }) => this.#receive(data);
+    worker.onerror = (event) => this.#fail('bundle', event.message || 'the lesson did not load');
     return worker;
   }
 
   /** @param {FromLesson} message */
-  receive(message) {
+  #receive(message) {
     switch (message.type) {
       case 'progress':
-        if (message.id === this.run) this.onProgress(message.progress);
+        if (message.id === this.#run) this.#onProgress(message.progress);
         break;
       case 'ended':
-        this.settle(message.id)?.resolve(message.progress);
+        this.#settle(message.id)?.resolve(message.progress);
         break;
       case 'answer':
-        this.settle(message.id)?.resolve(message.answer);
+        this.#settle(message.id)?.resolve(message.answer);
         break;
       case 'refused':
-        this.settle(message.id)?.reject(new LessonError('refused', message.error.message, message.error));
+        this.#settle(message.id)?.reject(new LessonError('refused', message.error.message, message.error));
         break;
       case 'crashed':
-        this.fail('crashed', `the lesson stopped on an error: ${message.message}`);
+        this.#fail('crashed', `the lesson stopped on an error: ${message.message}`);
         break;
       case 'failed':
-        this.fail('bundle', message.message);
+        this.#fail('bundle', message.message);
         break;
       default:
     }
   }
 
   /** @param {number} id */
-  settle(id) {
-    const waiting = this.waiting.get(id);
-    this.waiting.delete(id);
+  #settle(id) {
+    const waiting = this.#waiting.get(id);
+    this.#waiting.delete(id);
     return waiting;
   }
 
   /** Rejects all who wait. @param {string} why */
-  giveUp(why) {
-    this.reject(new LessonError('given_up', why));
+  #giveUp(why) {
+    this.#reject(new LessonError('given_up', why));
   }
 
   /** A worker that failed is not asked again. @param {'crashed' | 'bundle'} kind @param {string} message */
-  fail(kind, message) {
-    this.end();
-    this.reject(new LessonError(kind, message));
+  #fail(kind, message) {
+    this.#end();
+    this.#reject(new LessonError(kind, message));
   }
 
   /** @param {LessonError} error */
-  reject(error) {
-    const waiting = [...this.waiting.values()];
-    this.waiting.clear();
+  #reject(error) {
+    const waiting = [...this.#waiting.values()];
+    this.#waiting.clear();
     for (const { reject } of waiting) reject(error);
   }
 
-  end() {
-    if (!this.worker) return;
-    this.worker.onmessage = null;
-    this.worker.onerror = null;
-    this.worker.terminate();
-    this.worker = null;
+  #end() {
+    if (!this.#worker) return;
+    this.#worker.onmessage = null;
+    this.#worker.onerror = null;
+    this.#worker.terminate();
+    this.#worker = null;
   }
 }
 

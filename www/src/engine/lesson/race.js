@@ -43,21 +43,29 @@ export const opponentOf = (settings) => ({
 });
 
 export class Race {
+  #onLane;
+  #clients;
+
+  /** Number of the present race. */
+  #race;
+
+  /** Fulfilled while the race is not paused. @type {Promise<void>} */
+  #gate;
+  #open;
+
   /**
    * @param {object} [options]
    * @param {() => WorkerLike} [options.spawn]
    * @param {(index: 0 | 1, lane: Lane) => void} [options.onLane]  after every turn
    */
   constructor({ spawn = spawnLesson, onLane = () => {} } = {}) {
-    this.onLane = onLane;
-    this.clients = [new LessonClient({ spawn }), new LessonClient({ spawn })];
+    this.#onLane = onLane;
+    this.#clients = [new LessonClient({ spawn }), new LessonClient({ spawn })];
     /** @type {[Lane, Lane]} */
     this.lanes = [newLane(), newLane()];
-    /** Number of the present race. */
-    this.race = 0;
-    /** Fulfilled while the race is not paused. @type {Promise<void>} */
-    this.gate = Promise.resolve();
-    this.open = () => {};
+    this.#race = 0;
+    this.#gate = Promise.resolve();
+    this.#open = () => {};
   }
 
   /**
@@ -67,50 +75,50 @@ export class Race {
    */
   async start(surface, settings) {
     this.resume();
-    this.race += 1;
-    const race = this.race;
+    this.#race += 1;
+    const race = this.#race;
     /** @type {[Lane, Lane]} */
     const lanes = [newLane(), newLane()];
     this.lanes = lanes;
-    const begun = await Promise.all(this.clients.map((client, k) => client.start(surface, settings[k], true)));
+    const begun = await Promise.all(this.#clients.map((client, k) => client.start(surface, settings[k], true)));
     const units = [FIRST_UNITS, FIRST_UNITS];
     for (const [k, lane] of lanes.entries()) lane.progress = begun[k];
     for (;;) {
-      await this.gate;
-      if (race !== this.race) throw new LessonError('given_up', 'another race has begun');
+      await this.#gate;
+      if (race !== this.#race) throw new LessonError('given_up', 'another race has begun');
       const k = nextOf(lanes);
       if (k === null) return;
-      const { progress, workMs } = await this.clients[k].ask('advance', { units: units[k] });
+      const { progress, workMs } = await this.#clients[k].ask('advance', { units: units[k] });
       units[k] = nextBudget(units[k], workMs, TURN_MS);
       lanes[k].progress = progress;
       lanes[k].workMs += workMs;
-      this.onLane(k, lanes[k]);
+      this.#onLane(k, lanes[k]);
     }
   }
 
   /** No turn begins until `resume`. */
   pause() {
     this.resume();
-    this.gate = new Promise((resolve) => {
-      this.open = resolve;
+    this.#gate = new Promise((resolve) => {
+      this.#open = resolve;
     });
   }
 
   resume() {
-    this.open();
-    this.gate = Promise.resolve();
+    this.#open();
+    this.#gate = Promise.resolve();
   }
 
   /** The particles of one of the two, as they are now. @param {0 | 1} index */
   particles(index) {
-    return this.clients[index].ask('seek', { event: Infinity });
+    return this.#clients[index].ask('seek', { event: Infinity });
   }
 
   /** Gives the race up and frees both workers. */
   close() {
-    this.race += 1;
+    this.#race += 1;
     this.resume();
-    for (const client of this.clients) client.close();
+    for (const client of this.#clients) client.close();
   }
 }
 

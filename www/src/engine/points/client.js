@@ -27,6 +27,16 @@ export const SILENCE_MS = 4000;
 const GRACE_MS = 120;
 
 export class PointsClient {
+  #spawn;
+  #onProgress;
+  #clock;
+
+  /** @type {Map<string, Solved>} */
+  #solved;
+
+  /** Ends the current order. @type {((ending: Ending) => void) | null} */
+  #end;
+
   /**
    * @param {object} options
    * @param {() => WorkerLike} options.spawn
@@ -38,18 +48,16 @@ export class PointsClient {
     onProgress,
     clock = { setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) },
   }) {
-    this.spawn = spawn;
-    this.onProgress = onProgress;
-    this.clock = clock;
-    /** @type {Map<string, Solved>} */
-    this.solved = new Map();
-    /** Ends the current order. @type {((ending: Ending) => void) | null} */
-    this.end = null;
+    this.#spawn = spawn;
+    this.#onProgress = onProgress;
+    this.#clock = clock;
+    this.#solved = new Map();
+    this.#end = null;
   }
 
   /** Returns the solved model under this key, if there is one. @param {string | undefined} key */
   get(key) {
-    return key === undefined ? undefined : this.solved.get(key);
+    return key === undefined ? undefined : this.#solved.get(key);
   }
 
   /**
@@ -60,16 +68,16 @@ export class PointsClient {
   load(key, order) {
     this.giveUp();
     return new Promise((resolve) => {
-      const worker = this.spawn();
+      const worker = this.#spawn();
       /** @type {any} */
       let timer;
       const end = (/** @type {Ending} */ ending) => {
-        this.clock.clearTimeout(timer);
+        this.#clock.clearTimeout(timer);
         worker.onmessage = null;
         worker.onerror = null;
         worker.terminate();
-        if (this.end === end) this.end = null;
-        if ('solved' in ending) this.solved.set(key, ending.solved);
+        if (this.#end === end) this.#end = null;
+        if ('solved' in ending) this.#solved.set(key, ending.solved);
         resolve(ending);
       };
       const refuse = (
@@ -80,16 +88,16 @@ export class PointsClient {
       ) => end({ refusal: { kind, message, details, line } });
       const silent = () => refuse('silent', 'the solver fell silent and was stopped');
       const listen = (/** @type {number} */ ms) => {
-        this.clock.clearTimeout(timer);
-        timer = this.clock.setTimeout(() => {
-          timer = this.clock.setTimeout(silent, GRACE_MS);
+        this.#clock.clearTimeout(timer);
+        timer = this.#clock.setTimeout(() => {
+          timer = this.#clock.setTimeout(silent, GRACE_MS);
         }, ms);
       };
       worker.onmessage = ({ data }) => {
         listen(SILENCE_MS);
         switch (data.type) {
           case 'progress':
-            this.onProgress(data);
+            this.#onProgress(data);
             break;
           case 'solved':
             end({ solved: data.solved });
@@ -107,13 +115,13 @@ export class PointsClient {
         }
       };
       worker.onerror = (event) => refuse('bundle', event.message || 'the solver did not load');
-      this.end = end;
+      this.#end = end;
       listen(LOADING_MS);
       worker.postMessage(order);
     });
   }
 
   giveUp() {
-    this.end?.({ givenUp: true });
+    this.#end?.({ givenUp: true });
   }
 }

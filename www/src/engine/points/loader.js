@@ -39,6 +39,19 @@ export const freshShape = (surface, formula = '') => ({
 });
 
 export class ModelLoader {
+  #store;
+  #sample;
+
+  /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
+  #opened;
+  #files;
+
+  /** The surface that was sampled last. @type {Shape | null} */
+  #last;
+
+  /** Id of the current order. */
+  #orderId;
+
   /**
    * @param {object} options
    * @param {Store} options.store
@@ -46,8 +59,8 @@ export class ModelLoader {
    * @param {(options: SampleOptions) => void} options.sample  samples the present state
    */
   constructor({ store, spawn, sample }) {
-    this.store = store;
-    this.sample = sample;
+    this.#store = store;
+    this.#sample = sample;
     this.client = new PointsClient({
       spawn,
       onProgress: ({ stage, label, fraction }) => {
@@ -55,26 +68,23 @@ export class ModelLoader {
         if (loading.value) loading.value = { ...loading.value, stage, label, fraction };
       },
     });
-    /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
-    this.opened = null;
-    this.files = 0;
+    this.#opened = null;
+    this.#files = 0;
     /** Key of the model that is being solved; empty if none is. */
     this.orderKey = '';
-    /** The surface that was sampled last. @type {Shape | null} */
-    this.last = null;
-    /** Id of the current order. */
-    this.orderId = 0;
+    this.#last = null;
+    this.#orderId = 0;
   }
 
   get hasFile() {
-    return this.opened !== null;
+    return this.#opened !== null;
   }
 
   /** Returns the key of the state's model; undefined for a formula. */
   key() {
-    const { surface, centres } = this.store.state.value;
-    if (!fromPoints(this.store.description.value, surface)) return undefined;
-    return keyOf(surface === FILE_SURFACE ? (this.opened?.key ?? '') : surface, centres);
+    const { surface, centres } = this.#store.state.value;
+    if (!fromPoints(this.#store.description.value, surface)) return undefined;
+    return keyOf(surface === FILE_SURFACE ? (this.#opened?.key ?? '') : surface, centres);
   }
 
   /** Returns whether the state's surface can be sampled now. */
@@ -85,72 +95,72 @@ export class ModelLoader {
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
-    const { surface, formula, parameters, declared, centres, bounds, plane } = this.store.state.value;
-    this.last = { surface, formula, parameters, declared, centres, bounds, plane };
+    const { surface, formula, parameters, declared, centres, bounds, plane } = this.#store.state.value;
+    this.#last = { surface, formula, parameters, declared, centres, bounds, plane };
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */
   present() {
-    const { state } = this.store;
-    return this.ready() ? state.value : { ...state.value, ...this.before() };
+    const { state } = this.#store;
+    return this.ready() ? state.value : { ...state.value, ...this.#before() };
   }
 
   /** @returns {Shape} */
-  before() {
-    const { description } = this.store;
-    if (this.last || !description.value) return this.last ?? freshShape('');
+  #before() {
+    const { description } = this.#store;
+    if (this.#last || !description.value) return this.#last ?? freshShape('');
     const { surface, formula } = defaultState(description.value);
     return freshShape(surface, formula);
   }
 
   /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
   async load(options) {
-    const { state } = this.store;
+    const { state } = this.#store;
     const key = this.key();
-    const wanted = this.wanted();
+    const wanted = this.#wanted();
     if (key === undefined || !wanted || this.orderKey === key) return;
     const { id, name, order } = wanted;
-    const done = await this.order(id, name, key, order, () => {
-      if (this.key() === key) this.sample(options);
+    const done = await this.#order(id, name, key, order, () => {
+      if (this.key() === key) this.#sample(options);
     });
     if (done || this.key() !== key || this.orderKey === key) return;
-    const nothing = this.last === null;
-    state.value = { ...state.value, ...this.before() };
-    if (nothing) this.sample(options);
+    const nothing = this.#last === null;
+    state.value = { ...state.value, ...this.#before() };
+    if (nothing) this.#sample(options);
   }
 
   /**
    * Returns what is to be solved for the state; null for a formula.
    * @returns {{id: string, name: string, order: Order} | null}
    */
-  wanted() {
-    const { surface, centres } = this.store.state.value;
-    const model = modelOf(this.store.description.value, surface);
+  #wanted() {
+    const { surface, centres } = this.#store.state.value;
+    const model = modelOf(this.#store.description.value, surface);
     if (model) return { id: surface, name: model.name, order: { model: surface, centres } };
-    if (surface !== FILE_SURFACE || !this.opened) return null;
-    const { file } = this.opened;
+    if (surface !== FILE_SURFACE || !this.#opened) return null;
+    const { file } = this.#opened;
     return { id: surface, name: file.name, order: { file, centres } };
   }
 
   /** @param {File} file */
   async openFile(file) {
-    const most = description(this.store).limits.file_bytes;
+    const most = description(this.#store).limits.file_bytes;
     if (file.size > most) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
-      this.refused(FILE_SURFACE, file.name, {
+      this.#refused(FILE_SURFACE, file.name, {
         kind: 'too_large',
         message: `the file has ${mb(file.size)} MB; up to ${mb(most)} MB are read`,
         line: null,
       });
       return;
     }
-    this.files += 1;
-    const key = `file ${this.files}`;
-    const { state } = this.store;
-    await this.order(FILE_SURFACE, file.name, keyOf(key, null), { file, centres: null }, () => {
-      this.opened = { file, key };
+    this.#files += 1;
+    const key = `file ${this.#files}`;
+    const { state } = this.#store;
+    await this.#order(FILE_SURFACE, file.name, keyOf(key, null), { file, centres: null }, () => {
+      this.#opened = { file, key };
       state.value = { ...state.value, ...freshShape(FILE_SURFACE) };
-      this.sample({ grow: true, fit: true });
+      this.#sample({ grow: true, fit: true });
     });
   }
 
@@ -159,30 +169,30 @@ export class ModelLoader {
    * @param {() => void} done  called once the model is solved
    * @returns {Promise<boolean>} whether the model was solved
    */
-  async order(id, name, key, order, done) {
-    const { loading, loadingError } = this.store;
-    this.orderId += 1;
-    const mine = this.orderId;
+  async #order(id, name, key, order, done) {
+    const { loading, loadingError } = this.#store;
+    this.#orderId += 1;
+    const mine = this.#orderId;
     this.orderKey = key;
     batch(() => {
       loadingError.value = null;
       loading.value = { id, name, stage: 'starting', label: 'Starting', fraction: 0 };
     });
     const outcome = await this.client.load(key, order);
-    if (this.orderId !== mine) return false;
+    if (this.#orderId !== mine) return false;
     this.orderKey = '';
     // A batch, so that no effect runs between the end of the loading and the start of the run.
     batch(() => {
       loading.value = null;
       if ('solved' in outcome) done();
-      else if ('refusal' in outcome) this.refused(id, name, outcome.refusal);
+      else if ('refusal' in outcome) this.#refused(id, name, outcome.refusal);
     });
     return 'solved' in outcome;
   }
 
   /** @param {string} id @param {string} name @param {Refusal} refusal */
-  refused(id, name, { kind, message, line, details }) {
-    const { loadingError, notice } = this.store;
+  #refused(id, name, { kind, message, line, details }) {
+    const { loadingError, notice } = this.#store;
     loadingError.value = { id, name, kind, message, line };
     notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
   }

@@ -22,6 +22,9 @@ import { Supervisor } from './supervisor.js';
  */
 
 export class SamplingClient {
+  #onMessage;
+  #onLoadFailed;
+
   /** What the page shows, which a new worker is told again. */
   #wishes = { curvature: false, mesh: false };
   /**
@@ -34,12 +37,12 @@ export class SamplingClient {
 
   /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
   constructor({ spawn, clock, onMessage, onRestart, onSafeMode, onLoadFailed }) {
-    this.onMessage = onMessage;
-    this.onLoadFailed = onLoadFailed;
+    this.#onMessage = onMessage;
+    this.#onLoadFailed = onLoadFailed;
     this.supervisor = new Supervisor({
       spawn,
       clock,
-      onMessage: (message) => this.receive(message),
+      onMessage: (message) => this.#receive(message),
       onRestart,
       onSafeMode,
       onLoadError: (message) => onLoadFailed(`The sampler did not load: ${message}.`),
@@ -128,22 +131,22 @@ export class SamplingClient {
   }
 
   /** @param {FromWorker} message */
-  receive(message) {
+  #receive(message) {
     switch (message.type) {
       case 'ready':
         this.#attend();
         for (const what of /** @type {const} */ (['curvature', 'mesh']))
           if (this.#wishes[what]) this.post({ type: what, on: true });
-        return this.onMessage(message);
+        return this.#onMessage(message);
       case 'failed':
-        return this.onLoadFailed(message.message);
+        return this.#onLoadFailed(message.message);
       case 'beat':
       case 'crashed':
         return;
       case 'file':
         return this.#handOver(message.request, message.bytes);
       default:
-        this.onMessage(message);
+        this.#onMessage(message);
     }
   }
 }

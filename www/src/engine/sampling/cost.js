@@ -48,11 +48,14 @@ export function sizeOf(settings, diagonal) {
  * for the front, for a relaxation step and for drawing, and the number of particles for a size on the present surface.
  */
 export class CostModel {
+  #frontUs;
+  #relaxUs;
+
   constructor() {
     // Initial values of a slow laptop, until the first run is measured.
     this.fixedMs = 5;
-    this.frontUs = 1.5;
-    this.relaxUs = 0.25;
+    this.#frontUs = 1.5;
+    this.#relaxUs = 0.25;
     /** Drawing time per particle. It is zero if the graphics card keeps up with the screen. */
     this.drawUs = 0;
     /** count · size², which is nearly constant for one surface; 0 while unknown. */
@@ -70,8 +73,8 @@ export class CostModel {
     const share = this.known ? 0.5 : 1;
     const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
     this.fixedMs = blend(this.fixedMs, seconds.seeding * 1e3);
-    this.frontUs = blend(this.frontUs, ((seconds.generation + seconds.refinement) * 1e6) / particles);
-    if (relax_steps > 0) this.relaxUs = blend(this.relaxUs, (seconds.relaxation * 1e6) / (particles * relax_steps));
+    this.#frontUs = blend(this.#frontUs, ((seconds.generation + seconds.refinement) * 1e6) / particles);
+    if (relax_steps > 0) this.#relaxUs = blend(this.#relaxUs, (seconds.relaxation * 1e6) / (particles * relax_steps));
     this.known = true;
   }
 
@@ -92,7 +95,7 @@ export class CostModel {
 
   /** Returns the microseconds per particle. @param {number} relaxSteps */
   perParticle(relaxSteps) {
-    return this.frontUs + relaxSteps * this.relaxUs + this.drawUs;
+    return this.#frontUs + relaxSteps * this.#relaxUs + this.drawUs;
   }
 
   /** Returns the expected number of particles. @param {Settings} settings @param {number} diagonal */

@@ -121,6 +121,9 @@ export async function runJob(core, job, env, memory) {
 
 /** A job in progress: its times, its latest progress, and what the page has received. */
 class JobRun {
+  /** Time of the last message that the supervisor counts as a sign of life. */
+  #beatMs;
+
   /** @param {Core} core @param {Job} job @param {Env} env */
   constructor(core, job, env) {
     this.core = core;
@@ -133,8 +136,7 @@ class JobRun {
     this.predicted = 0;
     /** Positions before each relaxation step. @type {Float32Array[]} */
     this.past = [];
-    /** Time of the last message that the supervisor counts as a sign of life. */
-    this.beatMs = 0;
+    this.#beatMs = 0;
     /** The page has columns of `count` particles, and the final fates of all slots if `settled`. */
     this.sent = { count: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
   }
@@ -156,32 +158,32 @@ class JobRun {
     if (job.kind !== 'sample') return true;
     memory.held = 0;
     let slices = FIRST_SLICES;
-    this.beatMs = env.nowMs();
+    this.#beatMs = env.nowMs();
     for (;;) {
       const before = env.nowMs();
       const answer = core.fit(job.settings, job.live, slices);
       const took = env.nowMs() - before;
       this.seconds.seeding += took / 1000;
-      if (answer?.ok === false) return this.end('refused', answer.error.message);
+      if (answer?.ok === false) return this.#end('refused', answer.error.message);
       if (answer) {
         env.post({ type: 'box', id: job.id, answer });
         return true;
       }
       slices = nextBudget(slices, took);
-      this.beat();
+      this.#beat();
       await env.pause();
       const why = env.interrupt();
       if (why === 'replace') return false;
-      if (why === 'stop') return this.end('stopped');
+      if (why === 'stop') return this.#end('stopped');
     }
   }
 
   /** Shows the supervisor from time to time that the worker is alive. */
-  beat() {
+  #beat() {
     const { env } = this;
-    if (env.nowMs() - this.beatMs <= BEAT_MS) return;
+    if (env.nowMs() - this.#beatMs <= BEAT_MS) return;
     env.post({ type: 'beat' });
-    this.beatMs = env.nowMs();
+    this.#beatMs = env.nowMs();
   }
 
   /**
@@ -196,16 +198,16 @@ class JobRun {
       const before = env.nowMs();
       const start = core.start(job.settings);
       this.seconds.seeding += (env.nowMs() - before) / 1000;
-      if (!start.ok) return this.end('refused', start.error.message);
+      if (!start.ok) return this.#end('refused', start.error.message);
       const { radius, predicted_count: predicted, warnings } = start;
       this.predicted = predicted;
       env.post({ type: 'started', id: job.id, radius, predicted, warnings });
       if (predicted > job.askAbove) {
         core.cancel();
-        return this.end('ask');
+        return this.#end('ask');
       }
     } else {
-      if (memory.held !== job.of) return this.end('lost');
+      if (memory.held !== job.of) return this.#end('lost');
       this.past.push(core.positions(0));
       core.relax(job.steps);
       this.sent.count = core.count();
@@ -215,7 +217,7 @@ class JobRun {
   }
 
   /** @param {DoneMessage['outcome']} outcome @param {string} [message] @returns {false} */
-  end(outcome, message) {
+  #end(outcome, message) {
     this.done(outcome, message);
     return false;
   }
@@ -231,7 +233,7 @@ class JobRun {
     /** @type {CoreProgress['phase']} */
     let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
     let wasHanding = false;
-    this.beatMs = env.nowMs();
+    this.#beatMs = env.nowMs();
     for (;;) {
       const why = env.interrupt();
       if (why === 'replace') return null;
@@ -248,7 +250,7 @@ class JobRun {
       budgets[phase] = nextBudget(budget, took);
       sent.stale ||= progress.moved;
       if (progress.phase === 'done') return progress;
-      this.remember(progress);
+      this.#remember(progress);
       // A refinement moves the particles while it hands a level on, the coarse one first, and then goes on below them.
       const isHanding = progress.phase === 'refinement' && progress.moved;
       if (job.kind === 'sample' && job.coarse && wasHanding && !isHanding) {
@@ -257,34 +259,34 @@ class JobRun {
       }
       wasHanding = isHanding;
       phase = progress.phase;
-      this.tell(progress);
+      this.#tell(progress);
       await env.pause();
     }
   }
 
   /** Keeps the positions before every relaxation step. @param {CoreProgress} progress */
-  remember(progress) {
+  #remember(progress) {
     const { core, job, past } = this;
-    if (job.live || progress.phase !== 'relaxation' || this.stepsOf(progress) !== past.length) return;
+    if (job.live || progress.phase !== 'relaxation' || this.#stepsOf(progress) !== past.length) return;
     if (past.length === 0 || core.count() <= MOST_REMEMBERED) past.push(core.positions(0));
   }
 
   /** Returns the relaxation steps of this run so far. @param {CoreProgress} progress */
-  stepsOf({ relax_step, relax_steps }) {
+  #stepsOf({ relax_step, relax_steps }) {
     return this.job.kind === 'relax' ? relax_step - (relax_steps - this.job.steps) : relax_step;
   }
 
   /** Sends columns if they are due, or else the progress from time to time. @param {CoreProgress} progress */
-  tell(progress) {
+  #tell(progress) {
     const { env } = this;
-    if (this.isDue(progress)) this.sendColumns(progress);
-    else if (env.nowMs() - this.beatMs > PROGRESS_MS) env.post({ type: 'progress', id: this.job.id, progress });
+    if (this.#isDue(progress)) this.#sendColumns(progress);
+    else if (env.nowMs() - this.#beatMs > PROGRESS_MS) env.post({ type: 'progress', id: this.job.id, progress });
     else return;
-    this.beatMs = env.nowMs();
+    this.#beatMs = env.nowMs();
   }
 
   /** Returns whether the page should receive columns after this step. @param {CoreProgress} progress */
-  isDue({ phase }) {
+  #isDue({ phase }) {
     const { core, job, env, sent } = this;
     if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
     if (job.live || (!job.grow && phase !== 'relaxation' && phase !== 'refinement')) return false;
@@ -294,7 +296,7 @@ class JobRun {
   }
 
   /** @param {CoreProgress} progress @param {Mesh | null} [mesh] */
-  sendColumns(progress, mesh = null) {
+  #sendColumns(progress, mesh = null) {
     const { core, env, sent } = this;
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
@@ -338,26 +340,26 @@ class JobRun {
     const mesh = wanted ? await join(core, env) : null;
     if (wanted && !mesh) return false;
     if (mesh) memory.meshed = job.id;
-    if (core.count() > sent.count || sent.stale) this.sendColumns(last, mesh);
+    if (core.count() > sent.count || sent.stale) this.#sendColumns(last, mesh);
     else if (mesh) env.post(...meshColumn(core, job.id, mesh));
     if (!sent.settled) {
       const slots = core.slots(0);
       env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
     }
     // What was kept last is where the particles are, unless another step has been made since.
-    const positions = this.past.slice(0, this.stepsOf(last));
+    const positions = this.past.slice(0, this.#stepsOf(last));
     if (positions.length > 0) {
       env.post(
         { type: 'past', id: job.id, positions },
         positions.map(({ buffer }) => buffer),
       );
     }
-    this.sendCurvature();
+    this.#sendCurvature();
     return true;
   }
 
   /** Sends the curvature of all particles if the page shows it and lacks it. */
-  sendCurvature() {
+  #sendCurvature() {
     const { core, env, sent } = this;
     if (!env.curvature() || sent.curved === core.count()) return;
     env.post(...curvatureColumn(core, this.job.id));
@@ -373,13 +375,13 @@ class JobRun {
     do {
       await env.pause();
       if (env.interrupt() === 'replace') return;
-      this.sendCurvature();
+      this.#sendCurvature();
       const before = env.nowMs();
       report = core.measure(slices);
       const took = env.nowMs() - before;
       seconds.quality += took / 1000;
       slices = nextBudget(slices, took);
-      this.beat();
+      this.#beat();
     } while (report === undefined);
     const figures = /** @type {Figures} */ (Object.fromEntries(MEASURED.map((name) => [name, core[name]()])));
     env.post(

@@ -27,40 +27,48 @@ function setField(core, { field, points }) {
 }
 
 export class Jobs {
+  #post;
+
+  /** The latest job; its field has not been passed to the core. @type {Pending | null} */
+  #waiting;
+
+  /**
+   * The job whose field the core has accepted. It runs as soon as the running job has ended.
+   * @type {Pending | null}
+   */
+  #accepted;
+
+  /** Whether it must stop. */
+  #stopped;
+
   /** @param {(message: FromWorker) => void} post */
   constructor(post) {
-    this.post = post;
-    /** The latest job; its field has not been passed to the core. @type {Pending | null} */
-    this.waiting = null;
-    /**
-     * The job whose field the core has accepted. It runs as soon as the running job has ended.
-     * @type {Pending | null}
-     */
-    this.accepted = null;
+    this.#post = post;
+    this.#waiting = null;
+    this.#accepted = null;
     /** The job that runs. @type {Job | null} */
     this.running = null;
-    /** Whether it must stop. */
-    this.stopped = false;
+    this.#stopped = false;
   }
 
   /** @param {Job} job */
   add(job) {
-    this.waiting = { job, stopped: false };
+    this.#waiting = { job, stopped: false };
   }
 
   /** Stops all jobs added so far. */
   stop() {
-    this.stopped = true;
-    if (this.waiting) this.waiting.stopped = true;
-    if (this.accepted) this.accepted.stopped = true;
+    this.#stopped = true;
+    if (this.#waiting) this.#waiting.stopped = true;
+    if (this.#accepted) this.#accepted.stopped = true;
   }
 
   /** Begins and returns the next job, with its field set in the core. @param {Core} core @returns {Job | null} */
   take(core) {
-    this.ask(core);
-    const next = this.accepted;
-    this.accepted = null;
-    this.stopped = next?.stopped ?? false;
+    this.#ask(core);
+    const next = this.#accepted;
+    this.#accepted = null;
+    this.#stopped = next?.stopped ?? false;
     this.running = next?.job ?? null;
     return this.running;
   }
@@ -71,22 +79,22 @@ export class Jobs {
    * @returns {'stop' | 'replace' | null}
    */
   interrupt(core) {
-    this.ask(core);
-    if (this.accepted) return 'replace';
-    return this.stopped ? 'stop' : null;
+    this.#ask(core);
+    if (this.#accepted) return 'replace';
+    return this.#stopped ? 'stop' : null;
   }
 
   /** @param {Core} core */
-  ask(core) {
-    const next = this.waiting;
+  #ask(core) {
+    const next = this.#waiting;
     if (!next) return;
     const { job } = next;
-    this.waiting = null;
+    this.#waiting = null;
     if (job.kind === 'sample') {
       const answer = setField(core, job);
-      this.post({ type: 'field', id: job.id, answer });
+      this.#post({ type: 'field', id: job.id, answer });
       if (!answer.ok) return;
     }
-    this.accepted = next;
+    this.#accepted = next;
   }
 }

@@ -19,20 +19,24 @@ import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 const NEXT_DRAG_MS = 1000;
 
 export class Pace {
+  #nowMs;
+
+  /** Cost models by {@link costKey}. @type {Map<string, CostModel>} */
+  #costs;
+
   /** @param {() => number} nowMs */
   constructor(nowMs) {
-    this.nowMs = nowMs;
-    /** Cost models by {@link costKey}. @type {Map<string, CostModel>} */
-    this.costs = new Map();
+    this.#nowMs = nowMs;
+    this.#costs = new Map();
     /** @type {{requested: number, latencies: number[], coarse: boolean, quietMs: number} | null} */
     this.drag = null;
   }
 
   /** @param {Pick<SampleRequest, 'field' | 'settings'>} request */
-  costOf({ field, settings }) {
+  #costOf({ field, settings }) {
     const key = costKey(field, settings);
-    const cost = this.costs.get(key) ?? new CostModel();
-    this.costs.set(key, cost);
+    const cost = this.#costs.get(key) ?? new CostModel();
+    this.#costs.set(key, cost);
     return cost;
   }
 
@@ -42,13 +46,13 @@ export class Pace {
    * @param {number} diagonal  of the clip box
    */
   plan(request, diagonal) {
-    const now = this.nowMs();
+    const now = this.#nowMs();
     if (!this.drag || now - this.drag.quietMs > NEXT_DRAG_MS)
       this.drag = { requested: 0, latencies: [], coarse: false, quietMs: now };
     const { drag } = this;
     drag.requested += 1;
     drag.quietMs = now;
-    const plan = planLive(request.settings, diagonal, this.costOf(request));
+    const plan = planLive(request.settings, diagonal, this.#costOf(request));
     drag.coarse ||= plan.coarse;
     return plan;
   }
@@ -62,12 +66,12 @@ export class Pace {
   record({ request, sinceMs }, sampled, measured) {
     const { particles } = measured;
     const { drag } = this;
-    const cost = this.costOf(sampled);
+    const cost = this.#costOf(sampled);
     // A run that ended at its coarse level does not tell what the whole one costs.
     const isWhole = !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
     if (request.kind === 'sample' && isWhole) cost.record(measured);
     if (!request.live || !drag) return null;
-    const latency = this.nowMs() - sinceMs;
+    const latency = this.#nowMs() - sinceMs;
     drag.latencies.push(latency);
     // The rest of the latency is drawing: a slow graphics device delays every message.
     cost.recordPicture(particles, latency - samplingSeconds(measured.seconds) * 1e3);

@@ -36,6 +36,14 @@ import {
  */
 
 export class Sampler {
+  #columns;
+  #presenter;
+  #onReady;
+  #onAsk;
+  #whole;
+  #nowMs;
+  #pace;
+
   /**
    * @param {object} options
    * @param {Store} options.store
@@ -50,21 +58,21 @@ export class Sampler {
    */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
     this.store = store;
-    this.columns = columns;
-    this.presenter = new Presenter({ store, columns, picture });
-    this.onReady = onReady;
-    this.onAsk = onAsk;
-    this.whole = whole;
+    this.#columns = columns;
+    this.#presenter = new Presenter({ store, columns, picture });
+    this.#onReady = onReady;
+    this.#onAsk = onAsk;
+    this.#whole = whole;
     this.solved = solved;
-    this.nowMs = clock ? clock.now : () => performance.now();
-    this.pace = new Pace(this.nowMs);
+    this.#nowMs = clock ? clock.now : () => performance.now();
+    this.#pace = new Pace(this.#nowMs);
     this.client = new SamplingClient({
       spawn,
       clock,
       onMessage: (message) => this.receive(message),
-      onRestart: (crash) => this.restarted(crash),
-      onSafeMode: (crash) => this.safeMode(crash),
-      onLoadFailed: (text) => this.loadFailed(text),
+      onRestart: (crash) => this.#restarted(crash),
+      onSafeMode: (crash) => this.#safeMode(crash),
+      onLoadFailed: (text) => this.#loadFailed(text),
     });
     this.runs = IDLE;
     /** Number of messages received from runs that are over. */
@@ -112,7 +120,7 @@ export class Sampler {
    * @param {SampleRequest} request @param {number} diagonal  of the clip box
    */
   sampleLive(request, diagonal) {
-    const { coarse, settings } = this.pace.plan(request, diagonal);
+    const { coarse, settings } = this.#pace.plan(request, diagonal);
     const { value: description } = this.store.description;
     const valid = description ? clampSettings(description, settings) : settings;
     this.submit({ ...request, settings: valid, coarse, live: true, grow: false });
@@ -125,23 +133,23 @@ export class Sampler {
   relax(steps) {
     if (this.store.busy.value) return;
     const { held } = this.runs;
-    if (held > 0 && this.columns.count > 0) {
+    if (held > 0 && this.#columns.count > 0) {
       this.submit({ kind: 'relax', of: held, steps, live: false, grow: true, fit: false });
     } else {
-      const request = this.whole();
+      const request = this.#whole();
       const done = this.store.progress.value.relax_steps;
       this.sample({ ...request, grow: false, settings: { ...request.settings, relax_steps: done + steps } });
     }
   }
 
   stop() {
-    if (!this.store.busy.value) return this.settle();
-    this.happened({ type: 'stopped' });
+    if (!this.store.busy.value) return this.#settle();
+    this.#happened({ type: 'stopped' });
     this.client.post({ type: 'stop' });
   }
 
   /** Completes the surface that stays on the page, with its report, after the run that interrupted it has failed. */
-  settle() {
+  #settle() {
     const { shown, crashedInput } = this.runs;
     if (!shown || shown.reported || awaitsWorker(this.runs)) return;
     const request = { ...this.relaxed(0), restoring: true };
@@ -160,22 +168,22 @@ export class Sampler {
 
   /** Sends a request, or has it wait for the one that runs. @param {RunRequest} request */
   submit(request) {
-    if (isToWait(this.runs, request, this.nowMs())) this.happened({ type: 'waits', request });
-    else this.send(request);
+    if (isToWait(this.runs, request, this.#nowMs())) this.#happened({ type: 'waits', request });
+    else this.#send(request);
   }
 
   /** @param {RunRequest} request */
-  send(request) {
+  #send(request) {
     // In safe mode nothing is sent. The state holds the request, which is sent when the sampler is restarted.
-    if (!this.client.isThere) return this.happened({ type: 'lost' });
+    if (!this.client.isThere) return this.#happened({ type: 'lost' });
     const id = this.runs.lastId + 1;
-    this.client.post({ type: 'job', job: this.jobOf(id, request) });
-    this.happened({ type: 'sent', request, nowMs: this.nowMs() });
-    if (request.kind === 'relax') this.presenter.begin(id, request);
+    this.client.post({ type: 'job', job: this.#jobOf(id, request) });
+    this.#happened({ type: 'sent', request, nowMs: this.#nowMs() });
+    if (request.kind === 'relax') this.#presenter.begin(id, request);
   }
 
   /** @param {number} id @param {RunRequest} request @returns {Job} */
-  jobOf(id, request) {
+  #jobOf(id, request) {
     if (request.kind === 'relax') {
       return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
     }
@@ -196,21 +204,21 @@ export class Sampler {
   }
 
   /** @param {RunEvent} event */
-  happened(event) {
+  #happened(event) {
     this.runs = reduce(this.runs, event);
-    this.attend();
+    this.#attend();
   }
 
   /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
-  attend() {
+  #attend() {
     this.store.busy.value = awaitsParticles(this.runs);
     this.client.setBusy(awaitsWorker(this.runs));
   }
 
   /** Sends the request that waits, if the job that has ended was the last one sent. @param {boolean} wasRunning */
-  sendWaiting(wasRunning) {
+  #sendWaiting(wasRunning) {
     const { waiting } = this.runs;
-    if (wasRunning && waiting) this.send(waiting);
+    if (wasRunning && waiting) this.#send(waiting);
   }
 
   // ---- what the worker sends
@@ -220,9 +228,9 @@ export class Sampler {
   receive(message) {
     switch (message.type) {
       case 'ready':
-        return this.ready(message.description);
+        return this.#ready(message.description);
       case 'field':
-        return this.fieldAnswered(message.id, message.answer);
+        return this.#fieldAnswered(message.id, message.answer);
       default:
     }
     const { current } = this.runs;
@@ -232,37 +240,37 @@ export class Sampler {
     }
     switch (message.type) {
       case 'box':
-        return this.boxFound(message.answer, current);
+        return this.#boxFound(message.answer, current);
       case 'progress':
-        return this.presenter.progress(message.progress, current);
+        return this.#presenter.progress(message.progress, current);
       case 'columns':
-        return this.takeColumns(message, current);
+        return this.#takeColumns(message, current);
       case 'past':
-        return this.presenter.past(message, current);
+        return this.#presenter.past(message, current);
       case 'done':
-        return this.ended(message, current);
+        return this.#ended(message, current);
       case 'report':
-        this.presenter.report(message);
-        return this.happened({ type: 'reported' });
+        this.#presenter.report(message);
+        return this.#happened({ type: 'reported' });
       default:
     }
   }
 
   /** @param {Description} description */
-  ready(description) {
+  #ready(description) {
     const first = this.store.description.value === null;
     this.store.description.value = description;
-    if (first) this.onReady();
+    if (first) this.#onReady();
   }
 
   /** @param {number} id @param {FieldAnswer} answer */
-  fieldAnswered(id, answer) {
+  #fieldAnswered(id, answer) {
     const run = askedRun(this.runs, id);
     if (run?.request.kind !== 'sample') return;
     const { request } = run;
     batch(() => {
-      if (answer.ok) this.fieldAccepted(id, request, answer);
-      else this.fieldRefused(id, answer);
+      if (answer.ok) this.#fieldAccepted(id, request, answer);
+      else this.#fieldRefused(id, answer);
     });
   }
 
@@ -272,10 +280,10 @@ export class Sampler {
    * @param {SampleRequest} request
    * @param {FieldOk} answer
    */
-  fieldAccepted(id, request, answer) {
-    this.happened({ type: 'accepted', id, bounds: answer.bounds });
-    this.presenter.begin(id, request);
-    if (!request.restoring) this.presenter.field(request.field, answer);
+  #fieldAccepted(id, request, answer) {
+    this.#happened({ type: 'accepted', id, bounds: answer.bounds });
+    this.#presenter.begin(id, request);
+    if (!request.restoring) this.#presenter.field(request.field, answer);
   }
 
   /**
@@ -283,63 +291,63 @@ export class Sampler {
    * @param {FieldOk} answer
    * @param {Run} run
    */
-  boxFound(answer, { request }) {
+  #boxFound(answer, { request }) {
     if (request.kind !== 'sample') return;
-    this.happened({ type: 'boxed', bounds: answer.bounds });
-    if (!request.restoring) this.presenter.box(answer);
+    this.#happened({ type: 'boxed', bounds: answer.bounds });
+    if (!request.restoring) this.#presenter.box(answer);
   }
 
   /** @param {number} id @param {Extract<FieldAnswer, {ok: false}>} answer */
-  fieldRefused(id, answer) {
+  #fieldRefused(id, answer) {
     const wasRunning = runningOf(this.runs)?.id === id;
-    this.presenter.fault(answer);
-    if (!this.runs.current) this.presenter.idle({ run: id, phase: 'done' });
-    this.dim();
-    this.happened({ type: 'refused', id });
-    this.sendWaiting(wasRunning);
-    this.settle();
+    this.#presenter.fault(answer);
+    if (!this.runs.current) this.#presenter.idle({ run: id, phase: 'done' });
+    this.#dim();
+    this.#happened({ type: 'refused', id });
+    this.#sendWaiting(wasRunning);
+    this.#settle();
   }
 
   /** Dims the surface if it is not the requested one. */
-  dim() {
-    this.presenter.dim(this.runs.astray);
+  #dim() {
+    this.#presenter.dim(this.runs.astray);
   }
 
   /** @param {ColumnsMessage} message @param {Run} run */
-  takeColumns(message, run) {
+  #takeColumns(message, run) {
     const drawn = () => this.client.post({ type: 'drawn', id: message.id });
     // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
     if (message.total === 0) return drawn();
     if (run.stage === 'seeding') {
-      this.happened({ type: 'particles', description: this.store.description.value });
-      this.presenter.first(run);
-      if (run.request.kind === 'sample') this.dim();
+      this.#happened({ type: 'particles', description: this.store.description.value });
+      this.#presenter.first(run);
+      if (run.request.kind === 'sample') this.#dim();
     }
-    this.presenter.particles(message, run, drawn);
+    this.#presenter.particles(message, run, drawn);
   }
 
   /** @param {DoneMessage} message @param {Run} run */
-  ended(message, run) {
+  #ended(message, run) {
     const { outcome, progress, reportFollows } = message;
     const { request } = run;
     const particles = progress?.particles ?? 0;
     const surface = tookPlace(outcome, particles);
     const wasRunning = runningOf(this.runs)?.id === message.id;
     batch(() => {
-      this.happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
+      this.#happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
       if (surface) {
-        this.presenter.end(message, run, particles);
-        this.learn(message, run, particles);
+        this.#presenter.end(message, run, particles);
+        this.#learn(message, run, particles);
       } else {
-        this.presenter.failure(message);
+        this.#presenter.failure(message);
       }
-      if (!surface || particles === 0) this.dim();
+      if (!surface || particles === 0) this.#dim();
     });
-    this.sendWaiting(wasRunning);
+    this.#sendWaiting(wasRunning);
     if (request.kind !== 'sample') return;
-    if (outcome === 'ask') this.onAsk(message.predicted, request);
+    if (outcome === 'ask') this.#onAsk(message.predicted, request);
     // If an error ended a drag, no full run follows it.
-    if ((!surface && !request.restoring) || (request.live && this.store.fieldError.value)) this.settle();
+    if ((!surface && !request.restoring) || (request.live && this.store.fieldError.value)) this.#settle();
   }
 
   /**
@@ -348,11 +356,11 @@ export class Sampler {
    * @param {Run} run
    * @param {number} particles
    */
-  learn({ seconds, progress }, run, particles) {
+  #learn({ seconds, progress }, run, particles) {
     const { store } = this;
-    const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.whole());
+    const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.#whole());
     const size = sizeOfRun(sampled.settings, progress?.radius ?? 0, store.field.value?.bounds);
-    const drag = this.pace.record(run, sampled, { seconds, particles, relax_steps: progress?.relax_step ?? 0, size });
+    const drag = this.#pace.record(run, sampled, { seconds, particles, relax_steps: progress?.relax_step ?? 0, size });
     if (drag) store.lastDrag.value = drag;
   }
 
@@ -360,7 +368,7 @@ export class Sampler {
   // ----------------------------------------------------------------------------------------------
 
   /** Version of the core; empty until the core has loaded. */
-  get version() {
+  get #version() {
     return this.store.description.value?.version ?? '';
   }
 
@@ -368,13 +376,13 @@ export class Sampler {
    * Drops all runs, because the worker is gone.
    * @returns {SampleRequest | null} the run that is lost with the worker
    */
-  forget() {
+  #forget() {
     const lost = lostRun(this.runs, this.store.description.value);
     this.client.forgetFiles();
     batch(() => {
-      this.happened({ type: 'lost' });
+      this.#happened({ type: 'lost' });
       // Before the core has described itself there has been no run that could be over.
-      this.presenter.idle({ phase: this.store.description.value ? 'done' : 'idle' });
+      this.#presenter.idle({ phase: this.store.description.value ? 'done' : 'idle' });
     });
     return lost;
   }
@@ -384,38 +392,38 @@ export class Sampler {
    * between.
    * @param {Crash} crash
    */
-  restarted(crash) {
+  #restarted(crash) {
     batch(() => {
-      const lost = this.forget();
+      const lost = this.#forget();
       const input = lost ? inputOf(lost) : '';
       const again = lost !== null && input !== this.runs.crashedInput;
-      this.happened({ type: 'crashed', input, again });
-      this.store.notice.value = restartNotice(crash, lost, { again, version: this.version });
+      this.#happened({ type: 'crashed', input, again });
+      this.store.notice.value = restartNotice(crash, lost, { again, version: this.#version });
       if (again) {
         this.submit(lost);
       } else {
-        this.dim();
-        this.settle();
+        this.#dim();
+        this.#settle();
       }
     });
   }
 
   /** @param {Crash} crash */
-  safeMode(crash) {
-    const lost = this.forget();
-    this.store.notice.value = safeModeNotice(crash, lost, this.version, () => this.revive());
+  #safeMode(crash) {
+    const lost = this.#forget();
+    this.store.notice.value = safeModeNotice(crash, lost, this.#version, () => this.#revive());
   }
 
   /** @param {string} text */
-  loadFailed(text) {
-    this.forget();
-    this.store.notice.value = loadNotice(text, () => this.revive());
+  #loadFailed(text) {
+    this.#forget();
+    this.store.notice.value = loadNotice(text, () => this.#revive());
   }
 
-  revive() {
+  #revive() {
     this.store.notice.value = null;
-    this.happened({ type: 'revived' });
+    this.#happened({ type: 'revived' });
     this.client.revive();
-    if (this.store.description.value) this.submit({ ...this.whole(), grow: false });
+    if (this.store.description.value) this.submit({ ...this.#whole(), grow: false });
   }
 }

@@ -34,6 +34,21 @@ const BROWSER_CLOCK = {
 };
 
 export class Supervisor {
+  #spawn;
+  #onMessage;
+  #onRestart;
+  #onSafeMode;
+  #onLoadError;
+  #clock;
+  #busy;
+  #heard;
+
+  /** Time until which the worker may be silent. */
+  #deadline;
+
+  /** @type {any} */
+  #timer;
+
   /**
    * @param {object} options
    * @param {() => WorkerLike} options.spawn
@@ -44,33 +59,31 @@ export class Supervisor {
    * @param {Clock} [options.clock]
    */
   constructor({ spawn, onMessage, onRestart, onSafeMode, onLoadError, clock = BROWSER_CLOCK }) {
-    this.spawn = spawn;
-    this.onMessage = onMessage;
-    this.onRestart = onRestart;
-    this.onSafeMode = onSafeMode;
-    this.onLoadError = onLoadError;
-    this.clock = clock;
+    this.#spawn = spawn;
+    this.#onMessage = onMessage;
+    this.#onRestart = onRestart;
+    this.#onSafeMode = onSafeMode;
+    this.#onLoadError = onLoadError;
+    this.#clock = clock;
     /** @type {WorkerLike | null} */
     this.worker = null;
     /** @type {'off' | 'loading' | 'up' | 'failed' | 'safe'} */
     this.state = 'off';
-    this.busy = false;
-    this.heard = false;
-    /** Time until which the worker may be silent. */
-    this.deadline = 0;
-    /** @type {any} */
-    this.timer = null;
+    this.#busy = false;
+    this.#heard = false;
+    this.#deadline = 0;
+    this.#timer = null;
     /** @type {number[]} */
     this.restarts = [];
   }
 
   start() {
     if (this.worker) return;
-    const worker = this.spawn();
+    const worker = this.#spawn();
     this.worker = worker;
     this.state = 'loading';
-    this.busy = false;
-    this.heard = false;
+    this.#busy = false;
+    this.#heard = false;
     worker.onmessage = ({ data }) => {
       // The last messages of a terminated worker may still arrive. They are ignored.
       if (this.worker === worker) this.receive(data);
@@ -78,11 +91,11 @@ export class Supervisor {
     worker.onerror = (event) => {
       if (this.worker !== worker) return;
       if (this.state === 'loading') {
-        this.drop();
+        this.#drop();
         this.state = 'failed';
-        this.onLoadError(event.message || 'its script did not load');
+        this.#onLoadError(event.message || 'its script did not load');
       } else {
-        this.replace('panic', event.message || 'uncaught error', '');
+        this.#replace('panic', event.message || 'uncaught error', '');
       }
     };
   }
@@ -101,49 +114,49 @@ export class Supervisor {
 
   /** Sets whether the worker has work. Silence is only monitored while it has. @param {boolean} busy */
   setBusy(busy) {
-    if (busy && !this.busy) this.deadline = this.clock.now() + SILENCE_MS;
-    this.busy = busy;
-    this.watch();
+    if (busy && !this.#busy) this.#deadline = this.#clock.now() + SILENCE_MS;
+    this.#busy = busy;
+    this.#watch();
   }
 
   /** @param {FromWorker} message */
   receive(message) {
-    this.heard = true;
-    this.deadline = this.clock.now() + SILENCE_MS;
+    this.#heard = true;
+    this.#deadline = this.#clock.now() + SILENCE_MS;
     if (message.type === 'ready') this.state = 'up';
     if (message.type === 'failed') {
-      this.drop();
+      this.#drop();
       this.state = 'failed';
     }
     if (message.type === 'crashed') {
-      this.replace('panic', message.message, message.stack);
+      this.#replace('panic', message.message, message.stack);
       return;
     }
-    this.watch();
-    this.onMessage(message);
+    this.#watch();
+    this.#onMessage(message);
   }
 
-  watch() {
-    const on = this.worker !== null && (this.busy || (this.state === 'loading' && this.heard));
+  #watch() {
+    const on = this.worker !== null && (this.#busy || (this.state === 'loading' && this.#heard));
     if (!on) {
-      this.clock.clearTimeout(this.timer);
-      this.timer = null;
-    } else if (this.timer === null) {
-      this.timer = this.clock.setTimeout(() => this.check(false), Math.max(1, this.deadline - this.clock.now()));
+      this.#clock.clearTimeout(this.#timer);
+      this.#timer = null;
+    } else if (this.#timer === null) {
+      this.#timer = this.#clock.setTimeout(() => this.#check(false), Math.max(1, this.#deadline - this.#clock.now()));
     }
   }
 
   /** @param {boolean} again */
-  check(again) {
-    this.timer = null;
-    if (this.clock.now() < this.deadline) this.watch();
-    else if (!again) this.timer = this.clock.setTimeout(() => this.check(true), GRACE_MS);
-    else this.replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
+  #check(again) {
+    this.#timer = null;
+    if (this.#clock.now() < this.#deadline) this.#watch();
+    else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
+    else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
-  drop() {
-    this.clock.clearTimeout(this.timer);
-    this.timer = null;
+  #drop() {
+    this.#clock.clearTimeout(this.#timer);
+    this.#timer = null;
     const { worker } = this;
     this.worker = null;
     if (worker) {
@@ -151,26 +164,26 @@ export class Supervisor {
       worker.onerror = null;
       worker.terminate();
     }
-    this.busy = false;
+    this.#busy = false;
   }
 
   /** @param {Crash['cause']} cause @param {string} message @param {string} stack */
-  replace(cause, message, stack) {
-    this.drop();
-    const now = this.clock.now();
+  #replace(cause, message, stack) {
+    this.#drop();
+    const now = this.#clock.now();
     this.restarts = [...this.restarts.filter((t) => now - t < WINDOW_MS), now];
     const crash = { cause, message, stack, restarts: this.restarts.length };
     if (this.restarts.length > RESTARTS) {
       this.state = 'safe';
-      this.onSafeMode(crash);
+      this.#onSafeMode(crash);
     } else {
       this.start();
-      this.onRestart(crash);
+      this.#onRestart(crash);
     }
   }
 
   stop() {
-    this.drop();
+    this.#drop();
     this.state = 'off';
   }
 }

@@ -167,13 +167,22 @@ export function ballOf({ min, max }) {
 
 /** A camera in motion: its state, its angular speed, and the destination of a fit, if any. */
 export class Camera {
+  #yawPerS;
+  #pitchPerS;
+
+  /** @type {{target: Vec3, distance: number, yaw?: number, pitch?: number} | null} */
+  #glide;
+
+  /** Limits of the distance, from the size of the scene. */
+  #nearLimit;
+  #farLimit;
+
   /** @param {CameraState} [state] */
   constructor(state = homeCamera()) {
     this.state = { ...state };
-    this.yawPerS = 0;
-    this.pitchPerS = 0;
-    /** @type {{target: Vec3, distance: number, yaw?: number, pitch?: number} | null} */
-    this.glide = null;
+    this.#yawPerS = 0;
+    this.#pitchPerS = 0;
+    this.#glide = null;
     /**
      * A slow turn under way: its angles, and the time since its pause began.
      * @type {{from: Angles, to: Angles, sinceS: number} | null}
@@ -181,9 +190,8 @@ export class Camera {
     this.turn = null;
     /** Whether motion is reduced: no easing and no animation. */
     this.calm = false;
-    /** Limits of the distance, from the size of the scene. */
-    this.nearLimit = 1e-3;
-    this.farLimit = 1e4;
+    this.#nearLimit = 1e-3;
+    this.#farLimit = 1e4;
   }
 
   /** @param {CameraState} state */
@@ -193,9 +201,9 @@ export class Camera {
   }
 
   rest() {
-    this.yawPerS = 0;
-    this.pitchPerS = 0;
-    this.glide = null;
+    this.#yawPerS = 0;
+    this.#pitchPerS = 0;
+    this.#glide = null;
     this.turn = null;
   }
 
@@ -217,8 +225,8 @@ export class Camera {
 
   /** @param {number} radius  of the scene */
   limits(radius) {
-    this.nearLimit = radius * 0.02;
-    this.farLimit = radius * 60;
+    this.#nearLimit = radius * 0.02;
+    this.#farLimit = radius * 60;
   }
 
   /**
@@ -239,8 +247,8 @@ export class Camera {
   /** Continues a rotation at the speed of its release. @param {number} yawPerS @param {number} pitchPerS */
   fling(yawPerS, pitchPerS) {
     if (this.calm) return;
-    this.yawPerS = clamp(yawPerS, -12, 12);
-    this.pitchPerS = clamp(pitchPerS, -12, 12);
+    this.#yawPerS = clamp(yawPerS, -12, 12);
+    this.#pitchPerS = clamp(pitchPerS, -12, 12);
   }
 
   /**
@@ -251,7 +259,7 @@ export class Camera {
   zoom(factor, at = null) {
     if (!(factor > 0) || !Number.isFinite(factor)) return;
     const { target, distance } = this.state;
-    const next = clamp(distance / factor, this.nearLimit, this.farLimit);
+    const next = clamp(distance / factor, this.#nearLimit, this.#farLimit);
     let moved = target;
     if (at) {
       const ray = rayThrough(at.view, at.xPx, at.yPx, at.widthPx, at.heightPx);
@@ -261,7 +269,7 @@ export class Camera {
       moved = vec((k) => target[k] + share * (at.view.eye[k] + ray[k] * along - target[k]));
     }
     this.state = { ...this.state, distance: next, target: moved, fit: false };
-    this.glide = null;
+    this.#glide = null;
     this.turn = null;
   }
 
@@ -273,7 +281,7 @@ export class Camera {
       target: vec((k) => this.state.target[k] + scale * (-dxPx * view.right[k] + dyPx * view.up[k])),
       fit: false,
     };
-    this.glide = null;
+    this.#glide = null;
     this.turn = null;
   }
 
@@ -288,9 +296,9 @@ export class Camera {
     this.state = { ...this.state, fit: true };
     if (jump || this.calm) {
       this.state = { ...this.state, ...goal };
-      this.glide = null;
+      this.#glide = null;
     } else {
-      this.glide = goal;
+      this.#glide = goal;
     }
   }
 
@@ -299,9 +307,9 @@ export class Camera {
    * @param {{centre: Vec3, radius: number}} ball
    */
   glideTo({ centre, radius }) {
-    const goal = { target: centre, distance: Math.max(this.nearLimit, fitDistance(radius)) };
+    const goal = { target: centre, distance: Math.max(this.#nearLimit, fitDistance(radius)) };
     if (this.calm) this.state = { ...this.state, ...goal };
-    else this.glide = { ...this.glide, ...goal };
+    else this.#glide = { ...this.#glide, ...goal };
   }
 
   /** Eases to these angles, the shorter way around, and goes on with a fit under way. @param {Angles} to */
@@ -309,11 +317,11 @@ export class Camera {
     const { state } = this;
     const way = Math.atan2(Math.sin(yaw - state.yaw), Math.cos(yaw - state.yaw));
     const goal = { yaw: state.yaw + way, pitch: clamp(pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD) };
-    this.yawPerS = 0;
-    this.pitchPerS = 0;
+    this.#yawPerS = 0;
+    this.#pitchPerS = 0;
     this.turn = null;
     if (this.calm) this.state = { ...state, ...goal, yaw: goal.yaw % (2 * Math.PI) };
-    else this.glide = { target: state.target, distance: state.distance, ...this.glide, ...goal };
+    else this.#glide = { target: state.target, distance: state.distance, ...this.#glide, ...goal };
   }
 
   /**
@@ -322,7 +330,7 @@ export class Camera {
    * @param {Vec3} normal  towards the camera
    */
   lookAt({ centre, radius }, [x, y, z]) {
-    const distance = Math.max(this.nearLimit, Math.min(this.state.distance, fitDistance(radius)));
+    const distance = Math.max(this.#nearLimit, Math.min(this.state.distance, fitDistance(radius)));
     const turn = Math.hypot(x, y) > 1e-6 ? Math.atan2(y, x) - this.state.yaw : 0;
     const goal = {
       target: centre,
@@ -334,7 +342,7 @@ export class Camera {
     this.rest();
     this.state = { ...this.state, fit: false };
     if (this.calm) this.state = { ...this.state, ...goal, yaw: goal.yaw % (2 * Math.PI) };
-    else this.glide = goal;
+    else this.#glide = goal;
   }
 
   /**
@@ -345,23 +353,23 @@ export class Camera {
   step(dtS) {
     const keep = Math.exp(-dtS / EASE_S);
     let moving = false;
-    if (this.yawPerS !== 0 || this.pitchPerS !== 0) {
+    if (this.#yawPerS !== 0 || this.#pitchPerS !== 0) {
       // The exact angle covered while the speed decays exponentially.
       const way = EASE_S * (1 - keep);
-      this.orbit(this.yawPerS * way, this.pitchPerS * way);
-      this.yawPerS *= keep;
-      this.pitchPerS *= keep;
-      if (Math.hypot(this.yawPerS, this.pitchPerS) < REST_RAD_PER_S) {
-        this.yawPerS = 0;
-        this.pitchPerS = 0;
+      this.orbit(this.#yawPerS * way, this.#pitchPerS * way);
+      this.#yawPerS *= keep;
+      this.#pitchPerS *= keep;
+      if (Math.hypot(this.#yawPerS, this.#pitchPerS) < REST_RAD_PER_S) {
+        this.#yawPerS = 0;
+        this.#pitchPerS = 0;
       } else moving = true;
     }
-    const turning = this.turnOn(dtS);
-    return this.follow(keep) || turning || moving;
+    const turning = this.#turnOn(dtS);
+    return this.#follow(keep) || turning || moving;
   }
 
   /** Advances a turn by `dtS`. @param {number} dtS @returns {boolean} whether it continues */
-  turnOn(dtS) {
+  #turnOn(dtS) {
     if (!this.turn) return false;
     const { from, to } = this.turn;
     this.turn.sinceS += dtS;
@@ -378,10 +386,10 @@ export class Camera {
    * @param {number} keep
    * @returns {boolean} whether it continues
    */
-  follow(keep) {
-    if (!this.glide) return false;
+  #follow(keep) {
+    if (!this.#glide) return false;
     const { state } = this;
-    const { target, distance, yaw = state.yaw, pitch = state.pitch } = this.glide;
+    const { target, distance, yaw = state.yaw, pitch = state.pitch } = this.#glide;
     const log = Math.log(distance) + (Math.log(state.distance) - Math.log(distance)) * keep;
     const next = vec((k) => target[k] + (state.target[k] - target[k]) * keep);
     const turned = { yaw: yaw + (state.yaw - yaw) * keep, pitch: pitch + (state.pitch - pitch) * keep };
@@ -392,7 +400,7 @@ export class Camera {
       Math.abs(turned.pitch - pitch);
     // The motion ends at a thousandth of the distance, which is less than a pixel.
     const ends = left < 1e-3;
-    if (ends) this.glide = null;
+    if (ends) this.#glide = null;
     this.state = ends
       ? { ...state, target, distance, yaw: yaw % (2 * Math.PI), pitch }
       : { ...state, ...turned, target: next, distance: Math.exp(log) };

@@ -20,6 +20,20 @@ const TRIES = 3;
 const WAIT_MS = [0, 300, 1000];
 
 export class DeviceKeeper {
+  #host;
+  #onOpen;
+  #onLost;
+  #onFallback;
+  #open;
+  #clock;
+  #rank;
+
+  /** Whether the picture is in sight. */
+  #inSight;
+
+  /** Whether dots stand for a device that was lost out of sight. */
+  #resting;
+
   /**
    * @param {object} options
    * @param {HTMLElement} options.host
@@ -32,16 +46,16 @@ export class DeviceKeeper {
    * @param {{now: () => number, wait: (ms: number) => Promise<void>}} [options.clock]
    */
   constructor({ host, onOpen, onLost, onFallback, first = null, open = openDevice, clock }) {
-    this.host = host;
-    this.onOpen = onOpen;
-    this.onLost = onLost;
-    this.onFallback = onFallback;
-    this.open = open;
-    this.clock = clock ?? {
+    this.#host = host;
+    this.#onOpen = onOpen;
+    this.#onLost = onLost;
+    this.#onFallback = onFallback;
+    this.#open = open;
+    this.#clock = clock ?? {
       now: () => performance.now(),
       wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)),
     };
-    this.rank = first ? BACKENDS.indexOf(first) : 0;
+    this.#rank = first ? BACKENDS.indexOf(first) : 0;
     /** @type {Device | null} */
     this.device = null;
     /** Counter of device changes, by which late answers are recognised. */
@@ -50,10 +64,8 @@ export class DeviceKeeper {
     this.losses = [];
     /** Number of devices opened so far. */
     this.opened = 0;
-    /** Whether the picture is in sight. */
-    this.inSight = true;
-    /** Whether dots stand for a device that was lost out of sight. */
-    this.resting = false;
+    this.#inSight = true;
+    this.#resting = false;
     /** Those who wait for an answer of the device. @type {Set<(error: Error) => void>} */
     this.waiting = new Set();
   }
@@ -62,10 +74,10 @@ export class DeviceKeeper {
   async start() {
     this.epoch += 1;
     const { epoch } = this;
-    for (; this.rank < BACKENDS.length; this.rank += 1) {
-      const kind = BACKENDS[this.rank];
+    for (; this.#rank < BACKENDS.length; this.#rank += 1) {
+      const kind = BACKENDS[this.#rank];
       try {
-        const device = await this.open(kind, this.host, {
+        const device = await this.#open(kind, this.#host, {
           onLost: (reason, message) => {
             if (this.epoch === epoch) this.lost(`${reason}: ${message}`);
           },
@@ -78,12 +90,12 @@ export class DeviceKeeper {
           device.dispose();
           return;
         }
-        this.take(device);
+        this.#take(device);
         return;
       } catch (error) {
         if (this.epoch !== epoch) return;
         if (kind !== 'canvas2d')
-          this.onFallback(
+          this.#onFallback(
             kind,
             error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),
           );
@@ -92,18 +104,18 @@ export class DeviceKeeper {
   }
 
   /** @param {Device} device */
-  take(device) {
+  #take(device) {
     this.device = device;
     this.opened += 1;
-    this.onOpen(device);
+    this.#onOpen(device);
   }
 
   /** Draws dots on a 2-D canvas, which needs no context of the graphics device, until the picture is in sight. */
-  async rest() {
-    this.resting = true;
+  async #rest() {
+    this.#resting = true;
     const { epoch } = this;
-    const device = await this.open('canvas2d', this.host, { onLost: () => {}, onError: () => {} });
-    if (this.epoch === epoch) this.take(device);
+    const device = await this.#open('canvas2d', this.#host, { onLost: () => {}, onError: () => {} });
+    if (this.epoch === epoch) this.#take(device);
     else device.dispose();
   }
 
@@ -112,14 +124,14 @@ export class DeviceKeeper {
    * @param {boolean} inSight
    */
   seen(inSight) {
-    this.inSight = inSight;
-    if (!inSight || !this.resting) return;
+    this.#inSight = inSight;
+    if (!inSight || !this.#resting) return;
     this.close();
     void this.start();
   }
 
   close() {
-    this.resting = false;
+    this.#resting = false;
     this.epoch += 1;
     this.device?.dispose();
     this.device = null;
@@ -139,33 +151,33 @@ export class DeviceKeeper {
 
   /** @param {string} message */
   lost(message) {
-    const kind = BACKENDS[this.rank];
+    const kind = BACKENDS[this.#rank];
     this.close();
-    if (!this.inSight) {
-      void this.rest();
+    if (!this.#inSight) {
+      void this.#rest();
       return;
     }
     const { epoch } = this;
-    const now = this.clock.now();
+    const now = this.#clock.now();
     this.losses = [...this.losses.filter((t) => now - t < WINDOW_MS), now];
     if (this.losses.length > TRIES) {
       this.losses = [];
-      this.rank += 1;
-      this.onFallback(kind, message);
+      this.#rank += 1;
+      this.#onFallback(kind, message);
     } else {
-      this.onLost(kind, message);
+      this.#onLost(kind, message);
     }
     const wait = WAIT_MS[Math.max(0, this.losses.length - 1)] ?? 0;
-    void this.clock.wait(wait).then(() => (this.epoch === epoch ? this.start() : undefined));
+    void this.#clock.wait(wait).then(() => (this.epoch === epoch ? this.start() : undefined));
   }
 
   /** Abandons this kind of device and opens the next one. @param {string} message */
   giveUp(message) {
-    const kind = BACKENDS[this.rank];
+    const kind = BACKENDS[this.#rank];
     this.close();
     this.losses = [];
-    this.rank = Math.min(this.rank + 1, BACKENDS.length - 1);
-    this.onFallback(kind, message);
+    this.#rank = Math.min(this.#rank + 1, BACKENDS.length - 1);
+    this.#onFallback(kind, message);
     void this.start();
   }
 }

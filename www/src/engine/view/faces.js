@@ -67,24 +67,30 @@ function gather(column, width, corners) {
 }
 
 export class FaceUpload {
+  /** The mesh that the device holds. @type {Mesh | null} */
+  #mesh;
+
+  /** Whether colours may have changed since they were uploaded. */
+  #faded;
+
+  /** Number of uploads. */
+  #writes;
+
   /** @param {Columns} columns */
   constructor(columns) {
     this.columns = columns;
-    /** The mesh that the device holds. @type {Mesh | null} */
-    this.mesh = null;
-    /** Whether colours may have changed since they were uploaded. */
-    this.faded = false;
-    /** Number of uploads. */
-    this.writes = 0;
+    this.#mesh = null;
+    this.#faded = false;
+    this.#writes = 0;
   }
 
   /** Marks everything for upload, for a new device. */
   restart() {
-    this.mesh = null;
+    this.#mesh = null;
   }
 
   recolour() {
-    this.faded = true;
+    this.#faded = true;
   }
 
   /**
@@ -98,12 +104,12 @@ export class FaceUpload {
     const { columns } = this;
     const mesh = drawn && columns.mesh && fits(renderer, columns.mesh, columns) ? columns.mesh : null;
     if (!mesh) {
-      if (this.mesh) renderer.set_faces(0, 0);
-      this.mesh = null;
+      if (this.#mesh) renderer.set_faces(0, 0);
+      this.#mesh = null;
       return;
     }
-    const isNew = mesh !== this.mesh;
-    if (!isNew && !this.faded) return;
+    const isNew = mesh !== this.#mesh;
+    if (!isNew && !this.#faded) return;
     const { triangles } = mesh;
     const { count, positions, normals, radii, levels } = columns;
     const colours = coloursOf(look.colour, look.theme, columns, 0, count, range);
@@ -115,11 +121,11 @@ export class FaceUpload {
         const columns = [gather(positions, 3, corners), gather(normals, 3, corners), gather(radii, 1, corners)];
         renderer.write_faces(from / 3, columns[0], columns[1], columns[2], gather(levels, 1, corners), of, on);
       } else renderer.tint_faces(from / 3, of, on);
-      this.writes += 1;
+      this.#writes += 1;
     }
     if (isNew) renderer.set_faces(triangles.length / 3, count);
-    this.mesh = mesh;
-    this.faded = false;
+    this.#mesh = mesh;
+    this.#faded = false;
   }
 }
 

@@ -20,32 +20,39 @@ export const nowS = () => performance.now() / 1000;
  */
 
 export class FrameLoop {
+  #draw;
+  #lastS;
+
+  /** Number of consecutive frames that the screen did not accept. */
+  #skipped;
+
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #retry;
+  #onVisible;
+
   /** @param {(nowS: number, dtS: number) => FrameResult} draw  draws one frame and may request the next */
   constructor(draw) {
-    this.draw = draw;
+    this.#draw = draw;
     /** Handle of the requested frame, 0 for none. */
     this.asked = 0;
-    this.lastS = 0;
+    this.#lastS = 0;
     /** Number of frames that the screen accepted. */
     this.drawn = 0;
-    /** Number of consecutive frames that the screen did not accept. */
-    this.skipped = 0;
-    /** @type {ReturnType<typeof setTimeout> | undefined} */
-    this.retry = undefined;
+    this.#skipped = 0;
+    this.#retry = undefined;
     /** Callbacks to run after the next frame. @type {(() => void)[]} */
     this.waiting = [];
-    this.frame = this.frame.bind(this);
     // On some systems a tab loses its picture while it is hidden.
-    this.onVisible = () => {
-      if (document.hidden) this.flush();
+    this.#onVisible = () => {
+      if (document.hidden) this.#flush();
       else this.ask();
     };
-    document.addEventListener('visibilitychange', this.onVisible);
+    document.addEventListener('visibilitychange', this.#onVisible);
   }
 
   /** Requests a frame. */
   ask() {
-    if (this.asked === 0 && !document.hidden) this.asked = requestAnimationFrame(this.frame);
+    if (this.asked === 0 && !document.hidden) this.asked = requestAnimationFrame(() => this.#frame());
   }
 
   /** @param {() => void} onDrawn  called after the next frame */
@@ -53,32 +60,32 @@ export class FrameLoop {
     this.waiting.push(onDrawn);
   }
 
-  flush() {
+  #flush() {
     const { waiting } = this;
     this.waiting = [];
     for (const drawn of waiting) drawn();
   }
 
-  frame() {
+  #frame() {
     this.asked = 0;
     const now = nowS();
-    const step = Math.min(now - this.lastS, LONGEST_STEP_S);
-    this.lastS = now;
-    const result = this.draw(now, step);
+    const step = Math.min(now - this.#lastS, LONGEST_STEP_S);
+    this.#lastS = now;
+    const result = this.#draw(now, step);
     if (result === 'drawn') {
       this.drawn += 1;
-      this.skipped = 0;
-    } else if (result === 'skipped' && this.skipped < MOST_SKIPS) {
-      this.skipped += 1;
-      this.retry = setTimeout(() => this.ask(), RETRY_MS);
+      this.#skipped = 0;
+    } else if (result === 'skipped' && this.#skipped < MOST_SKIPS) {
+      this.#skipped += 1;
+      this.#retry = setTimeout(() => this.ask(), RETRY_MS);
     }
-    this.flush();
+    this.#flush();
   }
 
   close() {
     cancelAnimationFrame(this.asked);
-    clearTimeout(this.retry);
-    document.removeEventListener('visibilitychange', this.onVisible);
-    this.flush();
+    clearTimeout(this.#retry);
+    document.removeEventListener('visibilitychange', this.#onVisible);
+    this.#flush();
   }
 }

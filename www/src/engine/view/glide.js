@@ -11,12 +11,16 @@ export const MOST_GLIDING = 20_000;
 const GLIDE_S = 0.1;
 
 export class Glide {
+  /** Positions that were drawn last. */
+  #shown;
+  #from;
+  #startS;
+
   constructor() {
-    /** Positions that were drawn last. */
-    this.shown = new Float32Array(0);
+    this.#shown = new Float32Array(0);
     this.count = 0;
-    this.from = new Float32Array(0);
-    this.startS = -Infinity;
+    this.#from = new Float32Array(0);
+    this.#startS = -Infinity;
     this.active = false;
   }
 
@@ -28,8 +32,8 @@ export class Glide {
 
   /** Starts a motion of particles that are already drawn. @param {number} nowS */
   begin(nowS) {
-    this.from = this.shown.slice(0, 3 * this.count);
-    this.startS = nowS;
+    this.#from = this.#shown.slice(0, 3 * this.count);
+    this.#startS = nowS;
     this.active = true;
   }
 
@@ -40,12 +44,12 @@ export class Glide {
    * @param {number} nowS
    */
   between(positions, count, nowS) {
-    const t = Math.min(1, Math.max(0, (nowS - this.startS) / GLIDE_S));
+    const t = Math.min(1, Math.max(0, (nowS - this.#startS) / GLIDE_S));
     if (t === 1) this.active = false;
     const eased = t * (2 - t);
     const out = positions.slice(0, 3 * count);
-    const n = Math.min(this.from.length, out.length);
-    for (let i = 0; i < n; i += 1) out[i] = this.from[i] + (out[i] - this.from[i]) * eased;
+    const n = Math.min(this.#from.length, out.length);
+    for (let i = 0; i < n; i += 1) out[i] = this.#from[i] + (out[i] - this.#from[i]) * eased;
     return out;
   }
 
@@ -60,12 +64,12 @@ export class Glide {
       this.forget();
       return;
     }
-    if (this.shown.length < 3 * last) {
+    if (this.#shown.length < 3 * last) {
       const grown = new Float32Array(3 * MOST_GLIDING);
-      grown.set(this.shown);
-      this.shown = grown;
+      grown.set(this.#shown);
+      this.#shown = grown;
     }
-    this.shown.set(positions.subarray(3 * first, 3 * last), 3 * first);
+    this.#shown.set(positions.subarray(3 * first, 3 * last), 3 * first);
     this.count = Math.max(this.count, last);
   }
 }

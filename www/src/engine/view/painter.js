@@ -113,6 +113,17 @@ function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, dept
 }
 
 export class Painter {
+  #canvas;
+  #count;
+
+  /** Time in seconds at which each particle appears. */
+  #births;
+
+  /** @type {Style} */
+  #style;
+  #image;
+  #depth;
+
   /** @param {HTMLCanvasElement} canvas */
   static async create(canvas) {
     const context = canvas.getContext('2d', { alpha: false });
@@ -122,19 +133,17 @@ export class Painter {
 
   /** @param {HTMLCanvasElement} canvas @param {CanvasRenderingContext2D} context */
   constructor(canvas, context) {
-    this.canvas = canvas;
+    this.#canvas = canvas;
     this.context = context;
-    this.count = 0;
+    this.#count = 0;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
     this.levels = new Uint32Array(0);
     this.colours = new Uint32Array(0);
-    /** Time in seconds at which each particle appears. */
-    this.births = new Float64Array(0);
+    this.#births = new Float64Array(0);
     this.view = new Float32Array(23);
-    /** @type {Style} */
-    this.style = {
+    this.#style = {
       background: [1, 1, 1, 1],
       disc_scale: 0.92,
       key_light_view: [-0.45, 0.65, 0.62],
@@ -143,8 +152,8 @@ export class Painter {
       outline: -1,
       box: null,
     };
-    this.image = new ImageData(1, 1);
-    this.depth = new Float32Array(1);
+    this.#image = new ImageData(1, 1);
+    this.#depth = new Float32Array(1);
     this.width = 0;
     this.height = 0;
   }
@@ -165,8 +174,8 @@ export class Painter {
   resize(widthPx, heightPx) {
     this.width = Math.max(0, Math.floor(widthPx));
     this.height = Math.max(0, Math.floor(heightPx));
-    this.canvas.width = this.width;
-    this.canvas.height = this.height;
+    this.#canvas.width = this.width;
+    this.#canvas.height = this.height;
   }
 
   /**
@@ -182,14 +191,14 @@ export class Painter {
       this.radii = grown(this.radii, room);
       this.levels = grown(this.levels, room);
       this.colours = grown(this.colours, room);
-      this.births = grown(this.births, room);
+      this.#births = grown(this.#births, room);
     }
     this.positions.set(positions, 3 * first);
     this.normals.set(normals, 3 * first);
     this.radii.set(radii, first);
     this.levels.set(levels, first);
     this.colours.set(colours, first);
-    this.births.fill(birthS, first, last);
+    this.#births.fill(birthS, first, last);
   }
 
   /** @param {number} first @param {Uint32Array} colours */
@@ -199,7 +208,7 @@ export class Painter {
 
   /** @param {number} n */
   set_count(n) {
-    this.count = Math.min(n, this.radii.length);
+    this.#count = Math.min(n, this.radii.length);
   }
 
   /** @param {Float32Array} view */
@@ -209,18 +218,18 @@ export class Painter {
 
   /** @param {string} json */
   set_style(json) {
-    this.style = { ...this.style, ...JSON.parse(json) };
+    this.#style = { ...this.#style, ...JSON.parse(json) };
   }
 
   /** @param {number} timeS @param {boolean} [transparent]  leaves the ground out */
   draw(timeS, transparent = false) {
     if (this.width === 0 || this.height === 0) return 'skipped';
-    if (this.image.width !== this.width || this.image.height !== this.height) {
-      this.image = new ImageData(this.width, this.height);
-      this.depth = new Float32Array(this.width * this.height);
+    if (this.#image.width !== this.width || this.#image.height !== this.height) {
+      this.#image = new ImageData(this.width, this.height);
+      this.#depth = new Float32Array(this.width * this.height);
     }
-    this.paint(this.image, this.depth, transparent, timeS);
-    this.context.putImageData(this.image, 0, 0);
+    this.#paint(this.#image, this.#depth, transparent, timeS);
+    this.context.putImageData(this.#image, 0, 0);
     return 'drawn';
   }
 
@@ -239,24 +248,24 @@ export class Painter {
       if (wider > 1) this.view[4 * k] /= wider;
       else this.view[4 * k + 1] *= wider;
     }
-    this.paint(image, new Float32Array(widthPx * heightPx), transparent, Infinity);
+    this.#paint(image, new Float32Array(widthPx * heightPx), transparent, Infinity);
     this.view = onScreen;
     return new Uint8Array(image.data.buffer);
   }
 
   destroy() {
-    this.count = 0;
-    this.image = new ImageData(1, 1);
-    this.depth = new Float32Array(1);
+    this.#count = 0;
+    this.#image = new ImageData(1, 1);
+    this.#depth = new Float32Array(1);
   }
 
   free() {}
 
   /** @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} timeS */
-  paint(image, depth, transparent, timeS) {
+  #paint(image, depth, transparent, timeS) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
-    const { background, box, key_light_view: toward } = this.style;
+    const { background, box, key_light_view: toward } = this.#style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
     // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
@@ -266,8 +275,8 @@ export class Painter {
     const light = Math.hypot(toward[0], toward[1], toward[2]) || 1;
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
     const scene = { target: { out, depth, width, height }, axes, key, ground };
-    for (let i = 0; i < this.count; i += 1) if (this.births[i] <= timeS) this.paintDisc(i, scene);
-    if (box) this.paintBox(out, depth, width, height, box);
+    for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
+    if (box) this.#paintBox(out, depth, width, height, box);
   }
 
   /**
@@ -276,10 +285,10 @@ export class Painter {
    * @param {{ target: Target, axes: ReturnType<typeof eyeAxes>, key: number[], ground: number[] }} scene  `key`: the
    *   direction to the light; `ground`: the background in linear light
    */
-  paintDisc(i, { target, axes, key, ground }) {
+  #paintDisc(i, { target, axes, key, ground }) {
     const { out, depth, width, height } = target;
     const { right, up, forward, clipXPerWorld } = axes;
-    const { dim, dim_backfaces, disc_scale, outline, level = null, plane = null } = this.style;
+    const { dim, dim_backfaces, disc_scale, outline, level = null, plane = null } = this.#style;
     const { positions, normals, radii, levels, colours, view: m } = this;
     const older = level !== null && levels[i] < level;
     if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) return;
@@ -347,7 +356,7 @@ export class Painter {
    * @param {Uint32Array} out @param {Float32Array} depth @param {number} width @param {number} height
    * @param {{min: number[], max: number[], colour: number[]}} box
    */
-  paintBox(out, depth, width, height, box) {
+  #paintBox(out, depth, width, height, box) {
     const m = this.view;
     const value =
       ((255 << 24) |

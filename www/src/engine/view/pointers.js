@@ -47,12 +47,14 @@ export function zoomAt({ camera, currentView, host }, factor, at) {
 }
 
 export class Pointers {
+  #panning;
+
   /** @param {Stage} stage */
   constructor(stage) {
     this.stage = stage;
     /** Position of each pressed pointer. @type {Map<number, Place>} */
     this.held = new Map();
-    this.panning = false;
+    this.#panning = false;
     /** The press that may still become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
     this.press = null;
     /** The last steps of a rotation. @type {{dx: number, dy: number, atMs: number}[]} */
@@ -70,7 +72,7 @@ export class Pointers {
     } catch {
       // The pointer is already gone. Its end event still follows.
     }
-    this.panning = event.button !== 0 || event.shiftKey;
+    this.#panning = event.button !== 0 || event.shiftKey;
     this.trail = [];
     this.press = this.held.size === 1 ? { ...at, atMs: event.timeStamp, still: true } : null;
     leave(true);
@@ -85,23 +87,23 @@ export class Pointers {
     if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
     if (held.size === 1) {
       if (press?.still) return;
-      this.drag(at.x - before.x, at.y - before.y, event.timeStamp);
+      this.#drag(at.x - before.x, at.y - before.y, event.timeStamp);
     } else if (held.size === 2) {
       const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
-      this.pinch(before, at, other);
+      this.#pinch(before, at, other);
     }
     held.set(event.pointerId, at);
     stage.moved();
   }
 
   /** @param {number} dx @param {number} dy @param {number} atMs */
-  drag(dx, dy, atMs) {
+  #drag(dx, dy, atMs) {
     const { camera, currentView } = this.stage;
-    if (this.panning) {
+    if (this.#panning) {
       camera.pan(dx, dy, currentView());
       return;
     }
-    camera.orbit(dx * this.radPerPx(), dy * this.radPerPx());
+    camera.orbit(dx * this.#radPerPx(), dy * this.#radPerPx());
     this.trail.push({ dx, dy, atMs });
     if (this.trail.length > MOST_STEPS) this.trail.shift();
   }
@@ -112,7 +114,7 @@ export class Pointers {
    * @param {Place} at
    * @param {Place} other  position of the other
    */
-  pinch(before, at, other) {
+  #pinch(before, at, other) {
     const { camera, currentView } = this.stage;
     const spanBefore = Math.hypot(before.x - other.x, before.y - other.y);
     const span = Math.hypot(at.x - other.x, at.y - other.y);
@@ -134,29 +136,29 @@ export class Pointers {
     this.trail = [];
     if (held.size > 0) {
       // The remaining finger continues from its position.
-      this.panning = false;
+      this.#panning = false;
       return;
     }
     const at = placeOn(stage.host, event);
     if (released && press?.still && event.timeStamp - press.atMs < TAP_MS && event.button === 0) {
       stage.point(at.x, at.y, true);
-    } else if (released && !this.panning) {
-      this.throw(trail, event.timeStamp);
+    } else if (released && !this.#panning) {
+      this.#throw(trail, event.timeStamp);
     }
     stage.moved();
   }
 
   /** Continues the rotation at the speed of the release. @param {Pointers['trail']} trail @param {number} nowMs */
-  throw(trail, nowMs) {
+  #throw(trail, nowMs) {
     const recent = trail.filter((step) => nowMs - step.atMs < THROW_MS);
     const since = recent.length ? nowMs - recent[0].atMs : 0;
     if (since <= LEAST_THROW_MS) return;
-    const perS = (this.radPerPx() * 1000) / since;
+    const perS = (this.#radPerPx() * 1000) / since;
     const sum = (/** @type {'dx' | 'dy'} */ key) => recent.reduce((total, step) => total + step[key], 0);
     this.stage.camera.fling(sum('dx') * perS, sum('dy') * perS);
   }
 
-  radPerPx() {
+  #radPerPx() {
     const { clientWidth, clientHeight } = this.stage.host;
     return TURN_PER_SIDE_RAD / Math.max(1, Math.min(clientWidth, clientHeight));
   }

@@ -9,9 +9,11 @@
 const STEP_S = 1.1 / 90;
 
 export class Reveal {
+  #startS;
+
   constructor() {
     this.active = false;
-    this.startS = 0;
+    this.#startS = 0;
     /** Time in seconds at which each level appears. @type {number[]} */
     this.births = [];
   }
@@ -19,7 +21,7 @@ export class Reveal {
   /** @param {number} nowS */
   begin(nowS) {
     this.active = true;
-    this.startS = nowS;
+    this.#startS = nowS;
     this.births = [];
   }
 
@@ -69,6 +71,6 @@ export class Reveal {
 
   /** Returns the time in seconds at which all known levels have appeared. */
   endS() {
-    return this.births.length ? this.births[this.births.length - 1] : this.startS;
+    return this.births.length ? this.births[this.births.length - 1] : this.#startS;
   }
 }

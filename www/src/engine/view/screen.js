@@ -12,13 +12,18 @@ const LARGEST_PIXEL_RATIO = 2;
 const LARGEST_PAINTED_RATIO = 1;
 
 export class Screen {
+  #host;
+  #onResize;
+  #largestRatio;
+  #observer;
+
   /**
    * @param {HTMLElement} host
    * @param {() => void} onResize  the size or the pixel ratio may have changed
    */
   constructor(host, onResize) {
-    this.host = host;
-    this.onResize = onResize;
+    this.#host = host;
+    this.#onResize = onResize;
     this.cssWidth = 0;
     this.cssHeight = 0;
     /** Size of the canvas in its own pixels. */
@@ -26,41 +31,41 @@ export class Screen {
     this.height = 0;
     /** Canvas pixels per page pixel. */
     this.ratio = 1;
-    this.largestRatio = LARGEST_PIXEL_RATIO;
-    this.observer = new ResizeObserver(() => this.measure());
-    this.observer.observe(host);
-    this.watchRatio();
-    this.measure();
+    this.#largestRatio = LARGEST_PIXEL_RATIO;
+    this.#observer = new ResizeObserver(() => this.#measure());
+    this.#observer.observe(host);
+    this.#watchRatio();
+    this.#measure();
   }
 
   /** Adopts the pixel ratio limit of a kind of device. @param {BackendKind} kind */
   drawnBy(kind) {
-    this.largestRatio = kind === 'canvas2d' ? LARGEST_PAINTED_RATIO : LARGEST_PIXEL_RATIO;
-    this.measure();
+    this.#largestRatio = kind === 'canvas2d' ? LARGEST_PAINTED_RATIO : LARGEST_PIXEL_RATIO;
+    this.#measure();
   }
 
-  measure() {
-    const { clientWidth, clientHeight } = this.host;
-    const ratio = Math.min(this.largestRatio, devicePixelRatio || 1);
+  #measure() {
+    const { clientWidth, clientHeight } = this.#host;
+    const ratio = Math.min(this.#largestRatio, devicePixelRatio || 1);
     this.cssWidth = clientWidth;
     this.cssHeight = clientHeight;
     this.width = Math.round(clientWidth * ratio);
     this.height = Math.round(clientHeight * ratio);
     this.ratio = ratio;
-    this.onResize();
+    this.#onResize();
   }
 
   /** Watches the pixel ratio, which changes without a resize when a window moves to another monitor. */
-  watchRatio() {
+  #watchRatio() {
     this.monitor = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
     this.monitor.onchange = () => {
-      this.watchRatio();
-      this.measure();
+      this.#watchRatio();
+      this.#measure();
     };
   }
 
   close() {
-    this.observer.disconnect();
+    this.#observer.disconnect();
     if (this.monitor) this.monitor.onchange = null;
   }
 }

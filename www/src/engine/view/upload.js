@@ -40,14 +40,16 @@ class Span {
 }
 
 export class ParticleUpload {
+  /** Particles whose colours have not been uploaded. */
+  #recoloured;
+
   /** @param {Columns} columns */
   constructor(columns) {
     this.columns = columns;
     this.glide = new Glide();
     /** Particles that have not been uploaded. */
     this.dirty = new Span();
-    /** Particles whose colours have not been uploaded. */
-    this.recoloured = new Span();
+    this.#recoloured = new Span();
     /** Values at the ends of the present colour ramp. @type {[number, number] | null} */
     this.range = null;
     /** Number of uploads of particles. */
@@ -61,7 +63,7 @@ export class ParticleUpload {
 
   /** Marks colours as possibly changed. @param {number} first @param {number} last */
   recolour(first, last) {
-    this.recoloured.include(first, last);
+    this.#recoloured.include(first, last);
   }
 
   /** Marks everything for upload. */
@@ -86,13 +88,13 @@ export class ParticleUpload {
   write(renderer, look, { reveal, calm, nowS }) {
     const { columns, glide, dirty } = this;
     const { count } = columns;
-    if (!dirty.empty || !this.recoloured.empty) this.followRange(look);
+    if (!dirty.empty || !this.#recoloured.empty) this.#followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
     if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(nowS);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;
-      const colours = this.colours(look, first, last);
+      const colours = this.#colours(look, first, last);
       for (const [from, end, birth] of reveal.runs(columns.levels, first, last, nowS)) {
         renderer.write(
           from,
@@ -107,18 +109,18 @@ export class ParticleUpload {
       }
       glide.note(positions, first, last);
     }
-    const recoloured = { first: this.recoloured.first, last: Math.min(this.recoloured.last, count) };
+    const recoloured = { first: this.#recoloured.first, last: Math.min(this.#recoloured.last, count) };
     if (recoloured.first < recoloured.last) {
-      renderer.write_colours(recoloured.first, this.colours(look, recoloured.first, recoloured.last));
+      renderer.write_colours(recoloured.first, this.#colours(look, recoloured.first, recoloured.last));
       this.writes += 1;
     }
     this.dirty = new Span();
-    this.recoloured = new Span();
+    this.#recoloured = new Span();
     return count;
   }
 
   /** @param {Look} look @param {number} first @param {number} last */
-  colours({ colour, theme }, first, last) {
+  #colours({ colour, theme }, first, last) {
     return coloursOf(colour, theme, this.columns, first, last, this.range);
   }
 
@@ -126,7 +128,7 @@ export class ParticleUpload {
    * Updates the ends of the ramp from the particles. If they change visibly, all colours are uploaded again.
    * @param {Look} look
    */
-  followRange({ colour }) {
+  #followRange({ colour }) {
     const range = rangeOf(colour, this.columns);
     const old = this.range;
     const slack = RANGE_SLACK * (range ? range[1] - range[0] : 0);

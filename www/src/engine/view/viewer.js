@@ -49,6 +49,14 @@ const LOOK_MS = 1000;
 const LOOK_RADII = 14;
 
 export class Viewer {
+  #events;
+  #scene;
+  #faces;
+
+  /** Whether the system requests reduced motion. */
+  #calm;
+  #sight;
+
   /**
    * @param {object} options
    * @param {HTMLElement} options.host
@@ -59,11 +67,11 @@ export class Viewer {
    */
   constructor({ host, columns, look, first }, events) {
     this.columns = columns;
-    this.events = events;
+    this.#events = events;
     this.camera = new Camera(look.camera);
     /** @type {Look} */
     this.look = firstLook(look);
-    this.scene = new Scene();
+    this.#scene = new Scene();
     this.reveal = new Reveal();
     /** Whether the next surface that grows is first seen from the side of its seed. */
     this.opening = false;
@@ -71,24 +79,23 @@ export class Viewer {
     this.growing = false;
     this.dimmer = new Dimmer();
     this.upload = new ParticleUpload(columns);
-    this.faces = new FaceUpload(columns);
+    this.#faces = new FaceUpload(columns);
     /** What has changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
-    this.frames = new FrameLoop((nowS, dtS) => this.frame(nowS, dtS));
-    this.screen = new Screen(host, () => this.resized());
-    /** Whether the system requests reduced motion. */
-    this.calm = matchMedia('(prefers-reduced-motion: reduce)');
-    this.camera.calm = this.calm.matches;
-    this.calm.onchange = () => this.calmed();
+    this.frames = new FrameLoop((nowS, dtS) => this.#frame(nowS, dtS));
+    this.screen = new Screen(host, () => this.#resized());
+    this.#calm = matchMedia('(prefers-reduced-motion: reduce)');
+    this.camera.calm = this.#calm.matches;
+    this.#calm.onchange = () => this.#calmed();
     this.keeper = new DeviceKeeper({
       host,
       first,
-      onOpen: (device) => this.opened(device),
+      onOpen: (device) => this.#opened(device),
       onLost: events.onLost,
       onFallback: events.onFallback,
     });
-    this.sight = new IntersectionObserver((entries) => this.keeper.seen(entries[entries.length - 1].isIntersecting));
-    this.sight.observe(host);
+    this.#sight = new IntersectionObserver((entries) => this.keeper.seen(entries[entries.length - 1].isIntersecting));
+    this.#sight.observe(host);
   }
 
   start() {
@@ -96,9 +103,9 @@ export class Viewer {
   }
 
   destroy() {
-    this.sight.disconnect();
+    this.#sight.disconnect();
     this.screen.close();
-    this.calm.onchange = null;
+    this.#calm.onchange = null;
     this.keeper.close();
     this.frames.close();
   }
@@ -108,19 +115,19 @@ export class Viewer {
 
   /** Replaces the old surface by a new one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
   begin({ grow, fit, bounds }) {
-    this.scene.shown = bounds ?? this.scene.bounds;
+    this.#scene.shown = bounds ?? this.#scene.bounds;
     // A surface of another size could otherwise grow around the camera or far from it.
     if (fit) this.fit(true);
-    if (grow && this.look.level === null && !this.calm.matches && !document.hidden) {
+    if (grow && this.look.level === null && !this.#calm.matches && !document.hidden) {
       this.reveal.begin(nowS());
-      this.events.onReveal({ level: 0, levels: 0, particles: 0 });
+      this.#events.onReveal({ level: 0, levels: 0, particles: 0 });
     } else {
-      this.endReveal();
+      this.#endReveal();
     }
     this.upload.restart();
     this.look = { ...this.look, highlight: -1, upto: null };
     this.remembered();
-    this.restyle();
+    this.#restyle();
   }
 
   /** Draws the particles as they were after the chosen relaxation step, or on their way there. */
@@ -158,14 +165,14 @@ export class Viewer {
   /** @param {number} first @param {number} last */
   recolour(first, last) {
     this.upload.recolour(first, last);
-    this.faces.recolour();
+    this.#faces.recolour();
     this.due.legend = true;
     this.frames.ask();
   }
 
   /** @param {boolean} on */
   dim(on) {
-    if (this.dimmer.set(on, nowS(), this.calm.matches)) this.restyle();
+    if (this.dimmer.set(on, nowS(), this.#calm.matches)) this.#restyle();
   }
 
   /** @param {Partial<Look>} patch */
@@ -175,36 +182,36 @@ export class Viewer {
     if (Object.entries(before).every(([name, value]) => this.look[/** @type {keyof Look} */ (name)] === value)) return;
     const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
-    if (marks !== before.marks) this.faces.recolour();
+    if (marks !== before.marks) this.#faces.recolour();
     this.remembered();
-    if (level !== before.level || this.look.upto !== before.upto) this.frameFront();
+    if (level !== before.level || this.look.upto !== before.upto) this.#frameFront();
     // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
-      this.endReveal();
+      this.#endReveal();
       this.upload.all();
     }
-    this.restyle();
+    this.#restyle();
   }
 
-  restyle() {
+  #restyle() {
     this.due.style = true;
     this.frames.ask();
   }
 
-  resized() {
+  #resized() {
     this.due.size = true;
-    this.restyle();
+    this.#restyle();
   }
 
-  calmed() {
-    this.camera.calm = this.calm.matches;
-    if (this.calm.matches && this.reveal.active) this.endReveal();
+  #calmed() {
+    this.camera.calm = this.#calm.matches;
+    if (this.#calm.matches && this.reveal.active) this.#endReveal();
     this.frames.ask();
   }
 
-  endReveal() {
+  #endReveal() {
     this.reveal.end();
-    this.events.onReveal(null);
+    this.#events.onReveal(null);
     // A mesh is drawn from now on.
     this.frames.ask();
   }
@@ -217,7 +224,7 @@ export class Viewer {
    * @param {Bounds} bounds
    */
   setBounds(bounds) {
-    this.scene.bounds = bounds;
+    this.#scene.bounds = bounds;
     this.camera.limits(ballOf(bounds).radius);
     this.frames.ask();
   }
@@ -227,7 +234,7 @@ export class Viewer {
    *   until then
    */
   fit(jump = false) {
-    const ball = jump ? this.scene.boxBall(this.look.box !== null) : this.fitBall();
+    const ball = jump ? this.#scene.boxBall(this.look.box !== null) : this.#fitBall();
     this.camera.fit(ball, jump);
     this.moved();
   }
@@ -241,21 +248,21 @@ export class Viewer {
   }
 
   /** Frames the part of the front that is drawn, unless the hand has taken the camera. */
-  frameFront() {
+  #frameFront() {
     const { camera, columns } = this;
     if (!camera.state.fit || columns.count === 0 || columns.stale || this.reveal.active) return;
-    camera.glideTo(this.fitBall());
+    camera.glideTo(this.#fitBall());
     this.moved();
   }
 
   /** Returns the ball that a fit shows. */
-  fitBall() {
+  #fitBall() {
     const { columns, look } = this;
     const { upto } = look;
     const newest = shownLevel(look, columns.lastLevel);
     const isWhole = upto === null && (newest === null || newest >= columns.lastLevel);
     const isShown = (/** @type {number} */ i) => i < (upto ?? Infinity) && columns.levels[i] <= (newest ?? Infinity);
-    return this.scene.fitBall(columns, look.box !== null, look.axes, isWhole ? undefined : isShown);
+    return this.#scene.fitBall(columns, look.box !== null, look.axes, isWhole ? undefined : isShown);
   }
 
   /** Brings a place before the camera, seen along its normal. @param {Place} place */
@@ -267,14 +274,14 @@ export class Viewer {
 
   /** Handles a motion of the camera. */
   moved() {
-    this.events.onCamera(this.camera.state);
+    this.#events.onCamera(this.camera.state);
     this.frames.ask();
   }
 
   /** @returns {View} */
   currentView() {
     const { cssWidth, cssHeight } = this.screen;
-    return viewOf(this.camera.state, cssWidth, cssHeight, this.scene.ball(), this.look.insets);
+    return viewOf(this.camera.state, cssWidth, cssHeight, this.#scene.ball(), this.look.insets);
   }
 
   /** Returns the index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
@@ -309,95 +316,95 @@ export class Viewer {
   // ------------------------------------------------------------------------------------------------------------
 
   /** @param {Device} device  without any particle yet */
-  opened(device) {
+  #opened(device) {
     this.screen.drawnBy(device.kind);
     this.upload.restart();
-    this.faces.restart();
-    this.restyle();
-    this.events.onDevice(device);
+    this.#faces.restart();
+    this.#restyle();
+    this.#events.onDevice(device);
   }
 
   /** @param {number} nowS @param {number} dtS @returns {FrameResult} */
-  frame(nowS, dtS) {
+  #frame(nowS, dtS) {
     const { device } = this.keeper;
     if (!device) return 'none';
     const before = this.camera.state;
     const moving = this.camera.step(dtS);
-    if (this.camera.state !== before) this.events.onCamera(this.camera.state);
+    if (this.camera.state !== before) this.#events.onCamera(this.camera.state);
     let outcome;
     try {
-      this.tell(device, nowS);
+      this.#tell(device, nowS);
       outcome = device.renderer.draw(nowS);
     } catch (error) {
       // The renderer has trapped. Its instance must not be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
-    if (this.due.legend && !this.reveal.active) this.tellLegend();
-    const revealing = this.tellReveal(nowS);
+    if (this.due.legend && !this.reveal.active) this.#tellLegend();
+    const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
     if (moving || revealing || dimming || this.upload.glide.active) this.frames.ask();
     if (outcome === 'drawn') {
-      this.events.onFrame();
+      this.#events.onFrame();
       return 'drawn';
     }
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
   }
 
   /** Passes the changes since the last frame to the device. @param {Device} device @param {number} nowS */
-  tell({ kind, renderer }, nowS) {
+  #tell({ kind, renderer }, nowS) {
     const { screen, due, upload, look, reveal } = this;
     if (due.size) {
       renderer.resize(screen.width, screen.height);
       due.size = false;
     }
-    const held = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
+    const held = upload.write(renderer, look, { reveal, calm: this.#calm.matches, nowS });
     const count = Math.min(held, look.upto ?? Infinity);
     if (kind !== 'canvas2d') {
       // The ghost of a surface shows where it will grow.
       const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
-      this.faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
+      this.#faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
     }
-    this.tellView(renderer, this.currentView(), count);
+    this.#tellView(renderer, this.currentView(), count);
     if (due.style) {
-      renderer.set_style(JSON.stringify(this.style(nowS)));
+      renderer.set_style(JSON.stringify(this.#style(nowS)));
       due.style = false;
     }
   }
 
   /** @param {Device['renderer']} renderer @param {View} view @param {number} count  particles that the device holds */
-  tellView(renderer, view, count) {
+  #tellView(renderer, view, count) {
     renderer.set_view(view.packed);
     if (this.look.upto !== null) return renderer.set_count(count);
     renderer.set_count(count + this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio }));
   }
 
-  tellLegend() {
+  #tellLegend() {
     const { colour, theme } = this.look;
     this.due.legend = false;
-    this.events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
+    this.#events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
   }
 
   /** @param {number} nowS @returns {boolean} whether further levels are to appear */
-  tellReveal(nowS) {
+  #tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;
     if (nowS > reveal.endS() + FADE_S && !this.growing) {
-      this.endReveal();
-      if (this.due.legend) this.tellLegend();
+      this.#endReveal();
+      if (this.due.legend) this.#tellLegend();
       return false;
     }
     const level = reveal.levelAt(nowS);
     let particles = 0;
     while (particles < columns.count && columns.levels[particles] <= level) particles += 1;
-    this.events.onReveal({ level: Math.max(0, level), levels: reveal.births.length, particles });
+    this.#events.onReveal({ level: Math.max(0, level), levels: reveal.births.length, particles });
     return true;
   }
 
   /** @param {number} nowS */
-  style(nowS) {
-    const calm = this.calm.matches;
+  #style(nowS) {
+    const calm = this.#calm.matches;
     const dim = this.dimmer.at(nowS, calm);
     return styleOf(this.look, { lastLevel: this.columns.lastLevel, dim, calm, pixelRatio: this.screen.ratio });
   }
@@ -414,15 +421,15 @@ export class Viewer {
     const now = nowS();
     // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
-    this.tell(device, now);
+    this.#tell(device, now);
     const [width, height] = renderer.picture_size(widthPx, heightPx);
     const { cssWidth, cssHeight } = this.screen;
-    const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.scene.ball());
+    const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.#scene.ball());
     fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
-    this.tellView(renderer, view, this.columns.count);
-    renderer.set_style(JSON.stringify({ ...this.style(now), dim: 0, outline: -1 }));
+    this.#tellView(renderer, view, this.columns.count);
+    renderer.set_style(JSON.stringify({ ...this.#style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
-    this.restyle();
+    this.#restyle();
     // A frame finds out whether the renderer has trapped meanwhile.
     const look = setInterval(() => this.frames.ask(), LOOK_MS);
     const pixels = await this.keeper.answered(picture).finally(() => clearInterval(look));

@@ -55,53 +55,61 @@ export function createFormula(engine, description) {
 
 /** The present editor, and the error in its text. */
 class FormulaInput {
+  #engine;
+  #functions;
+
+  /**
+   * Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys.
+   */
+  #unfinished;
+  #upgrading;
+  #fault;
+  #change;
+
   /**
    * @param {Engine} engine
    * @param {Description} description
    */
   constructor(engine, description) {
-    this.engine = engine;
-    this.functions = description.functions;
+    this.#engine = engine;
+    this.#functions = description.functions;
     this.error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
     this.holder = h('div', { class: 'editor', id: 'formula' });
-    /**
-     * Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys.
-     */
-    this.unfinished = false;
-    this.upgrading = false;
+    this.#unfinished = false;
+    this.#upgrading = false;
     const shown = computed(() => engine.state.value.formula);
-    this.fault = computed(() => engine.fieldError.value);
-    this.change = (/** @type {string} */ text) => {
+    this.#fault = computed(() => engine.fieldError.value);
+    this.#change = (/** @type {string} */ text) => {
       const { anchor, head } = this.editor.selection();
-      this.unfinished = anchor === head && beginsFunction(text.slice(0, head), this.functions, this.names());
-      engine.setFormula(text, { unfinished: this.unfinished });
+      this.#unfinished = anchor === head && beginsFunction(text.slice(0, head), this.#functions, this.#names());
+      engine.setFormula(text, { unfinished: this.#unfinished });
     };
     /** @type {Editor} */
-    this.editor = createTextarea({ text: shown.peek(), change: this.change, focused: () => this.upgrade() });
+    this.editor = createTextarea({ text: shown.peek(), change: this.#change, focused: () => this.#upgrade() });
     this.holder.append(this.editor.element);
     live(this.holder, () => {
       const text = shown.value;
       if (this.editor.text() !== text) this.editor.setText(text);
     });
     live(this.holder, () => {
-      void this.fault.value;
-      this.unfinished = false;
-      this.render();
+      void this.#fault.value;
+      this.#unfinished = false;
+      this.#render();
     });
     live(this.holder, () => {
       void shown.value;
-      this.render();
+      this.#render();
     });
   }
 
-  names() {
-    return this.engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
+  #names() {
+    return this.#engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
   }
 
   /** Replaces the text area by the full editor, on the first focus. If it cannot load, the text area stays. */
-  async upgrade() {
-    if (this.upgrading) return;
-    this.upgrading = true;
+  async #upgrade() {
+    if (this.#upgrading) return;
+    this.#upgrading = true;
     try {
       const { createCodeEditor } = await import('./code-editor.js');
       const plain = this.editor;
@@ -110,14 +118,14 @@ class FormulaInput {
       const focused = plain.element === document.activeElement;
       const next = createCodeEditor({
         text: plain.text(),
-        functions: this.functions,
-        change: this.change,
-        names: () => this.names(),
+        functions: this.#functions,
+        change: this.#change,
+        names: () => this.#names(),
         selection: plain.selection(),
       });
       this.editor = next;
       plain.element.replaceWith(next.element);
-      this.render();
+      this.#render();
       if (focused) next.focus();
     } catch {
       // The text area stays.
@@ -125,10 +133,10 @@ class FormulaInput {
   }
 
   /** Shows the error in the text, if any. */
-  render() {
+  #render() {
     const { editor, holder, error } = this;
-    const fault = this.fault.peek();
-    const view = describeFault(editor.text(), this.unfinished ? null : fault);
+    const fault = this.#fault.peek();
+    const view = describeFault(editor.text(), this.#unfinished ? null : fault);
     holder.classList.toggle('has-fault', view?.tone === 'fault');
     editor.setFault(view?.tone === 'fault' ? fault : null, view?.message ?? '');
     if (!view) return fill(error);
@@ -141,24 +149,24 @@ class FormulaInput {
         null,
         segmentsOf(view.message).map(({ text, code }) => (code ? h('code', null, text) : text)),
       ),
-      view.repairs.length ? this.repairButtons(view.repairs) : null,
+      view.repairs.length ? this.#repairButtons(view.repairs) : null,
     );
     // On a phone there is little room below the editor.
     if (holder.contains(document.activeElement)) error.scrollIntoView({ block: 'nearest' });
   }
 
   /** @param {Repair[]} repairs */
-  repairButtons(repairs) {
+  #repairButtons(repairs) {
     return h(
       'div',
       { class: 'repairs' },
-      repairs.map((repair) => button({ class: 'small', press: () => this.mend(repair) }, repair.label)),
+      repairs.map((repair) => button({ class: 'small', press: () => this.#mend(repair) }, repair.label)),
     );
   }
 
   /** @param {Repair} repair */
-  mend(repair) {
-    if (repair.declare) this.engine.declareParameter(repair.declare);
+  #mend(repair) {
+    if (repair.declare) this.#engine.declareParameter(repair.declare);
     if (repair.replace) this.editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
     this.editor.focus();
   }

@@ -41,10 +41,19 @@ import { alikeIn, settingsOf, surfaceKey } from './run.js';
 const LEAST_COARSER = 1.25;
 
 export class Follower {
+  #say;
+
+  /** @type {Wish | null} */
+  #wish;
+  #isLoading;
+
+  /** The particle of the picture that was followed last. @type {{ index: number, place: Vec3 } | null} */
+  #wanted;
+
   /** @param {Engine} engine @param {(text: string) => void} say  tells what a link names and is not there */
   constructor(engine, say) {
     this.engine = engine;
-    this.say = say;
+    this.#say = say;
     /** @type {Signal<Status>} */
     this.status = signal({ kind: 'running', particles: 0 });
     /** @type {Signal<Opened | null>} */
@@ -69,7 +78,7 @@ export class Follower {
      * @type {Signal<number | null>}
      */
     this.pointed = signal(null);
-    this.hot = computed(() => this.pointed.value ?? this.slotInPicture());
+    this.hot = computed(() => this.pointed.value ?? this.#slotInPicture());
     /** Whether the picture shows another surface, or one with another radius, than the run. */
     this.stale = computed(() => {
       const run = this.run.value;
@@ -83,17 +92,15 @@ export class Follower {
     this.client = null;
     /** Number of the last order, so that the answers to earlier ones are dropped. */
     this.asked = 0;
-    /** @type {Wish | null} */
-    this.wish = null;
-    this.isLoading = false;
-    /** The particle of the picture that was followed last. @type {{ index: number, place: Vec3 } | null} */
-    this.wanted = null;
+    this.#wish = null;
+    this.#isLoading = false;
+    this.#wanted = null;
     /** Does once more what was asked for last. @type {(radius: number | null) => void} */
     this.again = () => {};
   }
 
   /** The slot whose particle is under the pointer in the picture. */
-  slotInPicture() {
+  #slotInPicture() {
     const hover = this.engine.hover.value;
     const { moment, run } = this;
     if (!hover || !moment.value || !run.value || hover.index >= run.value.alike) return null;
@@ -112,11 +119,11 @@ export class Follower {
   async follow(index, coarser = null) {
     const { columns } = this.engine;
     if (index >= columns.count || columns.stale) return;
-    this.wanted = { index, place: triple(columns.placed, index) };
+    this.#wanted = { index, place: triple(columns.placed, index) };
     this.again = (radius) => void this.follow(index, radius);
-    const run = await this.runFor(coarser);
+    const run = await this.#runFor(coarser);
     if (!run) return;
-    const found = standIn(run.end.positions, this.wanted, run.adaptive ? 0 : run.radius);
+    const found = standIn(run.end.positions, this.#wanted, run.adaptive ? 0 : run.radius);
     if (found) await this.open(found.particle, { picture: { index, distance: found.distance } });
     else this.status.value = { kind: 'failed', text: 'The algorithm found no surface here.' };
   }
@@ -132,16 +139,16 @@ export class Follower {
     if (opened && !this.stale.peek() && opened.subject.particle === particle) return this.seek(at);
     if (columns.count === 0 || columns.stale) return;
     this.again = (radius) => void this.goTo(place, radius);
-    const run = await this.runFor(coarser);
+    const run = await this.#runFor(coarser);
     if (!run) return;
     const last = run.end.radii.length - 1;
     await this.open(Math.min(particle, last), { at });
     const now = this.opened.peek();
     if (!now) return;
-    this.wanted = { index: Math.min(now.subject.particle, columns.count - 1), place: now.place };
-    if (particle > last) this.say(`The link names particle ${formatCount(particle)}. The last one is shown.`);
-    else if (at > this.last)
-      this.say(
+    this.#wanted = { index: Math.min(now.subject.particle, columns.count - 1), place: now.place };
+    if (particle > last) this.#say(`The link names particle ${formatCount(particle)}. The last one is shown.`);
+    else if (at > this.#last)
+      this.#say(
         `The link names event ${formatCount(at + 1)} of particle ${formatCount(particle)}. The last one is shown.`,
       );
   }
@@ -149,7 +156,7 @@ export class Follower {
   /** Follows the particle of the present picture at the place of the one before. */
   async anew() {
     const { columns } = this.engine;
-    const found = this.wanted && nearest(columns.placed, columns.count, this.wanted.place);
+    const found = this.#wanted && nearest(columns.placed, columns.count, this.#wanted.place);
     if (found) await this.follow(found.particle);
   }
 
@@ -157,7 +164,7 @@ export class Follower {
    * Returns the run on the present surface, which is made unless it is there; null if it cannot be had.
    * @param {number | null} coarser  another radius than that of the picture
    */
-  async runFor(coarser) {
+  async #runFor(coarser) {
     const { engine } = this;
     const { columns } = engine;
     const pictureRadius = engine.progress.peek().radius;
@@ -169,13 +176,13 @@ export class Follower {
     const { adaptive } = columns;
     const field = engine.field.peek();
     const words = field?.kind === 'formula' ? surfaceWords(field) : 'a model from points';
-    return this.begin({ surface, words, pictureRadius, own, radius, adaptive });
+    return this.#begin({ surface, words, pictureRadius, own, radius, adaptive });
   }
 
   /** @param {Omit<FollowedRun, 'end' | 'alike'>} about */
-  async begin(about) {
+  async #begin(about) {
     const { engine } = this;
-    const mine = this.next();
+    const mine = this.#next();
     const surface = engine.lessonSurface();
     batch(() => {
       this.opened.value = null;
@@ -200,7 +207,7 @@ export class Follower {
       this.run.value = { ...about, end, alike };
       return this.run.value;
     } catch (error) {
-      if (mine === this.asked) this.fail(error, about.radius);
+      if (mine === this.asked) this.#fail(error, about.radius);
       return null;
     }
   }
@@ -211,22 +218,22 @@ export class Follower {
    */
   async open(particle, { at = 0, picture = null } = {}) {
     if (particle < 0 || particle >= this.count) return;
-    this.wish = { particle, at, picture };
+    this.#wish = { particle, at, picture };
     this.target.value = particle;
-    if (this.isLoading) return;
-    this.isLoading = true;
+    if (this.#isLoading) return;
+    this.#isLoading = true;
     const mine = this.asked;
     try {
-      while (this.wish && mine === this.asked) await this.grant(this.wish);
+      while (this.#wish && mine === this.asked) await this.#grant(this.#wish);
     } catch (error) {
-      if (mine === this.asked) this.fail(error, this.run.peek()?.radius ?? 0);
+      if (mine === this.asked) this.#fail(error, this.run.peek()?.radius ?? 0);
     }
-    if (mine === this.asked) this.isLoading = false;
+    if (mine === this.asked) this.#isLoading = false;
   }
 
   /** @param {Wish} wish */
-  async grant({ particle, at, picture }) {
-    this.wish = null;
+  async #grant({ particle, at, picture }) {
+    this.#wish = null;
     const run = this.run.peek();
     const { client, asked } = this;
     if (!run || !client) return;
@@ -242,15 +249,15 @@ export class Follower {
     this.engine.turnTo(opened.normal);
   }
 
-  next() {
+  #next() {
     this.asked += 1;
-    this.wish = null;
-    this.isLoading = false;
+    this.#wish = null;
+    this.#isLoading = false;
     return this.asked;
   }
 
   /** @param {any} error @param {number} radius */
-  fail(error, radius) {
+  #fail(error, radius) {
     const words = error instanceof Error ? error.message : String(error);
     if (error?.kind === 'given_up') return;
     if (error?.kind === 'crashed' || error?.kind === 'bundle') this.run.value = null;
@@ -273,18 +280,18 @@ export class Follower {
     }
   }
 
-  get last() {
+  get #last() {
     return Math.max(0, (this.opened.peek()?.events.length ?? 0) - 1);
   }
 
   /** @param {number} at */
   seek(at) {
-    this.at.value = clamp(at, 0, this.last);
+    this.at.value = clamp(at, 0, this.#last);
   }
 
   /** Ends the worker and frees its memory. */
   close() {
-    this.next();
+    this.#next();
     this.rest.close();
     this.client?.close();
     this.client = null;

@@ -26,6 +26,13 @@ import { settingOf, settingsOf } from './run.js';
  */
 
 export class Relaxation {
+  /**
+   * The run and its number of steps, so that a change can be told.
+   * @type {{ of: object, steps: number, chapters: Promise<LessonChapter[]> } | null}
+   */
+  #made;
+  #asked;
+
   /** @param {Follower} follower */
   constructor(follower) {
     this.follower = follower;
@@ -33,12 +40,8 @@ export class Relaxation {
     this.status = signal(null);
     /** @type {LessonClient | null} */
     this.client = null;
-    /**
-     * The run and its number of steps, so that a change can be told.
-     * @type {{ of: object, steps: number, chapters: Promise<LessonChapter[]> } | null}
-     */
-    this.made = null;
-    this.asked = 0;
+    this.#made = null;
+    this.#asked = 0;
   }
 
   /** Shows the step at which the timeline stands. @param {HTMLElement} element  as long as it lasts */
@@ -51,28 +54,28 @@ export class Relaxation {
     });
     live(element, () => {
       const place = wanted.value;
-      this.asked += 1;
-      const mine = this.asked;
+      this.#asked += 1;
+      const mine = this.#asked;
       if (place === null) this.status.value = null;
       // On the way to a place the timeline may stand at another for a moment.
-      else setTimeout(() => mine === this.asked && void this.show(place));
+      else setTimeout(() => mine === this.#asked && void this.#show(place));
     });
   }
 
   /** @param {string} place */
-  async show(place) {
-    const mine = this.asked;
+  async #show(place) {
+    const mine = this.#asked;
     const [particle, step] = place.split(' ');
     const usual = Number(settingOf(this.follower.engine, 'relax_steps'));
     const wanted = step === 'last' ? usual : Number(step);
     if (wanted === 0) return;
     if (this.status.peek() === null) this.status.value = { text: 'Running the relaxation', rest: null };
     const told = (/** @type {RestStatus} */ status) => {
-      if (mine === this.asked) this.status.value = status;
+      if (mine === this.#asked) this.status.value = status;
     };
     try {
-      const chapters = await this.chapters(Math.max(usual, wanted));
-      if (mine !== this.asked || !this.client) return;
+      const chapters = await this.#chapters(Math.max(usual, wanted));
+      if (mine !== this.#asked || !this.client) return;
       const rest = await restOf(this.client, chapters, Number(particle), wanted);
       told({ text: rest ? tellRest(rest) : 'This run has no such step.', rest });
     } catch (error) {
@@ -85,21 +88,21 @@ export class Relaxation {
   }
 
   /** The chapters of the run with its steps, which is made unless it is there. @param {number} steps */
-  async chapters(steps) {
+  async #chapters(steps) {
     const { follower } = this;
     const { engine } = follower;
     const run = follower.run.peek();
     const surface = engine.lessonSurface();
     if (!run || !surface) return [];
-    if (this.made?.of === run && this.made.steps >= steps) return this.made.chapters;
+    if (this.#made?.of === run && this.#made.steps >= steps) return this.#made.chapters;
     this.client ??= await engine.openLesson();
     const { client } = this;
     const chapters = client
       .start(surface, { ...settingsOf(engine, run), relax_steps: steps })
       .then(() => client.ask('chapters', { first: 0 }));
-    this.made = { of: run, steps, chapters };
+    this.#made = { of: run, steps, chapters };
     chapters.catch(() => {
-      this.made = null;
+      this.#made = null;
     });
     return chapters;
   }
@@ -107,14 +110,14 @@ export class Relaxation {
   /** Opens the particle that is pushed most in the step that is shown. */
   async openMost() {
     const step = this.status.peek()?.rest?.step;
-    const chapters = await this.made?.chapters.catch(() => []);
+    const chapters = await this.#made?.chapters.catch(() => []);
     if (!this.client || !chapters || step === undefined) return;
     await this.follower.open(await mostPushed(this.client, chapters, step));
   }
 
   /** Every step of a particle in words, if the run is there. @param {number} particle */
   async told(particle) {
-    const chapters = (await this.made?.chapters.catch(() => [])) ?? [];
+    const chapters = (await this.#made?.chapters.catch(() => [])) ?? [];
     const words = [];
     for (let step = 1; this.client; step += 1) {
       const rest = await restOf(this.client, chapters, particle, step);
@@ -126,9 +129,9 @@ export class Relaxation {
 
   /** Frees the worker. */
   close() {
-    this.asked += 1;
+    this.#asked += 1;
     this.status.value = null;
-    this.made = null;
+    this.#made = null;
     this.client?.close();
     this.client = null;
   }

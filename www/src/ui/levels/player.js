@@ -13,6 +13,9 @@ import { computed, effect, signal } from '@preact/signals-core';
  */
 
 export class Player {
+  #load;
+  #timer;
+
   /**
    * @param {Engine} engine
    * @param {Levels} levels
@@ -21,26 +24,26 @@ export class Player {
   constructor(engine, levels, load) {
     this.engine = engine;
     this.levels = levels;
-    this.load = load;
+    this.#load = load;
     /** @type {Signal<FollowPanel | null>} */
     this.panel = signal(null);
     this.isOpen = computed(() => this.panel.value?.open.value ?? false);
     /** @type {ReadonlySignal<Grain>} */
     this.grain = computed(() => (this.isOpen.value ? engine.state.value.view.grain : 'level'));
-    this.track = computed(() => this.trackOf(this.grain.value));
+    this.track = computed(() => this.#trackOf(this.grain.value));
     this.playing = signal(false);
     this.speed = 1;
-    this.timer = 0;
+    this.#timer = 0;
     // Another grain, or another run, is not played on by itself.
     effect(() => {
       void this.grain.value;
       void engine.busy.value;
-      this.pause();
+      this.#pause();
     });
   }
 
   /** @param {Grain} grain @returns {Track} */
-  trackOf(grain) {
+  #trackOf(grain) {
     const panel = this.panel.value;
     if (!panel || grain === 'level') return this.levels;
     return grain === 'particle' ? panel.particles : panel.events;
@@ -48,14 +51,14 @@ export class Player {
 
   /** Loads the panel that follows a particle, which is then part of the timeline. */
   async prepare() {
-    this.panel.value ??= await this.load();
+    this.panel.value ??= await this.#load();
     return this.panel.value;
   }
 
   /** Chooses a grain. The finer ones open a particle: the first of the level that is shown. @param {Grain} grain */
   async choose(grain) {
     if (grain === this.grain.peek()) return;
-    this.pause();
+    this.#pause();
     const { engine, levels } = this;
     if (grain === 'level') {
       const level = this.panel.peek()?.level.peek() ?? null;
@@ -71,39 +74,39 @@ export class Player {
 
   /** Follows a particle of the picture. @param {number} index */
   async follow(index) {
-    this.pause();
+    this.#pause();
     (await this.prepare())?.follow(index);
   }
 
   /** Shows a place of the chosen grain at the user's request. @param {number} at */
   seek(at) {
-    this.pause();
-    this.show(this.track.peek(), at);
+    this.#pause();
+    this.#show(this.track.peek(), at);
   }
 
   /** @param {Track} track @param {number} at */
-  show(track, at) {
+  #show(track, at) {
     if (!track.some.peek()) return;
     track.show(at);
-    if (track === this.levels) this.followLevel();
+    if (track === this.levels) this.#followLevel();
   }
 
   /** Shows a level or a relaxation step, whatever the timeline goes along. @param {number} at  a place of the levels */
   seekLevel(at) {
-    this.pause();
+    this.#pause();
     if (this.grain.peek() !== 'level') this.engine.setView({ grain: 'level', level: null, step: null });
-    this.show(this.levels, at);
+    this.#show(this.levels, at);
   }
 
   /** A particle that is followed goes along with the levels. */
-  followLevel() {
+  #followLevel() {
     const { newest, level } = this.levels;
     if (this.isOpen.peek() && level.peek() !== null) this.panel.peek()?.goToLevel(newest.peek());
   }
 
   /** @param {Move} move */
   move({ grain: named, to }) {
-    this.pause();
+    this.#pause();
     const chosen = this.grain.peek();
     const grain = named === 'chosen' ? chosen : named;
     if (grain !== 'level' && !this.isOpen.peek()) return void this.choose(grain);
@@ -115,44 +118,44 @@ export class Player {
       if (level !== null) panel.goToLevel(level + to);
       return;
     }
-    const track = this.trackOf(grain);
-    if (to === 'first' || to === 'last') return this.show(track, to === 'first' ? 0 : track.last.peek());
-    this.go(track, to);
+    const track = this.#trackOf(grain);
+    if (to === 'first' || to === 'last') return this.#show(track, to === 'first' ? 0 : track.last.peek());
+    this.#go(track, to);
   }
 
   /** @param {Track} track @param {1 | -1} by @returns {boolean} whether there was a place to go to */
-  go(track, by) {
+  #go(track, by) {
     const moved = track.some.peek() && track.go(by);
-    if (moved && track === this.levels) this.followLevel();
+    if (moved && track === this.levels) this.#followLevel();
     return moved;
   }
 
   toggle() {
-    if (this.playing.peek()) this.pause();
-    else this.play();
+    if (this.playing.peek()) this.#pause();
+    else this.#play();
   }
 
-  play() {
+  #play() {
     const track = this.track.peek();
     if (!track.some.peek()) return;
-    if (track === this.levels && track.at.peek() >= track.last.peek()) this.show(track, 0);
+    if (track === this.levels && track.at.peek() >= track.last.peek()) this.#show(track, 0);
     this.playing.value = true;
-    this.wait();
+    this.#wait();
   }
 
-  pause() {
-    clearTimeout(this.timer);
+  #pause() {
+    clearTimeout(this.#timer);
     this.playing.value = false;
   }
 
-  wait() {
+  #wait() {
     const track = this.track.peek();
     const next = () => {
-      const goesOn = this.go(track, 1) && !(track === this.levels && track.at.peek() >= track.last.peek());
-      if (goesOn) this.wait();
-      else this.pause();
+      const goesOn = this.#go(track, 1) && !(track === this.levels && track.at.peek() >= track.last.peek());
+      if (goesOn) this.#wait();
+      else this.#pause();
     };
-    this.timer = window.setTimeout(next, 1000 / (track.perSecond * this.speed));
+    this.#timer = window.setTimeout(next, 1000 / (track.perSecond * this.speed));
   }
 }
 
