@@ -2,7 +2,7 @@
 
 use super::values::answer;
 use crate::field::model::SolvedModel;
-use crate::pointcloud::job::{DEFAULT_CENTRES, Fault, Job, JobError, Progress};
+use crate::pointcloud::job::{DEFAULT_CENTRES, Fault, Job, JobError, PointsProgress};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -31,14 +31,14 @@ impl Points {
         Self::default()
     }
 
-    /// Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`. 0 centres are the default number
+    /// Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
     /// of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
         self.begin(Job::model(id, if centres == 0 { DEFAULT_CENTRES } else { centres }))
     }
 
-    /// Begins a file, and gives up what was begun before: an `Answer` with `Progress`. `name` is for reports. 0 centres are the
+    /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
     /// default number of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
@@ -47,7 +47,7 @@ impl Points {
         self.begin(Job::file(name, bytes, if centres == 0 { DEFAULT_CENTRES } else { centres }))
     }
 
-    /// Does up to `budget` slices of work: an `Answer` with `Progress`.
+    /// Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         let job = self.job.as_mut().ok_or_else(|| nothing("no model and no file was begun"));
@@ -75,7 +75,7 @@ impl Points {
     fn begin(&mut self, job: Result<Job, JobError>) -> JsValue {
         let (job, begun) = match job {
             Ok(job) => {
-                let progress: Progress = job.progress();
+                let progress: PointsProgress = job.progress();
                 (Some(job), Ok(progress))
             }
             Err(error) => (None, Err(Fault::from(&error))),
