@@ -1,7 +1,7 @@
 //! Options of a measurement: the wanted radii, the exact area and Euler number where they are known, and the sampling of holes.
 
-/// The wanted radius of each particle, for [`Figures::size_cv`](super::Figures::size_cv),
-/// [`cover_local`](super::Figures::cover_local) and [`overlap_min`](super::Figures::overlap_min).
+/// The wanted radius of each particle, for [`Edges::size_cv`](super::figures::Edges::size_cv),
+/// [`cover_local`](super::figures::Coverage::cover_local) and [`overlap_min`](super::figures::Edges::overlap_min).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sizes<'a> {
     /// There are no wanted radii, and those figures are NaN.
@@ -25,12 +25,12 @@ pub enum Sizes<'a> {
 pub struct Options<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
-    /// Euler number of the surface, for [`Figures::tri_ok`](super::Figures::tri_ok); by default that of the triangles
+    /// Euler number of the surface, for [`Connectivity::tri_ok`](super::figures::Connectivity::tri_ok); by default that of the triangles
     /// found.
     pub euler: Option<i64>,
     /// Wanted radii.
     pub sizes: Sizes<'a>,
-    /// Smallest number of random samples for [`Figures::quant`](super::Figures::quant). There is at least one for each
+    /// Smallest number of random samples for [`Coverage::quant`](super::figures::Coverage::quant). There is at least one for each
     /// particle, and there are at most 262,144.
     pub samples: usize,
     /// Seed of the random samples.

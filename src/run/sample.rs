@@ -30,7 +30,7 @@ use std::io::{self, Write};
 /// let sample = sample(surface, &Settings::with_count(1_000))?;
 /// let mut file = Vec::new();
 /// sample.write(Format::Ply, &mut file)?;
-/// assert!(sample.report().measures.quality.is_some_and(|figures| figures.six > 0.8));
+/// assert!(sample.report().measures.quality.is_some_and(|figures| figures.order.six > 0.8));
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

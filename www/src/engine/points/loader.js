@@ -8,7 +8,6 @@
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE } from '../constants.js';
 import { defaultState, fromPoints, modelOf } from '../share/state.js';
-import { description } from '../store.js';
 import { PointsClient } from './client.js';
 
 /**
@@ -144,7 +143,8 @@ export class ModelLoader {
 
   /** @param {File} file */
   async openFile(file) {
-    const most = description(this.#store).limits.file_bytes;
+    // Without a core the solver alone refuses what is too large.
+    const most = this.#store.description.value?.limits.file_bytes ?? Number.POSITIVE_INFINITY;
     if (file.size > most) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
       this.#refused(FILE_SURFACE, file.name, {
