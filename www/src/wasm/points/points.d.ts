@@ -23,7 +23,7 @@ export class Points {
      */
     field(): Uint8Array<ArrayBuffer>;
     /**
-     * Begins a file, and gives up what was begun before: an `Answer` with `Progress`. `name` is for reports. 0 centres are the
+     * Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
      * default number of them.
      */
     file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, PointsFault>;
@@ -32,7 +32,7 @@ export class Points {
      */
     info(): Answer<SolvedModel, PointsFault>;
     /**
-     * Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`. 0 centres are the default number
+     * Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
      * of them.
      */
     model(id: string, centres: number): Answer<PointsProgress, PointsFault>;
@@ -41,7 +41,7 @@ export class Points {
      */
     constructor();
     /**
-     * Does up to `budget` slices of work: an `Answer` with `Progress`.
+     * Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
      */
     step(budget: number): Answer<PointsProgress, PointsFault>;
 }
