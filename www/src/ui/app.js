@@ -20,7 +20,7 @@ import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
 /**
- * @import { Engine } from '../engine/types.js'
+ * @import { Description, Engine } from '../engine/types.js'
  * @import { Dialog } from './dialog.js'
  * @import { Timeline, Told } from './levels/timeline.js'
  * @import { Motion } from './motion.js'
@@ -58,18 +58,21 @@ export function mountInterface(engine) {
     engine,
     computed(() => motion.playing.value !== null || motion.filming.value),
   );
-  /** @type {Timeline | null} */
-  let timeline = null;
   /** The generation level chosen on the timeline, in words. */
   /** @type {Signal<Told | null>} */
   const told = signal(null);
+  /** @type {Promise<Description>} */
+  const described = new Promise((resolve) => {
+    live(shell, () => void (engine.description.value && resolve(engine.description.value)));
+  });
+  const timeline = described.then(() => loadTimeline(engine, { shell, stage, told }, toast));
   const { picture, print } = pictureOf(engine, motion, toast);
   const shortcuts = mountShortcuts(
     shortcutsOf(engine, {
       history,
       motion,
       print,
-      timeline: () => timeline,
+      timeline,
       hide: layout.hideMore,
       open: () => shortcuts.open(),
     }),
@@ -88,14 +91,10 @@ export function mountInterface(engine) {
     untracked(layout.measure);
   });
   linkLearn(engine);
-  mountHover(stage, engine, { view, follow: (index) => void timeline?.follow(index) });
+  mountHover(stage, engine, { view, follow: (index) => void timeline.then((made) => made?.follow(index)) });
   byId('tabs').append(goButton(engine));
 
-  let isMounted = false;
-  live(shell, () => {
-    const description = engine.description.value;
-    if (!description || isMounted) return;
-    isMounted = true;
+  void described.then((description) => {
     mountField(byId('field-body'), engine, description, motion);
     mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
     mountReport(byId('report-body'), engine, description);
@@ -105,10 +104,9 @@ export function mountInterface(engine) {
     layout.follow(legend);
     shell.dataset.ready = '';
     loadMarks(engine, { stage, view });
-    void loadTimeline(engine, { shell, stage, told }, toast).then((loaded) => {
-      timeline = loaded;
-      levels.hidden = timeline === null;
-    });
+  });
+  void timeline.then((made) => {
+    levels.hidden = made === null;
   });
   return toast;
 }
@@ -236,66 +234,70 @@ function pictureOf(engine, motion, toast) {
  * @param {ReturnType<typeof createHistory>} page.history
  * @param {Motion} page.motion
  * @param {() => void} page.print
- * @param {() => Timeline | null} page.timeline
+ * @param {Promise<Timeline | null>} page.timeline  a key that is pressed before it has loaded acts as soon as it has
  * @param {() => void} page.hide  hides or shows the panels
  * @param {() => void} page.open  opens the list of the shortcuts
  * @returns {Shortcut[]}
  */
-const shortcutsOf = (engine, { history, motion, print, timeline, hide, open }) => [
-  { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
-  {
-    keys: ['Escape'],
-    shown: 'Esc',
-    label: 'Stop',
-    act: () => {
-      if (motion.stop()) return;
-      if (engine.busy.peek() || engine.loading.peek()) engine.stop();
-      else engine.pointOut(null);
+function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {
+  const along = (/** @type {'toggle' | 'back' | 'forward' | 'first' | 'all'} */ command) => () =>
+    void timeline.then((made) => made?.[command]());
+  return [
+    { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
+    {
+      keys: ['Escape'],
+      shown: 'Esc',
+      label: 'Stop',
+      act: () => {
+        if (motion.stop()) return;
+        if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+        else engine.pointOut(null);
+      },
     },
-  },
-  { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
-  { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
-  { keys: ['p', 'P'], ctrl: true, shown: `${COMMAND_KEY} P`, label: 'Print', act: print },
-  { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
-  {
-    keys: ['e', 'E'],
-    shown: 'E',
-    label: 'Relax one step',
-    act: () => {
-      if (!engine.busy.peek()) engine.relax(1);
+    { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
+    { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
+    { keys: ['p', 'P'], ctrl: true, shown: `${COMMAND_KEY} P`, label: 'Print', act: print },
+    { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
+    {
+      keys: ['e', 'E'],
+      shown: 'E',
+      label: 'Relax one step',
+      act: () => {
+        if (!engine.busy.peek()) engine.relax(1);
+      },
     },
-  },
-  { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the timeline', act: () => timeline()?.toggle() },
-  { keys: [','], shown: ',', label: 'Level back', act: () => timeline()?.back() },
-  { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline()?.forward() },
-  { keys: ['<'], shown: '<', label: 'First level', act: () => timeline()?.first() },
-  { keys: ['>'], shown: '>', label: 'All levels', act: () => timeline()?.all() },
-  { keys: ['o', 'O'], shown: 'O', label: 'Turntable', act: () => motion.toggleTurning() },
-  { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
-  { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
-  { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
-  {
-    keys: ['m', 'M'],
-    shown: 'M',
-    label: 'Discs or mesh',
-    act: () => engine.setView({ draw: engine.state.peek().view.draw === 'mesh' ? 'discs' : 'mesh' }),
-  },
-  {
-    keys: ['d', 'D'],
-    shown: 'D',
-    label: 'Measure a distance',
-    act: () => engine.setView({ measured: engine.state.peek().view.measured ? null : [] }),
-  },
-  { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
-  {
-    keys: ['t', 'T'],
-    shown: 'T',
-    label: 'Light or dark',
-    act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
-  },
-  { keys: ['h', 'H'], shown: 'H', label: 'Hide the panels; then the timeline, too; then show all', act: hide },
-  { keys: ['?'], shown: '?', label: 'This sheet', act: open },
-];
+    { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the timeline', act: along('toggle') },
+    { keys: [','], shown: ',', label: 'Level back', act: along('back') },
+    { keys: ['.'], shown: '.', label: 'Level forward', act: along('forward') },
+    { keys: ['<'], shown: '<', label: 'First level', act: along('first') },
+    { keys: ['>'], shown: '>', label: 'All levels', act: along('all') },
+    { keys: ['o', 'O'], shown: 'O', label: 'Turntable', act: () => motion.toggleTurning() },
+    { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
+    { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
+    { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
+    {
+      keys: ['m', 'M'],
+      shown: 'M',
+      label: 'Discs or mesh',
+      act: () => engine.setView({ draw: engine.state.peek().view.draw === 'mesh' ? 'discs' : 'mesh' }),
+    },
+    {
+      keys: ['d', 'D'],
+      shown: 'D',
+      label: 'Measure a distance',
+      act: () => engine.setView({ measured: engine.state.peek().view.measured ? null : [] }),
+    },
+    { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
+    {
+      keys: ['t', 'T'],
+      shown: 'T',
+      label: 'Light or dark',
+      act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
+    },
+    { keys: ['h', 'H'], shown: 'H', label: 'Hide the panels; then the timeline, too; then show all', act: hide },
+    { keys: ['?'], shown: '?', label: 'This sheet', act: open },
+  ];
+}
 
 /** Creates the Run/Stop button that is always visible on a phone. @param {Engine} engine */
 function goButton(engine) {

@@ -127,10 +127,17 @@ test('a particle is followed by the keyboard; words, drawings, algorithm and tra
 const view = async (page) => (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state)).view;
 
 test('the place of a particle on the timeline, in the picture and in words', async ({ page }) => {
+  // Keys that are pressed while the timeline loads act when it has.
+  let letCome = () => {};
+  const held = new Promise((resolve) => {
+    letCome = () => resolve(undefined);
+  });
+  await page.route(/timeline-[^/]*\.js/, (route) => held.then(() => route.continue()));
   const { clean } = await open(page, { width: 1280, height: 800 });
   await test.step('one timeline goes along levels, particles and events', async () => {
     const grain = (/** @type {string} */ name) => page.getByRole('radio', { name, exact: true });
     for (const key of ['<', '.', '.']) await page.keyboard.press(key);
+    letCome();
     await grain('Particle').check({ force: true });
     // The first particle of level 2, as its children are placed.
     await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 2 of \d+, particle 7: /);

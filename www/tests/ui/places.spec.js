@@ -66,7 +66,16 @@ test('places that are pointed out', async ({ page }) => {
 
   await test.step('a mark goes with the run that it belongs to', async () => {
     await afresh(page, { width: 1440, height: 900 });
-    await page.getByRole('button', { name: /^Largest hole .*show it/ }).click();
+    const hole = page.getByRole('button', { name: /^Largest hole .*show it/ });
+    await hole.click();
+    await expect(page.locator('.marks .marked')).toHaveCount(1);
+    const before = await hole.getAttribute('aria-label');
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ parameters: { a: 1.3 } }));
+    await expect(page.locator('.marks .marked')).toHaveCount(0);
+    // The figure is another one, and a key presses it again.
+    await expect(hole).not.toHaveAttribute('aria-label', before ?? '');
+    await expect(hole).toBeFocused();
+    await page.keyboard.press('Enter');
     await expect(page.locator('.marks .marked')).toHaveCount(1);
     await page.getByRole('button', { name: 'Generate only' }).click();
     await expect(page.locator('.marks .marked')).toHaveCount(0);

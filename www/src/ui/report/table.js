@@ -63,6 +63,8 @@ function createRow(report, row, { counted, show }) {
   };
   const change = () => (figures.value ? compare(row, figures.value.before, figures.value.now) : 'same');
   const paired = isPaired(row);
+  const before = () => writeFigure(row, figures.value?.before);
+  const now = () => (report.value && row.to ? writeRange(row, report.value) : writeFigure(row, figures.value?.now));
   // A range or a word spans both columns.
   const wide = () => Boolean(row.to || typeof figures.value?.now === 'string');
   return h(
@@ -73,11 +75,17 @@ function createRow(report, row, { counted, show }) {
       { scope: 'row', colspan: () => (paired || wide() ? 1 : 2) },
       term(help, { side: 'left' }, row.label, row.unit && unitOf(row.unit)),
     ),
-    paired && h('td', null, () => figureOf(writeFigure(row, figures.value?.before), placed() === 'before', row, show)),
-    h('td', { class: 'now', data: { change }, colspan: () => (!paired && wide() ? 2 : 1) }, () => {
-      const text = report.value && row.to ? writeRange(row, report.value) : writeFigure(row, figures.value?.now);
-      return figureOf(text, placed() === 'now', row, show);
-    }),
+    paired &&
+      h(
+        'td',
+        null,
+        figureOf(before, () => placed() === 'before', { row, show }),
+      ),
+    h(
+      'td',
+      { class: 'now', data: { change }, colspan: () => (!paired && wide() ? 2 : 1) },
+      figureOf(now, () => placed() === 'now', { row, show }),
+    ),
   );
 }
 
@@ -85,17 +93,22 @@ function createRow(report, row, { counted, show }) {
 const unitOf = (unit) => h('span', { class: 'unit' }, `\u00a0${unit}`);
 
 /**
- * A figure, as a button if it has places in the picture.
- * @param {string} text @param {boolean} pressable @param {ReportRow} row @param {(row: ReportRow) => void} show
+ * A figure, as a button if it has places in the picture. The button keeps the focus when a new report changes its text.
+ * @param {() => string} text @param {() => boolean} isPlaced
+ * @param {{ row: ReportRow, show: (row: ReportRow) => void }} parts
  */
-function figureOf(text, pressable, row, show) {
-  if (!pressable) return text;
-  const label = `${row.label} ${text}, show it in the picture`;
-  return explain(
-    h('button', { type: 'button', class: 'shows', 'aria-label': label, on: { click: () => show(row) } }, text),
-    () => ({ title: 'Show it in the picture', text: 'The worst place comes first; press again for the next one.' }),
-    { side: 'left' },
-  );
+function figureOf(text, isPlaced, { row, show }) {
+  const hasPlaces = computed(isPlaced);
+  const label = () => `${row.label} ${text()}, show it in the picture`;
+  const press = () => show(row);
+  return () => {
+    if (!hasPlaces.value) return text();
+    return explain(
+      h('button', { type: 'button', class: 'shows', 'aria-label': label, on: { click: press } }, text),
+      () => ({ title: 'Show it in the picture', text: 'The worst place comes first; press again for the next one.' }),
+      { side: 'left' },
+    );
+  };
 }
 
 const CHANGES = { better: 'Relaxation made it better.', worse: 'Relaxation made it worse.', same: '' };
