@@ -131,7 +131,7 @@ export class Columns {
   /**
    * Writes a range. Ranges arrive in order, so `first` never exceeds the number of particles present.
    * @param {ColumnRange} range
-   * @returns {boolean} false, without writing, if the range does not follow the particles present
+   * @returns false, without writing, if the range does not follow the particles present
    */
   write(range) {
     const n = range.radii.length;

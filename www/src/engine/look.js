@@ -23,7 +23,7 @@ const MOST_TO_COME = 200_000;
  * @param {Store} parts.store
  * @param {Viewer} parts.viewer
  * @param {Runs} parts.runs
- * @returns {() => void} ends it
+ * @returns ends it
  */
 export function keepLook({ store, viewer, runs: { loader, sampling } }) {
   const system = matchMedia('(prefers-color-scheme: dark)');

@@ -50,7 +50,7 @@ export async function energiesOf({ client, chapters }) {
 
 /**
  * The first step after which nine tenths of the fall in energy are done.
- * @param {readonly number[]} energies  @returns {number}
+ * @param {readonly number[]} energies
  */
 export function stepOfRest(energies) {
   const [first, last] = [energies[0], energies[energies.length - 1]];

@@ -262,7 +262,7 @@ export class Picture {
     if (found !== null) this.#onPick?.(found);
   }
 
-  /** @param {string} key @returns {boolean} whether the key means something here */
+  /** @param {string} key @returns whether the key means something here */
   #press(key) {
     const { orbit } = this;
     /** @type {Record<string, [number, number]>} */

@@ -34,7 +34,7 @@ export class Stops {
     this.entries = new Map();
   }
 
-  /** What has been guessed: with the answer where it is out, and with none where it is not. @returns {Guessed[]} */
+  /** What has been guessed: with the answer where it is out, and with none where it is not. */
   predictions() {
     const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
     const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));

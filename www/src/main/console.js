@@ -49,7 +49,6 @@ import { createEngine } from '../engine/index.js';
  */
 const once = (engine, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
-    /** @type {() => void} */
     let stop = () => {};
     stop = effect(() => {
       // The progress is written anew when the sampler ends. The notice about it may have been dismissed since.

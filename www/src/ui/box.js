@@ -40,7 +40,6 @@ export function withFace(bounds, axis, end, value) {
 /**
  * Returns what is said of a surface that the box cuts, and whether a fitted box would hold it.
  * @param {Pick<Report, 'cut' | 'border'> | null} report
- * @returns {{ text: string, canFit: boolean } | null}
  */
 export function cutOf(report) {
   if (!report?.cut) return null;

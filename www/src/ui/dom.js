@@ -147,7 +147,7 @@ export function fill(parent, ...children) {
   for (const node of old) if (!parent.contains(node)) release(node);
 }
 
-/** Returns the element with this id from the page's markup. @param {string} id @returns {HTMLElement} */
+/** Returns the element with this id from the page's markup. @param {string} id */
 export function byId(id) {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no element #${id}`);

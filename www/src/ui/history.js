@@ -95,7 +95,7 @@ export class History {
     this.#at = this.entries.length - 1;
   }
 
-  /** @param {-1 | 1} step @returns {Shape | null} the entry to restore */
+  /** @param {-1 | 1} step @returns the entry to restore */
   move(step) {
     const entry = this.entries[this.#at + step];
     if (!entry) return null;

@@ -66,7 +66,7 @@ export function createMotion(engine, stage) {
     player = null;
     playing.value = null;
   }
-  /** Ends all motion. @returns {boolean} whether there was any */
+  /** Ends all motion. @returns whether there was any */
   const stop = () => {
     const ended = player;
     const moved = ended !== null || turning.peek();
@@ -131,7 +131,7 @@ class Player {
   /**
    * Goes on by some seconds.
    * @param {number} passedS @param {Course} course
-   * @returns {boolean} false if somebody else has set the parameter, or the formula no longer has it
+   * @returns false if somebody else has set the parameter, or the formula no longer has it
    */
   step(passedS, course) {
     if (this.#present() !== this.#value) return false;

@@ -29,7 +29,6 @@ export class LoadError extends Error {
  * @param {string | URL} url
  * @param {string} [what]  name of the module in error messages
  * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
- * @returns {Promise<WebAssembly.Module>}
  */
 export async function loadModule(
   url,

@@ -125,7 +125,7 @@ export class Race {
 /** @returns {Lane} */
 const newLane = () => ({ progress: null, workMs: 0 });
 
-/** The one that is not done and has worked less. @param {[Lane, Lane]} lanes @returns {0 | 1 | null} */
+/** The one that is not done and has worked less. @param {[Lane, Lane]} lanes */
 function nextOf(lanes) {
   const [first, second] = lanes.map((lane) => (lane.progress?.is_done ? Infinity : lane.workMs));
   if (Math.min(first, second) === Infinity) return null;

@@ -167,7 +167,7 @@ export class ModelLoader {
   /**
    * @param {string} id @param {string} name @param {string} key @param {Order} order
    * @param {() => void} done  called once the model is solved
-   * @returns {Promise<boolean>} whether the model was solved
+   * @returns whether the model was solved
    */
   async #order(id, name, key, order, done) {
     const { loading, loadingError } = this.#store;

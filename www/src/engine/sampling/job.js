@@ -99,7 +99,6 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
  * @param {Job} job
  * @param {Env} env
  * @param {Memory} memory
- * @returns {Promise<void>}
  */
 export async function runJob(core, job, env, memory) {
   const run = new JobRun(core, job, env);
@@ -151,7 +150,7 @@ class JobRun {
   /**
    * Finds the box of a sampling, slice by slice, so that the next key is not kept waiting by a formula that takes long.
    * @param {{held: number}} memory
-   * @returns {Promise<boolean>} false if the job has ended already
+   * @returns false if the job has ended already
    */
   async fit(memory) {
     const { core, job, env } = this;
@@ -189,7 +188,7 @@ class JobRun {
   /**
    * Starts the sampling or the relaxation in the core.
    * @param {Memory} memory
-   * @returns {boolean} false if the job has ended already
+   * @returns false if the job has ended already
    */
   start(memory) {
     const { core, job, env } = this;
@@ -331,7 +330,7 @@ class JobRun {
    * Sends what the page lacks after the last step: particles, final fates of slots, curvature, and the mesh if it is
    * drawn.
    * @param {CoreProgress} last @param {Memory} memory
-   * @returns {Promise<boolean>} false if another job replaces this one meanwhile
+   * @returns false if another job replaces this one meanwhile
    */
   async complete(last, memory) {
     const { core, env, job, sent } = this;

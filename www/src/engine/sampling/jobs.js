@@ -63,7 +63,7 @@ export class Jobs {
     if (this.#accepted) this.#accepted.stopped = true;
   }
 
-  /** Begins and returns the next job, with its field set in the core. @param {Core} core @returns {Job | null} */
+  /** Begins and returns the next job, with its field set in the core. @param {Core} core */
   take(core) {
     this.#ask(core);
     const next = this.#accepted;
@@ -76,7 +76,6 @@ export class Jobs {
   /**
    * Returns what the running job must do. The job calls this between two steps.
    * @param {Core} core
-   * @returns {'stop' | 'replace' | null}
    */
   interrupt(core) {
     this.#ask(core);

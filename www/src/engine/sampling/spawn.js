@@ -12,7 +12,6 @@ import { LoadError, loadModule, words } from '../bundle/load.js';
 /** The compiled core; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;
 
-/** @returns {Worker} */
 export function spawnSampler() {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'sampler' });
   const say = (/** @type {ToWorker} */ message) => worker.postMessage(message);

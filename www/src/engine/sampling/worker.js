@@ -127,7 +127,7 @@ async function pump() {
 /**
  * Makes the mesh or a file that the page has asked for since the last job.
  * @param {Core} ours
- * @returns {Promise<boolean>} whether there was anything to do
+ * @returns whether there was anything to do
  */
 async function serve(ours) {
   const { held } = memory;

@@ -7,7 +7,7 @@ export function toBase64url(bytes) {
   return btoa(text).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '');
 }
 
-/** @param {string} text @returns {Uint8Array<ArrayBuffer>} @throws if it is not of this form */
+/** @param {string} text @throws if it is not of this form */
 export function fromBase64url(text) {
   if (!/^[A-Za-z0-9_-]*$/.test(text)) throw new Error('not base64url');
   return Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));

@@ -64,7 +64,6 @@ const BINARY = {
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
  * @param {{comment: string}} options  one line that describes the contents; line breaks are removed
- * @returns {Blob}
  */
 export function ply(columns, all, { comment }) {
   const { count } = columns;
@@ -94,7 +93,6 @@ export function ply(columns, all, { comment }) {
  * Returns the same data as CSV text, one line per particle. Reading a number back gives the same value.
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
- * @returns {Blob}
  */
 export function csv(columns, all) {
   const some = known(columns, all);
@@ -121,7 +119,7 @@ export function csv(columns, all) {
 /** Rounds to nine significant digits, which identify any single-precision number. @param {number} v */
 const single = (v) => Number(v.toPrecision(9));
 
-/** Encodes a picture as PNG. @param {ImageData} image @returns {Promise<Blob>} */
+/** Encodes a picture as PNG. @param {ImageData} image */
 export async function png(image) {
   const canvas = new OffscreenCanvas(image.width, image.height);
   const context = canvas.getContext('2d');

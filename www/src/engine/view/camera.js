@@ -348,7 +348,7 @@ export class Camera {
   /**
    * Advances the motion by `dtS`.
    * @param {number} dtS
-   * @returns {boolean} whether the motion continues
+   * @returns whether the motion continues
    */
   step(dtS) {
     const keep = Math.exp(-dtS / EASE_S);
@@ -368,7 +368,7 @@ export class Camera {
     return this.#follow(keep) || turning || moving;
   }
 
-  /** Advances a turn by `dtS`. @param {number} dtS @returns {boolean} whether it continues */
+  /** Advances a turn by `dtS`. @param {number} dtS @returns whether it continues */
   #turnOn(dtS) {
     if (!this.turn) return false;
     const { from, to } = this.turn;
@@ -384,7 +384,7 @@ export class Camera {
   /**
    * Advances an animation, of which the share `keep` of the way stays.
    * @param {number} keep
-   * @returns {boolean} whether it continues
+   * @returns whether it continues
    */
   #follow(keep) {
     if (!this.#glide) return false;

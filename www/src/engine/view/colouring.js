@@ -36,7 +36,7 @@ export function classOfSlots(slots, adaptive) {
   return seen & (1 << FATE.open) ? 'front' : 'interior';
 }
 
-/** @param {number} valence @returns {'none' | 'four' | 'five' | 'six' | 'seven' | 'eight'} */
+/** @param {number} valence */
 export function classOfValence(valence) {
   if (valence === 0) return 'none';
   if (valence <= 4) return 'four';

@@ -33,7 +33,7 @@ const wheelPixels = ({ deltaY, deltaMode }, pagePx) => deltaY * (deltaMode === 1
 
 /**
  * @param {Stage} stage
- * @returns {() => void} removes all listeners
+ * @returns removes all listeners
  */
 export function attachControls(stage) {
   const { host, moved } = stage;
@@ -110,7 +110,7 @@ function wheelZoom(event, pagePx) {
   return Math.exp(-(event.ctrlKey ? within(MOST_PINCH_PX) * PINCH_LOG : within(MOST_WHEEL_PX) * WHEEL_LOG));
 }
 
-/** @param {KeyboardEvent} event @param {Stage} stage @returns {boolean} whether the key is handled */
+/** @param {KeyboardEvent} event @param {Stage} stage @returns whether the key is handled */
 function pressed(event, { camera, currentView, fit, centre, point }) {
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
   const arrow = Object.hasOwn(ARROWS, event.key) ? ARROWS[event.key] : null;

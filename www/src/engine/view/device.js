@@ -70,7 +70,7 @@ export class DeviceKeeper {
     this.waiting = new Set();
   }
 
-  /** Opens the first working device, starting from the present rank. @returns {Promise<void>} */
+  /** Opens the first working device, starting from the present rank. */
   async start() {
     this.epoch += 1;
     const { epoch } = this;

@@ -29,7 +29,7 @@ export class Dimmer {
    * @param {boolean} on
    * @param {number} nowS
    * @param {boolean} calm  without a transition
-   * @returns {boolean} whether the state changed
+   * @returns whether the state changed
    */
   set(on, nowS, calm) {
     const to = on ? DIM : 0;

@@ -30,7 +30,6 @@ const DENSE = 0.8;
  * @param {number} [lastLevel]  particles of later levels are hidden
  * @param {CuttingPlane | null} [plane]  particles beyond it are hidden
  * @param {number} [upto]  particles from this one on are hidden
- * @returns {number | null}
  */
 export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity, plane = null, upto = Infinity) {
   const { shown: positions, normals, radii, levels } = columns;

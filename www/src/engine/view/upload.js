@@ -143,7 +143,7 @@ export class ParticleUpload {
    * @param {Look} look
    * @param {View} view
    * @param {{count: number, ratio: number}} present  particles that the device holds; canvas pixels per page pixel
-   * @returns {number} discs written
+   * @returns discs written
    */
   writePoints(renderer, { points, size, theme }, view, { count, ratio }) {
     if (!points) return 0;

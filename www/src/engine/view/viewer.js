@@ -386,7 +386,7 @@ export class Viewer {
     this.#events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
   }
 
-  /** @param {number} nowS @returns {boolean} whether further levels are to appear */
+  /** @param {number} nowS @returns whether further levels are to appear */
   #tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;

@@ -35,7 +35,6 @@ class CaretWidget extends WidgetType {
 }
 
 /** @typedef {{ fault: boolean, marks: DecorationSet }} FaultState */
-/** @type {StateField<FaultState>} */
 const faultField = StateField.define({
   create: () => /** @type {FaultState} */ ({ fault: false, marks: Decoration.none }),
   update(value, transaction) {

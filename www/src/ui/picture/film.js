@@ -101,7 +101,6 @@ export async function drawOn({ engine, size, parts }, context, transparent = fal
 /**
  * Records a film in the time in which it plays: what takes longer to draw is drawn less often.
  * @param {Wish} wish
- * @returns {Promise<Blob>}
  * @throws if the browser makes no films
  */
 export async function recordFilm(wish) {
@@ -148,7 +147,7 @@ export async function recordFilm(wish) {
 /**
  * Makes single pictures, each of a finished run, and packs them into a ZIP file without compressing them again.
  * @param {Wish & { transparent: boolean, seconds: number }} wish
- * @returns {Promise<Blob | null>} null if it was given up
+ * @returns null if it was given up
  */
 export async function recordSequence(wish) {
   const { engine, size, subject, signal, tell, transparent, seconds } = wish;

@@ -95,7 +95,6 @@ export function writeRange({ key, to }, report) {
  * @param {ReportRow} row
  * @param {unknown} before
  * @param {unknown} now
- * @returns {'better' | 'worse' | 'same'}
  */
 export function compare({ better, digits, unit }, before, now) {
   if (!better || typeof before !== 'number' || typeof now !== 'number') return 'same';

@@ -6,10 +6,7 @@ import { formatCount, plural } from '../format.js';
 /** Most components whose Euler numbers are told one by one. */
 const MOST_TOLD = 3;
 
-/**
- * @param {MeshAnswer} mesh
- * @returns {string}
- */
+/** @param {MeshAnswer} mesh */
 export function meshWords({ components, unfilled, left_out }) {
   if (components.length === 0) return 'Nothing to join to a mesh';
   const open = components.reduce((sum, component) => sum + component.open_edges, 0);
