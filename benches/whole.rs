@@ -25,7 +25,7 @@ use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::models;
-use marching_particles::quality::{Options, measure};
+use marching_particles::quality::{MeasureOptions, measure};
 use marching_particles::{Phase, Run, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -165,7 +165,7 @@ fn parts(criterion: &mut Criterion, set: &str, count: u32) {
     group.bench_function("whole job", |bencher| bencher.iter(|| black_box(job.run())));
     job.settings = settings!(size_mode: SizeMode::Count; ..whole);
     group.bench_function("whole job by count", |bencher| bencher.iter(|| black_box(job.run())));
-    let options = Options::default();
+    let options = MeasureOptions::default();
     group.bench_function("quality", |bencher| {
         let (field, bounds) = (&mut job.field, &job.bounds);
         bencher.iter(|| measure(&particles.position, &particles.normal, field, Some(bounds), &options));

@@ -20,7 +20,7 @@ struct Light {
     background: vec4<f32>,
 }
 
-struct Growth {
+struct Appearance {
     time: f32,
     fade: f32,
     level: f32,
@@ -43,7 +43,7 @@ struct ClipBox {
 struct Frame {
     camera: Camera,
     light: Light,
-    growth: Growth,
+    appearance: Appearance,
     look: Look,
     clip_box: ClipBox,
     plane: vec4<f32>,
@@ -110,6 +110,6 @@ fn brightness(toward_key: f32, toward_sky: f32, edge_on: f32) -> f32 {
 
 // Share by which a surface of this level fades to the background, because all do or because its level is not the newest.
 fn faded(level: f32) -> f32 {
-    let older = level >= 0.0 && level < frame.growth.level;
-    return max(frame.light.dim, select(0.0, frame.growth.mute, older));
+    let older = level >= 0.0 && level < frame.appearance.level;
+    return max(frame.light.dim, select(0.0, frame.appearance.mute, older));
 }

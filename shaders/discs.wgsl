@@ -99,11 +99,11 @@ fn vs_rim_front(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc 
 fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> Disc {
     var out: Disc;
     out.clip = hidden();
-    let age = select(1.0, clamp((frame.growth.time - particle.birth) / max(frame.growth.fade, 1e-6), 0.0, 1.0), frame.growth.fade > 0.0);
+    let age = select(1.0, clamp((frame.appearance.time - particle.birth) / max(frame.appearance.fade, 1e-6), 0.0, 1.0), frame.appearance.fade > 0.0);
     let appear = age * age * (3.0 - 2.0 * age);
     let opacity = appear * particle.colour.a;
     let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || particle.level > frame.growth.level || opacity <= NOTHING || centre.w <= 0.0
+    if particle.radius <= 0.0 || particle.level > frame.appearance.level || opacity <= NOTHING || centre.w <= 0.0
         || beyond_plane(particle.position) > 0.0 {
         return out;
     }

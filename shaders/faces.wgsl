@@ -81,7 +81,7 @@ fn is_hidden(face: Face) -> bool {
 fn vs_face(@builtin(vertex_index) vertex: u32, face: Face) -> Point {
     var out: Point;
     out.clip = hidden();
-    if is_hidden(face) || face.level > frame.growth.level {
+    if is_hidden(face) || face.level > frame.appearance.level {
         return out;
     }
     let bc = face.c.xyz - face.b.xyz;

@@ -80,9 +80,9 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<MeshAnswer>();
     declarations.add::<SolvedModel>();
     declarations.add::<job::PointsProgress>();
-    declarations.add::<job::Fault>();
+    declarations.add::<job::PointsFault>();
     declarations.add::<LessonField>();
-    declarations.add::<lesson::Settings>();
+    declarations.add::<lesson::LessonSettings>();
     declarations.add::<lesson::LessonProgress>();
     declarations.add::<lesson::Chapter>();
     declarations.add::<lesson::Event>();

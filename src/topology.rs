@@ -88,7 +88,7 @@ impl Corners {
 
 /// The neighbours and border edges of a vertex, counted over the triangle corners at it.
 #[derive(Clone, Copy, Default)]
-struct Star {
+struct StarCounts {
     /// Number of neighbours.
     degree: u32,
     /// Number of border edges that leave the vertex.
@@ -145,7 +145,7 @@ impl Topology {
     }
 
     /// Looks at the corners of a vertex: its crowded edges, its fans and its border edges.
-    fn add_vertex(&mut self, v: u32, corners: &mut [[u32; 2]]) -> Star {
+    fn add_vertex(&mut self, v: u32, corners: &mut [[u32; 2]]) -> StarCounts {
         let mut is_simple = true;
         for (k, &[next, previous]) in corners.iter().enumerate() {
             if corners[..k].iter().any(|earlier| earlier[0] == next) {
@@ -155,16 +155,16 @@ impl Topology {
             is_simple &= corners[..k].iter().all(|earlier| earlier[1] != previous);
         }
         if corners.is_empty() {
-            return Star::default();
+            return StarCounts::default();
         }
         let count = corners.len() as u32;
         if is_simple && is_one_fan(corners) {
             let (first, last) = (corners[0][0], corners[corners.len() - 1][1]);
             return if first == last {
-                Star { degree: count, border: 0, border_to: None }
+                StarCounts { degree: count, border: 0, border_to: None }
             } else {
                 self.lone_edges.extend([first, last].into_iter().filter(|&w| v < w).map(|w| [v, w]));
-                Star { degree: count + 1, border: 1, border_to: Some(first) }
+                StarCounts { degree: count + 1, border: 1, border_to: Some(first) }
             };
         }
         if is_simple {
@@ -175,10 +175,10 @@ impl Topology {
         let is_lone = |w: &&u32| v < **w && ends.iter().filter(|end| end == w).count() == 1;
         self.lone_edges.extend(ends.iter().filter(is_lone).map(|&w| [v, w]));
         let leaves = |corner: &&[u32; 2]| corners.iter().all(|other| other[1] != corner[0]);
-        Star { degree, border: corners.iter().filter(leaves).count() as u32, border_to: None }
+        StarCounts { degree, border: corners.iter().filter(leaves).count() as u32, border_to: None }
     }
 
-    fn trace_borders(&mut self, stars: &mut [Star]) {
+    fn trace_borders(&mut self, stars: &mut [StarCounts]) {
         for start in 0..stars.len() {
             let mut border = Vec::new();
             let mut v = start as u32;
@@ -192,7 +192,7 @@ impl Topology {
         }
     }
 
-    async fn count_components(&mut self, corners: &Corners, stars: &[Star]) {
+    async fn count_components(&mut self, corners: &Corners, stars: &[StarCounts]) {
         let mut seen = vec![false; stars.len()];
         let mut open = Vec::new();
         let mut looked_at = 0_usize;

@@ -14,9 +14,9 @@ mod steps;
 
 use draw::{Colour, View, draw, write_row};
 use glam::Vec3;
-use marching_particles::lesson::{self, Lesson, Method};
+use marching_particles::lesson::{self, Lesson, LessonMethod};
 use marching_particles::math::grouped;
-use marching_particles::paper::Order;
+use marching_particles::paper::QueueOrder;
 use marching_particles::quality;
 use marching_particles::sampler::{LawKind, Sampling};
 use printed::{Line, Printed, TABLE_1, TABLE_2};
@@ -166,7 +166,7 @@ fn run_line(line: &Line, plan: &Plan) -> Runs {
     let job = Job::new(line.id, line.sampling, plan.count(line.count));
     let method = other_method(line).1;
     let settings = job.faithful();
-    let system = lesson::Settings { method, ..settings.clone() };
+    let system = lesson::LessonSettings { method, ..settings.clone() };
     let runs = Runs {
         ours: job.run_faithful(&settings, f64::INFINITY),
         fast: job.run_fast(),
@@ -177,10 +177,10 @@ fn run_line(line: &Line, plan: &Plan) -> Runs {
 }
 
 /// Name of the method that the paper compares with.
-fn other_method(line: &Line) -> (&'static str, Method) {
+fn other_method(line: &Line) -> (&'static str, LessonMethod) {
     match line.sampling {
-        Sampling::Uniform => ("Witkin–Heckbert", Method::WitkinHeckbert),
-        Sampling::Adaptive => ("Forces", Method::Forces),
+        Sampling::Uniform => ("Witkin–Heckbert", LessonMethod::WitkinHeckbert),
+        Sampling::Adaptive => ("Forces", LessonMethod::Forces),
     }
 }
 
@@ -372,7 +372,7 @@ fn figures(out: &mut dyn Write, plan: &Plan, shown: &Shown) -> io::Result<()> {
     figure_12(album, plan)
 }
 
-fn faithful(job: &Job, change: impl FnOnce(&mut lesson::Settings)) -> Set {
+fn faithful(job: &Job, change: impl FnOnce(&mut lesson::LessonSettings)) -> Set {
     let mut settings = job.faithful();
     change(&mut settings);
     job.run_faithful(&settings, f64::INFINITY).set
@@ -383,7 +383,7 @@ fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
     let before = faithful(&job, |settings| settings.relax_steps = 0);
     let after = faithful(&job, |_| {});
     let surface = &job.surface;
-    let options = quality::Options::default();
+    let options = quality::MeasureOptions::default();
     let report = quality::measure(
         &before.position,
         &before.normal,
@@ -411,14 +411,14 @@ fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
 
 fn figures_7_and_8(album: &mut Album) -> io::Result<()> {
     let surface = Surface::of("ellipsoid");
-    let settings = lesson::Settings {
+    let settings = lesson::LessonSettings {
         sampling: Sampling::Adaptive,
         law: LawKind::SumOfCurvatures,
         law_scale: 0.2,
         radius_min: 0.03,
         radius_max: 0.15,
         relax_steps: 0,
-        ..lesson::Settings::default()
+        ..lesson::LessonSettings::default()
     };
     let mut run = Lesson::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
     while !run.step(1_000).is_done {}
@@ -444,7 +444,7 @@ fn figures_7_and_8(album: &mut Album) -> io::Result<()> {
 fn figure_9(album: &mut Album, plan: &Plan) -> io::Result<()> {
     let job = Job::new("bunny-joined", Sampling::Uniform, plan.count(10_000));
     let ours = faithful(&job, |_| {});
-    let theirs = faithful(&job, |settings| settings.method = Method::WitkinHeckbert);
+    let theirs = faithful(&job, |settings| settings.method = LessonMethod::WitkinHeckbert);
     let words = format!(
         "The bunny with the same wanted radius: *left* {} particles of the paper's method, *right* {} of Witkin and Heckbert's.",
         grouped(ours.position.len()),
@@ -472,19 +472,20 @@ fn figure_11(album: &mut Album) -> io::Result<()> {
     let surface = Surface::of("sphere");
     let seed = EYE.normalize_or(Vec3::Z).as_dvec3().to_array();
     let of = |order| {
-        let settings = lesson::Settings {
+        let settings = lesson::LessonSettings {
             radius: 0.035,
             order,
             seeds: vec![seed],
             relax_steps: 0,
-            ..lesson::Settings::default()
+            ..lesson::LessonSettings::default()
         };
         let mut run = Lesson::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
         while !run.step(1_000).is_done {}
         run.seek(u32::MAX);
         Set::of_faithful(run.particles())
     };
-    let squares = [of(Order::Queue), of(Order::Stack)].map(|set| all_of(&set, Vec3::Z, EYE, Colour::Level));
+    let squares =
+        [of(QueueOrder::Queue), of(QueueOrder::Stack)].map(|set| all_of(&set, Vec3::Z, EYE, Colour::Level));
     album.squares(
         11,
         &squares,

@@ -94,9 +94,9 @@ impl Outcome {
 }
 
 /// Processor time of this thread, so that other work on the machine does not count, or wall time if the system does not report it.
-struct Clock(Instant, f64);
+struct Stopwatch(Instant, f64);
 
-impl Clock {
+impl Stopwatch {
     fn start() -> Self {
         let mut clock = Self(Instant::now(), 0.0);
         clock.1 = clock.now();
@@ -159,9 +159,9 @@ impl Job {
     }
 
     /// Settings of the lesson for these sizes, with the paper's choices.
-    pub(crate) fn faithful(&self) -> lesson::Settings {
+    pub(crate) fn faithful(&self) -> lesson::LessonSettings {
         let diagonal = self.surface.bounds.diagonal();
-        lesson::Settings {
+        lesson::LessonSettings {
             sampling: self.sizes.sampling,
             radius: self.radius,
             law: self.sizes.radius_law,
@@ -174,7 +174,7 @@ impl Job {
             },
             max_particles: MOST_PARTICLES,
             max_iterations: MOST_ITERATIONS,
-            ..lesson::Settings::default()
+            ..lesson::LessonSettings::default()
         }
     }
 
@@ -183,14 +183,14 @@ impl Job {
             Sampling::Uniform => Sizes::None,
             Sampling::Adaptive => Sizes::Given(&set.radius),
         };
-        let options = quality::Options { sizes, ..quality::Options::default() };
+        let options = quality::MeasureOptions { sizes, ..quality::MeasureOptions::default() };
         let field = &mut *self.surface.field();
         quality::measure(&set.position, &set.normal, field, Some(&self.surface.bounds), &options).figures
     }
 
     /// The fast sampler.
     pub(crate) fn run_fast(&self) -> Outcome {
-        let clock = Clock::start();
+        let clock = Stopwatch::start();
         let mut relaxation = 0.0;
         let mut begun = 0.0;
         let run = sampled(&self.surface, &self.sizes, |phase| {
@@ -222,8 +222,8 @@ impl Job {
     }
 
     /// A method as it is written.
-    pub(crate) fn run_faithful(&self, settings: &lesson::Settings, limit_s: f64) -> Outcome {
-        let clock = Clock::start();
+    pub(crate) fn run_faithful(&self, settings: &lesson::LessonSettings, limit_s: f64) -> Outcome {
+        let clock = Stopwatch::start();
         let mut run =
             Lesson::new(self.surface.field(), &self.surface.bounds, settings).expect("valid settings");
         let [mut generation, mut relaxation, mut last_step] = [clock.seconds(), 0.0, 0.0];

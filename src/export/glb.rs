@@ -21,7 +21,7 @@ const MATERIALS: &str =
 const CYCLE: u32 = 12;
 
 /// A part of the buffer.
-struct Column {
+struct BufferColumn {
     name: &'static str,
     target: u32,
     /// How the numbers are read: members of an accessor.
@@ -53,7 +53,7 @@ pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn
 }
 
 /// The contents of the buffer; each column is a multiple of four bytes long. The triangles come last.
-fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
+fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<BufferColumn> {
     if triangles.is_empty() {
         return Vec::new();
     }
@@ -67,7 +67,7 @@ fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
     };
     let vectors =
         |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
-    let attribute = |name, accessor, bytes| Column { name, target: ARRAY_BUFFER, accessor, bytes };
+    let attribute = |name, accessor, bytes| BufferColumn { name, target: ARRAY_BUFFER, accessor, bytes };
     let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
     let index_count = 3 * triangles.len();
     vec![
@@ -84,7 +84,7 @@ fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
             accessor(FLOAT, "SCALAR", ""),
             particles.level.iter().flat_map(|&level| (level as f32).to_le_bytes()).collect(),
         ),
-        Column {
+        BufferColumn {
             name: "indices",
             target: ELEMENT_ARRAY_BUFFER,
             accessor: format!(r#""componentType":{UNSIGNED_INT},"type":"SCALAR","count":{index_count}"#),
@@ -94,14 +94,14 @@ fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
 }
 
 /// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.
-fn document(columns: &[Column], length: usize, origin: DVec3) -> String {
+fn document(columns: &[BufferColumn], length: usize, origin: DVec3) -> String {
     let asset = r#""asset":{"version":"2.0","generator":"Marching Particles"},"scene":0"#;
     if columns.is_empty() {
         return format!(r#"{{{asset},"scenes":[{{}}]}}"#);
     }
     let (mut views, mut accessors, mut attributes) = (Vec::new(), Vec::new(), Vec::new());
     let mut offset = 0;
-    for (k, Column { name, target, accessor, bytes }) in columns.iter().enumerate() {
+    for (k, BufferColumn { name, target, accessor, bytes }) in columns.iter().enumerate() {
         let size = bytes.len();
         views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{size},"target":{target}}}"#));
         accessors.push(format!(r#"{{"bufferView":{k},{accessor}}}"#));

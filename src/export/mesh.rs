@@ -45,7 +45,7 @@ impl MeshFormat {
 pub fn write_mesh(
     format: MeshFormat,
     particles: &Particles,
-    measured: &quality::Report,
+    measured: &quality::Measurements,
     triangles: &[[u32; 3]],
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -68,7 +68,7 @@ pub(crate) fn rows(format: MeshFormat, particles: &Particles, triangles: &[[u32;
 pub(crate) fn write_rows(
     format: MeshFormat,
     particles: &Particles,
-    measured: &quality::Report,
+    measured: &quality::Measurements,
     triangles: &[[u32; 3]],
     rows: Range<usize>,
     out: &mut dyn Write,

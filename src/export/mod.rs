@@ -68,7 +68,7 @@ pub struct Column {
     pub measured: bool,
     /// The value for one particle.
     #[serde(skip)]
-    read: fn(&Particles, &quality::Report, usize) -> CellValue,
+    read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
 }
 
 /// A value of a column.
@@ -117,7 +117,7 @@ fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
     }
 }
 
-type Read = fn(&Particles, &quality::Report, usize) -> CellValue;
+type Read = fn(&Particles, &quality::Measurements, usize) -> CellValue;
 
 const fn float(name: &'static str, read: Read) -> Column {
     Column { name, kind: ColumnKind::Float, measured: false, read }
@@ -173,7 +173,7 @@ pub const COLUMNS: &[Column] = &[
 pub fn write(
     format: Format,
     particles: &Particles,
-    measured: &quality::Report,
+    measured: &quality::Measurements,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
@@ -186,7 +186,7 @@ pub fn write(
 
 fn ply(
     particles: &Particles,
-    measured: &quality::Report,
+    measured: &quality::Measurements,
     triangles: Option<&[[u32; 3]]>,
     rows: Range<usize>,
     out: &mut dyn Write,
@@ -230,7 +230,7 @@ fn ply_header(particles: &Particles, triangles: Option<&[[u32; 3]]>, out: &mut d
     writeln!(out, "end_header")
 }
 
-fn csv(particles: &Particles, measured: &quality::Report, out: &mut dyn Write) -> io::Result<()> {
+fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
     let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
     writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
@@ -299,11 +299,11 @@ mod tests {
 
     fn written(format: Format) -> Vec<u8> {
         let mut out = Vec::new();
-        let measured = quality::Report {
+        let measured = quality::Measurements {
             valence: vec![6],
             nearest: vec![0.5],
             residual: vec![1e-7],
-            ..quality::Report::default()
+            ..quality::Measurements::default()
         };
         write(format, &two(), &measured, &mut out).expect("writing to memory does not fail");
         out

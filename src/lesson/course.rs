@@ -5,8 +5,8 @@
 
 use super::dynamics::Dynamics;
 use super::event::{Event, Log};
-use super::settings::{Method, Placing, Seeding, Settings};
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, Order, Particle, Run};
+use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, QueueOrder};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -53,7 +53,7 @@ pub enum ChapterKind {
 
 /// What a run is given and never changes.
 pub(super) struct Setup {
-    pub(super) settings: Settings,
+    pub(super) settings: LessonSettings,
     /// Points of the surface at which fronts may begin, in the order in which they are tried.
     pub(super) candidates: Vec<DVec3>,
     /// Diagonal of the box around the surface.
@@ -102,7 +102,7 @@ pub(super) struct Moment {
 
 impl Moment {
     /// The beginning of a run.
-    pub(super) fn first(settings: &Settings) -> Self {
+    pub(super) fn first(settings: &LessonSettings) -> Self {
         let cursor = Cursor::new(settings.seed);
         Self { cursor, waiting: VecDeque::new(), is_capped: false, steps: 0, evaluations: 0 }
     }
@@ -121,7 +121,7 @@ pub(super) struct Predicted {
 /// A run on its way through the chapters.
 pub(super) struct Course {
     pub(super) setup: Rc<Setup>,
-    pub(super) run: Run<Log>,
+    pub(super) run: PaperRun<Log>,
     pub(super) cursor: Cursor,
     /// The chapter under way.
     kind: Option<ChapterKind>,
@@ -146,7 +146,7 @@ impl Course {
         let Moment { cursor, waiting, is_capped, steps, evaluations } = moment;
         surface.evaluations = evaluations;
         let log = Log::new(&setup.settings);
-        let mut run = Run::with_particles(surface, setup.settings.rules(), particles, log);
+        let mut run = PaperRun::with_particles(surface, setup.settings.rules(), particles, log);
         (run.waiting, run.is_capped, run.steps) = (waiting, is_capped, steps);
         Self {
             setup: Rc::clone(setup),
@@ -191,8 +191,8 @@ impl Course {
     /// Begins the next chapter; `None` at the end of the run.
     pub(super) fn begin_chapter(&mut self) -> Option<ChapterKind> {
         self.kind = match self.setup.settings.method {
-            Method::Front => self.begin_part_of_front(),
-            Method::WitkinHeckbert | Method::Forces => self.begin_iteration(),
+            LessonMethod::Front => self.begin_part_of_front(),
+            LessonMethod::WitkinHeckbert | LessonMethod::Forces => self.begin_iteration(),
         };
         self.kind
     }
@@ -226,12 +226,12 @@ impl Course {
         self.cursor.part += 1;
         let front = self.cursor.fronts - 1;
         match self.setup.settings.order {
-            Order::Queue => {
+            QueueOrder::Queue => {
                 self.left = waiting;
                 self.run.seen.push(Event::LevelBegins { level, waiting });
                 ChapterKind::Level { front, level }
             }
-            Order::Stack => {
+            QueueOrder::Stack => {
                 self.left = STACK_CHAPTER;
                 ChapterKind::Stack { front, part }
             }

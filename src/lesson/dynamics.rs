@@ -22,7 +22,7 @@ pub(super) struct Dynamics {
 }
 
 /// A place to which a particle moves.
-pub(super) struct Step {
+pub(super) struct Displacement {
     /// What has driven it.
     pub(super) force: DVec3,
     pub(super) target: DVec3,

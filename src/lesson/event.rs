@@ -3,7 +3,7 @@
 //! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
 //! field's coordinates, angles in radians.
 
-use super::settings::Settings;
+use super::settings::LessonSettings;
 use crate::paper::{ChildSlot, Comparison, Move, Nearby, Observer, Particle, TangentFrame, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
@@ -348,7 +348,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    pub(super) fn new(settings: &Settings) -> Self {
+    pub(super) fn new(settings: &LessonSettings) -> Self {
         let seam = match settings.sampling {
             Sampling::Uniform => SEAM * 2.0 * settings.radius,
             Sampling::Adaptive => f64::INFINITY,

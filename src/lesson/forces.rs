@@ -13,9 +13,9 @@
 //! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
-use super::dynamics::{Dynamics, MAX_MOVE, Step};
+use super::dynamics::{Displacement, Dynamics, MAX_MOVE};
 use super::event::Log;
-use crate::paper::{OVERLAP_REACH, OVERLAP_STEP, Particle, Run, overlap};
+use crate::paper::{OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
 
 /// A disc meets those that are not larger within this many radii.
 pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
@@ -51,7 +51,7 @@ pub(super) fn interact(
 }
 
 /// "Update the position": a step of the relaxation, and back onto the surface, with the radius there.
-pub(super) fn step(run: &mut Run<Log>, own: &Particle, dynamics: &Dynamics) -> Step {
+pub(super) fn step(run: &mut PaperRun<Log>, own: &Particle, dynamics: &Dynamics) -> Displacement {
     let normal = own.n();
     let force = dynamics.force - normal * normal.dot(dynamics.force);
     let reach = MAX_MOVE * own.radius;
@@ -60,7 +60,7 @@ pub(super) fn step(run: &mut Run<Log>, own: &Particle, dynamics: &Dynamics) -> S
         let radius = run.radius_at(position).unwrap_or(own.radius);
         Particle { position: position.to_array(), normal: normal.to_array(), radius, ..*own }
     });
-    Step { force, target, arrived }
+    Displacement { force, target, arrived }
 }
 
 /// Whether a particle dies, given a random number in [0, 1).

@@ -2,7 +2,7 @@
 //!
 //! It stands on [`paper`](crate::paper), which it adds to: the same front level by level (`levels`), the filling of the gaps that
 //! fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the general scheme of §3 in `system`, what each makes
-//! of it in `witkin_heckbert` and `forces`. [`Settings`] chooses among them.
+//! of it in `witkin_heckbert` and `forces`. [`LessonSettings`] chooses among them.
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
 //! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
@@ -48,7 +48,7 @@ mod witkin_heckbert;
 pub use course::ChapterKind;
 pub use event::{Event, Vector};
 pub use section::Iterate;
-pub use settings::{LessonError, LessonField, MAX_PARTICLES, Method, Placing, Seeding, Settings};
+pub use settings::{LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, Seeding};
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
@@ -59,7 +59,7 @@ use glam::DVec3;
 use serde::Serialize;
 use snapshots::Snapshots;
 use std::rc::Rc;
-use survey::{Patch, shuffled, survey};
+use survey::{SurfacePatch, shuffled, survey};
 use system::QUIET;
 
 /// A part of a run, before which a snapshot is taken.
@@ -127,7 +127,7 @@ pub struct Life {
 
 /// The moment of the run that is shown.
 #[derive(Default)]
-struct View {
+struct ShownMoment {
     /// The chapter whose events are at hand.
     chapter: Option<usize>,
     events: Vec<Event>,
@@ -144,7 +144,7 @@ pub struct Lesson {
     snapshots: Snapshots,
     lives: Vec<Life>,
     is_done: bool,
-    view: View,
+    view: ShownMoment,
 }
 
 impl Lesson {
@@ -153,8 +153,12 @@ impl Lesson {
     /// # Errors
     ///
     /// If a setting or the box is invalid, or if more particles are to be expected than [`MAX_PARTICLES`] and
-    /// [`Settings::max_particles`].
-    pub fn new(field: Box<dyn Field>, bounds: &Bounds, settings: &Settings) -> Result<Self, LessonError> {
+    /// [`LessonSettings::max_particles`].
+    pub fn new(
+        field: Box<dyn Field>,
+        bounds: &Bounds,
+        settings: &LessonSettings,
+    ) -> Result<Self, LessonError> {
         settings.validate()?;
         if !bounds.is_valid() {
             return Err(LessonError::Box);
@@ -177,7 +181,7 @@ impl Lesson {
             snapshots: Snapshots::new(),
             lives: Vec::new(),
             is_done: false,
-            view: View::default(),
+            view: ShownMoment::default(),
         })
     }
 
@@ -191,7 +195,7 @@ impl Lesson {
     pub fn going_on(
         field: Box<dyn Field>,
         bounds: &Bounds,
-        settings: &Settings,
+        settings: &LessonSettings,
         particles: Vec<Particle>,
         first: u32,
     ) -> Result<Self, LessonError> {
@@ -284,7 +288,11 @@ impl Lesson {
         }
         if event == self.events_so_far() {
             // The end is at hand.
-            self.view = View { at: event, particles: self.course.run.particles.clone(), ..View::default() };
+            self.view = ShownMoment {
+                at: event,
+                particles: self.course.run.particles.clone(),
+                ..ShownMoment::default()
+            };
             return event;
         }
         // The end of a chapter is looked at as its end, not as the beginning of the next one.
@@ -440,9 +448,9 @@ impl Lesson {
 
 /// Refuses a run of more particles than are followed.
 fn check_count(
-    patches: &[Patch],
+    patches: &[SurfacePatch],
     surface: &mut ImplicitSurface,
-    settings: &Settings,
+    settings: &LessonSettings,
 ) -> Result<(), LessonError> {
     let sizes = settings.rules().sizes;
     let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
@@ -489,17 +497,17 @@ fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::snapshots::Snapshots;
-    use super::{Event, Lesson, Method, Settings, digest};
+    use super::{Event, Lesson, LessonMethod, LessonSettings, digest};
     use crate::field::gallery;
 
     #[test]
     fn back_is_exact_where_most_snapshots_have_been_dropped() {
         let sphere = gallery::find("sphere").expect("a surface of the gallery");
-        let settings = Settings {
-            method: Method::WitkinHeckbert,
+        let settings = LessonSettings {
+            method: LessonMethod::WitkinHeckbert,
             radius: 0.15,
             max_iterations: 100,
-            ..Settings::default()
+            ..LessonSettings::default()
         };
         let start =
             || Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings).expect("valid settings");

@@ -3,7 +3,7 @@
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
 use crate::math::Bounds;
-use crate::paper::{Matched, Order, Projection, Rules, Sizes, Start, sum_of_curvatures};
+use crate::paper::{Matched, Projection, QueueOrder, RadiusRule, Rules, SearchStart, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct LessonField {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMethod"))]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum LessonMethod {
     /// The paper's own: a front of particles, each of which places its neighbours, and a few relaxation steps.
     Front,
     /// The particle system that the paper compares its uniform sampling with (Table 1): that of Witkin and Heckbert 1994.
@@ -66,10 +66,10 @@ pub enum Seeding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
-pub struct Settings {
+pub struct LessonSettings {
     /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
     /// `residual`, `max_iterations` and `max_particles`.
-    pub method: Method,
+    pub method: LessonMethod,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
     #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]
     pub sampling: Sampling,
@@ -98,9 +98,9 @@ pub struct Settings {
     /// How a child comes to the surface.
     pub projection: Projection,
     /// Where that begins.
-    pub start: Start,
+    pub start: SearchStart,
     /// Which particle is treated next.
-    pub order: Order,
+    pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,
     /// A child is identified with a particle within this distance, in 2r.
@@ -122,10 +122,10 @@ pub struct Settings {
     pub max_particles: u32,
 }
 
-impl Default for Settings {
+impl Default for LessonSettings {
     fn default() -> Self {
         Self {
-            method: Method::Front,
+            method: LessonMethod::Front,
             sampling: Sampling::Uniform,
             radius: 0.0,
             law: LawKind::SumOfCurvatures,
@@ -137,9 +137,9 @@ impl Default for Settings {
             seed: 0,
             seeding: Seeding::OneByOne,
             projection: Projection::Circle,
-            start: Start::Tangent,
+            start: SearchStart::Tangent,
             // The text says stack, but the rings of Fig. 11 are those of a queue.
-            order: Order::Queue,
+            order: QueueOrder::Queue,
             matched: Matched::Leave,
             match_tolerance: 0.7,
             placing: Placing::OneByOne,
@@ -153,7 +153,7 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
+impl LessonSettings {
     /// The choices of the fast uniform front, whose particles these settings reproduce.
     #[must_use]
     pub fn of_fast_front() -> Self {
@@ -163,8 +163,8 @@ impl Settings {
     /// The rules of the paper's algorithms.
     pub(super) fn rules(&self) -> Rules {
         let sizes = match self.sampling {
-            Sampling::Uniform => Sizes::Same(self.radius),
-            Sampling::Adaptive => Sizes::ByCurvature {
+            Sampling::Uniform => RadiusRule::Same(self.radius),
+            Sampling::Adaptive => RadiusRule::ByCurvature {
                 law: law(self.law),
                 scale: self.law_scale,
                 least: self.radius_min,
@@ -214,8 +214,8 @@ impl Settings {
             }
         }
         match (self.method, self.sampling) {
-            (Method::WitkinHeckbert, Sampling::Adaptive) => return Err(LessonError::OneSize),
-            (Method::WitkinHeckbert, _) if !(0.0..=f64::MAX).contains(&self.radius_max) => {
+            (LessonMethod::WitkinHeckbert, Sampling::Adaptive) => return Err(LessonError::OneSize),
+            (LessonMethod::WitkinHeckbert, _) if !(0.0..=f64::MAX).contains(&self.radius_max) => {
                 let (name, value) = ("radius_max", self.radius_max);
                 return Err(LessonError::OutOfRange { name, value, min: 0.0, max: f64::MAX });
             }
@@ -223,11 +223,11 @@ impl Settings {
         }
         if self.placing == Placing::LevelByLevel
             && (self.order, self.projection, self.matched)
-                != (Order::Queue, Projection::Circle, Matched::Stay)
+                != (QueueOrder::Queue, Projection::Circle, Matched::Stay)
         {
             return Err(LessonError::Levels);
         }
-        if (self.method, self.sampling) == (Method::Front, Sampling::Adaptive)
+        if (self.method, self.sampling) == (LessonMethod::Front, Sampling::Adaptive)
             && (self.placing, self.projection, self.gaps)
                 != (Placing::OneByOne, Projection::Circle, GapPolicy::Leave)
         {

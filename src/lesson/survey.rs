@@ -9,7 +9,7 @@ use rand_pcg::Pcg32;
 const CELLS: f64 = 32.0;
 
 /// A point near the surface, and the part of the surface around it.
-pub(super) struct Patch {
+pub(super) struct SurfacePatch {
     pub(super) point: DVec3,
     /// Area of that part.
     pub(super) area: f64,
@@ -19,7 +19,7 @@ pub(super) struct Patch {
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of projected area,
 /// where s is the spacing, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
-pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<Patch> {
+pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     let (lo, size) = (surface.bounds.lo(), surface.bounds.hi() - surface.bounds.lo());
     let cells = (size * (CELLS / size.max_element())).ceil();
     let step = size / cells;
@@ -52,7 +52,7 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<Patch> {
                     let section = step.x * step.y * step.z / step[axis];
                     let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);
                     if area.is_finite() {
-                        patches.push(Patch { point, area });
+                        patches.push(SurfacePatch { point, area });
                     }
                 }
             }

@@ -20,9 +20,9 @@
 //! * The first particle does not die, so that there always is one.
 
 use super::course::{ChapterKind, Course};
-use super::dynamics::{Dynamics, Step};
+use super::dynamics::{Displacement, Dynamics};
 use super::event::Event;
-use super::settings::Method;
+use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
 use crate::math::frame_of;
 use crate::paper::{Buckets, Particle};
@@ -86,7 +86,7 @@ impl Course {
 
     /// "Compute the energy", "compute the velocity": sums over all pairs within reach. `mean` is the mean radius.
     fn interact(&mut self, mean: f64) {
-        let is_gaussian = self.setup.settings.method == Method::WitkinHeckbert;
+        let is_gaussian = self.setup.settings.method == LessonMethod::WitkinHeckbert;
         let reach = if is_gaussian { witkin_heckbert::RANGE } else { forces::RANGE };
         let particles = &self.run.particles;
         self.run.buckets = Buckets::new(reach * mean, particles);
@@ -130,19 +130,19 @@ impl Course {
         let method = self.setup.settings.method;
         let own = self.run.particles[i];
         let dynamics = &mut self.dynamics[i];
-        let Step { force, target, arrived } = match method {
-            Method::WitkinHeckbert => {
+        let Displacement { force, target, arrived } = match method {
+            LessonMethod::WitkinHeckbert => {
                 let particle = &mut self.run.particles[i];
                 witkin_heckbert::step(&mut self.run.surface, &self.setup, particle, dynamics)
             }
-            Method::Front | Method::Forces => forces::step(&mut self.run, &own, dynamics),
+            LessonMethod::Front | LessonMethod::Forces => forces::step(&mut self.run, &own, dynamics),
         };
         let particle = &mut self.run.particles[i];
         if let Some(arrived) = arrived {
             *particle = arrived;
         }
         dynamics.moved = particle.p().distance(own.p()) / particle.radius;
-        if method == Method::Forces {
+        if method == LessonMethod::Forces {
             dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
         }
         self.run.largest_move = self.run.largest_move.max(dynamics.moved);
@@ -162,11 +162,13 @@ impl Course {
         let (own, dynamics) = (self.run.particles[i], self.dynamics[i]);
         let chance = uniform(&mut self.cursor.random);
         let (dies, divides) = match self.setup.settings.method {
-            Method::WitkinHeckbert => (
+            LessonMethod::WitkinHeckbert => (
                 witkin_heckbert::dies(&self.setup, &own, &dynamics, chance),
                 witkin_heckbert::divides(&self.setup, &own, &dynamics),
             ),
-            Method::Front | Method::Forces => (forces::dies(&dynamics, chance), forces::divides(&dynamics)),
+            LessonMethod::Front | LessonMethod::Forces => {
+                (forces::dies(&dynamics, chance), forces::divides(&dynamics))
+            }
         };
         let most = self.run.rules.max_particles;
         if dies && i > 0 {
@@ -193,8 +195,8 @@ impl Course {
             let (position, normal) = self.run.come_back(parent, start, parent.radius)?;
             let radius = match method {
                 // Both together cover the area that their parent has covered.
-                Method::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
-                Method::Front | Method::Forces => self.run.radius_at(position)?,
+                LessonMethod::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
+                LessonMethod::Front | LessonMethod::Forces => self.run.radius_at(position)?,
             };
             let level = parent.level + 1;
             Some(Particle { level, ..Particle::seed(position, normal, radius, parent.front) })

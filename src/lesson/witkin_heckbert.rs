@@ -12,7 +12,7 @@
 //!   is not small, a pair that has just divided could leave the surface, or get negative radii.
 
 use super::course::Setup;
-use super::dynamics::{Dynamics, MAX_MOVE, Step};
+use super::dynamics::{Displacement, Dynamics, MAX_MOVE};
 use crate::paper::{ImplicitSurface, Particle};
 use glam::DVec3;
 
@@ -85,7 +85,7 @@ pub(super) fn step(
     setup: &Setup,
     own: &mut Particle,
     dynamics: &mut Dynamics,
-) -> Step {
+) -> Displacement {
     let sigma = own.radius;
     let normal = own.n();
     let force = dynamics.force * (sigma * sigma);
@@ -110,7 +110,7 @@ pub(super) fn step(
         height,
         ..*own
     });
-    Step { force, target, arrived }
+    Displacement { force, target, arrived }
 }
 
 /// Whether a particle dies: near equilibrium, σ < δσ̂, and a random number above σ/(δσ̂).

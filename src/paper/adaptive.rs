@@ -7,7 +7,7 @@
 //! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than the match tolerance
 //!   allows is not added.
 
-use super::Run;
+use super::PaperRun;
 use super::buckets::Nearby;
 use super::observer::{ChildSlot, Comparison, Observer};
 use super::particle::{TangentFrame, is_same_sheet};
@@ -55,7 +55,7 @@ impl Disc {
 
 /// A particle of the sheet around a parent.
 #[derive(Clone, Copy, Debug)]
-struct Around {
+struct SheetNeighbour {
     particle: u32,
     disc: Disc,
     touches: bool,
@@ -67,7 +67,7 @@ struct Circumference {
     p: DVec3,
     radius: f64,
     frame: TangentFrame,
-    around: Vec<Around>,
+    around: Vec<SheetNeighbour>,
     /// The next slot.
     slot: u32,
 }
@@ -116,7 +116,7 @@ impl Circumference {
     }
 }
 
-impl<O: Observer> Run<O> {
+impl<O: Observer> PaperRun<O> {
     /// Treats a particle: places children in each of the free spaces around it (§5.3).
     pub(super) fn treat_adaptive(&mut self, particle: u32) {
         let own = self.particles[particle as usize];
@@ -138,7 +138,8 @@ impl<O: Observer> Run<O> {
             ring.slot = 1;
         }
         // "If we have n existing particles we have n free available spaces."
-        let mut touching: Vec<Around> = ring.around.iter().filter(|other| other.touches).copied().collect();
+        let mut touching: Vec<SheetNeighbour> =
+            ring.around.iter().filter(|other| other.touches).copied().collect();
         touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
         if touching.is_empty() {
             self.seen.space(particle, None);
@@ -152,11 +153,11 @@ impl<O: Observer> Run<O> {
     }
 
     /// A neighbour of the parent's sheet as a disc.
-    fn around(&self, ring: &Circumference, near: &Nearby) -> Option<Around> {
+    fn around(&self, ring: &Circumference, near: &Nearby) -> Option<SheetNeighbour> {
         let other = &self.particles[near.particle as usize];
         let both = ring.radius + other.radius;
         let offset = other.p() - ring.p;
-        is_same_sheet(offset, ring.frame.n, other.n(), RISE_SLACK * both).then(|| Around {
+        is_same_sheet(offset, ring.frame.n, other.n(), RISE_SLACK * both).then(|| SheetNeighbour {
             particle: near.particle,
             disc: ring.disc(other.p(), other.radius),
             touches: near.distance <= TOUCHING * both,
@@ -253,7 +254,7 @@ impl<O: Observer> Run<O> {
             self.decide(of, SlotFate::Matched, Some(other));
         } else if let Some(particle) = self.add_waiting(of, (position, normal, radius)) {
             let disc = ring.disc(position, radius);
-            ring.around.push(Around { particle, disc, touches: true });
+            ring.around.push(SheetNeighbour { particle, disc, touches: true });
         }
     }
 

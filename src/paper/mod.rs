@@ -46,8 +46,8 @@ pub use buckets::Nearby;
 pub use observer::{ChildSlot, Comparison, Move, Observer};
 pub use particle::{Particle, TangentFrame};
 pub use relaxation::Push;
-pub use rules::{Matched, Order, Projection, Rules, Sizes, Start, sum_of_curvatures};
-pub use surface::{ImplicitSurface, Sample, Trial};
+pub use rules::{Matched, Projection, QueueOrder, RadiusRule, Rules, SearchStart, sum_of_curvatures};
+pub use surface::{FieldSample, ImplicitSurface, Trial};
 
 pub(crate) use buckets::Buckets;
 pub(crate) use particle::is_same_sheet;
@@ -67,7 +67,7 @@ const COVERED: f64 = 2.0;
 const POLE_PROBE: f64 = 1e-3;
 
 /// A run of the paper's algorithm: the surface, the particles so far, and those that wait to be treated.
-pub struct Run<O> {
+pub struct PaperRun<O> {
     pub(crate) surface: ImplicitSurface,
     pub(crate) rules: Rules,
     pub(crate) particles: Vec<Particle>,
@@ -86,7 +86,7 @@ pub struct Run<O> {
     pub(crate) seen: O,
 }
 
-impl<O: Observer> Run<O> {
+impl<O: Observer> PaperRun<O> {
     /// A run without particles.
     pub fn new(surface: ImplicitSurface, rules: Rules, seen: O) -> Self {
         Self::with_particles(surface, rules, Vec::new(), seen)
@@ -153,14 +153,14 @@ impl<O: Observer> Run<O> {
     /// Treats the next particle that waits, if there is one.
     pub fn treat_next(&mut self) {
         let next = match self.rules.order {
-            Order::Queue => self.waiting.pop_front(),
-            Order::Stack => self.waiting.pop_back(),
+            QueueOrder::Queue => self.waiting.pop_front(),
+            QueueOrder::Stack => self.waiting.pop_back(),
         };
         let Some(particle) = next else { return };
         self.seen.taken(particle);
         match self.rules.sizes {
-            Sizes::Same(radius) => self.treat_uniform(particle, radius),
-            Sizes::ByCurvature { .. } => self.treat_adaptive(particle),
+            RadiusRule::Same(radius) => self.treat_uniform(particle, radius),
+            RadiusRule::ByCurvature { .. } => self.treat_adaptive(particle),
         }
         self.finish(particle);
     }

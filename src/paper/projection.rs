@@ -1,6 +1,6 @@
 //! How a child comes to the surface, paper §4.3: on a circle around its parent.
 
-use super::Run;
+use super::PaperRun;
 use super::observer::{ChildSlot, Observer};
 use super::particle::Particle;
 use super::rules::Projection;
@@ -169,7 +169,7 @@ impl ImplicitSurface {
     }
 }
 
-impl<O: Observer> Run<O> {
+impl<O: Observer> PaperRun<O> {
     /// Moves a child onto the surface (§4.3), from an angle on its circle.
     pub(crate) fn land(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> Landing {
         let residual = self.rules.residual * self.particles[child.parent as usize].radius;

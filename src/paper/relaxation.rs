@@ -1,10 +1,10 @@
 //! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without fission, death and adaptive
 //! radii; in non-uniform sampling (§5.4) forces between discs that overlap.
 
-use super::Run;
+use super::PaperRun;
 use super::buckets::{Buckets, Nearby};
 use super::observer::{Move, Observer};
-use super::rules::{Rules, Sizes};
+use super::rules::{RadiusRule, Rules};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -61,12 +61,12 @@ pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
 /// The size of a step: the share of the force by which a particle moves.
 fn step_size(rules: &Rules) -> f64 {
     rules.step_size.unwrap_or(match rules.sizes {
-        Sizes::Same(_) => STEP,
-        Sizes::ByCurvature { .. } => OVERLAP_STEP,
+        RadiusRule::Same(_) => STEP,
+        RadiusRule::ByCurvature { .. } => OVERLAP_STEP,
     })
 }
 
-impl<O: Observer> Run<O> {
+impl<O: Observer> PaperRun<O> {
     /// A relaxation step: all forces, then all moves.
     pub fn relax(&mut self) {
         self.begin_step();
@@ -112,15 +112,15 @@ impl<O: Observer> Run<O> {
         let own = &self.particles[particle as usize];
         let sizes = self.rules.sizes;
         let reach = match sizes {
-            Sizes::Same(_) => RANGE * own.radius,
-            Sizes::ByCurvature { most, .. } => OVERLAP_REACH * (own.radius + most),
+            RadiusRule::Same(_) => RANGE * own.radius,
+            RadiusRule::ByCurvature { most, .. } => OVERLAP_REACH * (own.radius + most),
         };
         let around = self.buckets.near(&self.particles, own.p(), reach).into_iter();
         around.filter(move |near| near.particle != particle).map(move |near| {
             let other = &self.particles[near.particle as usize];
             let (push, pair) = match sizes {
-                Sizes::Same(_) => gaussian(near.distance, own.radius),
-                Sizes::ByCurvature { .. } => overlap(near.distance, own.radius + other.radius),
+                RadiusRule::Same(_) => gaussian(near.distance, own.radius),
+                RadiusRule::ByCurvature { .. } => overlap(near.distance, own.radius + other.radius),
             };
             let weight = same_sheet_weight(own.n().dot(other.n()));
             let force = (own.p() - other.p()) * (weight * push);

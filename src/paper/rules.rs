@@ -20,7 +20,7 @@ pub enum Projection {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
 #[serde(rename_all = "snake_case")]
-pub enum Start {
+pub enum SearchStart {
     /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
     Tangent,
     /// Where the normal curvature of the parent puts the surface, sin θ₀ = −κ_V r.
@@ -31,7 +31,7 @@ pub enum Start {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
 #[serde(rename_all = "snake_case")]
-pub enum Order {
+pub enum QueueOrder {
     /// The one that has waited longest: this gives the rings of Fig. 11.
     Queue,
     /// The one that came last, as the word "stack" in the text says.
@@ -51,7 +51,7 @@ pub enum Matched {
 
 /// The repulsion radii of the particles.
 #[derive(Clone, Copy, Debug)]
-pub enum Sizes {
+pub enum RadiusRule {
     /// This radius everywhere (§4).
     Same(f64),
     /// A radius that follows the curvature (§5.2), between two limits, "in order to avoid very small or very large particles".
@@ -67,7 +67,7 @@ pub enum Sizes {
     },
 }
 
-impl Sizes {
+impl RadiusRule {
     /// Smallest radius of a particle.
     pub(crate) fn smallest(&self) -> f64 {
         match *self {
@@ -106,13 +106,13 @@ pub fn sum_of_curvatures(curvature: &Curvature<f64, DVec3>, scale: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Rules {
     /// The radii of the particles.
-    pub sizes: Sizes,
+    pub sizes: RadiusRule,
     /// How a child comes to the surface.
     pub projection: Projection,
     /// Where that begins.
-    pub start: Start,
+    pub start: SearchStart,
     /// Which particle is treated next.
-    pub order: Order,
+    pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,
     /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value.
@@ -130,13 +130,13 @@ pub struct Rules {
 impl Rules {
     /// The choices of the paper; where it names no value, those of the fast sampler.
     #[must_use]
-    pub fn with_sizes(sizes: Sizes) -> Self {
+    pub fn with_sizes(sizes: RadiusRule) -> Self {
         Self {
             sizes,
             projection: Projection::Circle,
-            start: Start::Tangent,
+            start: SearchStart::Tangent,
             // The text says stack, but the rings of Fig. 11 are those of a queue.
-            order: Order::Queue,
+            order: QueueOrder::Queue,
             matched: Matched::Leave,
             match_tolerance: 0.7,
             fit: 0.5,

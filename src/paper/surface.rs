@@ -21,7 +21,7 @@ pub struct ImplicitSurface {
 
 /// f and ∇f at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct FieldSample {
     /// f.
     pub value: f64,
     /// ∇f.
@@ -30,7 +30,7 @@ pub struct Sample {
     pub slope: f64,
 }
 
-impl Sample {
+impl FieldSample {
     /// Whether the point counts as one of the surface, with a normal.
     pub(super) fn is_zero(&self, residual: f64) -> bool {
         self.slope > 0.0 && self.slope.is_finite() && self.value.abs() <= residual * self.slope
@@ -47,7 +47,7 @@ pub struct Trial {
     /// The place.
     pub position: DVec3,
     /// The field there.
-    pub sample: Sample,
+    pub sample: FieldSample,
     /// Angles between which f changes its sign, in the bracketed search.
     pub bracket_rad: Option<[f64; 2]>,
 }
@@ -75,10 +75,10 @@ impl ImplicitSurface {
         Self { field: Rc::new(RefCell::new(field)), bounds: *bounds, evaluations: 0 }
     }
 
-    pub(crate) fn sample(&mut self, p: DVec3) -> Sample {
+    pub(crate) fn sample(&mut self, p: DVec3) -> FieldSample {
         self.evaluations += 1;
         let jet = self.field.borrow_mut().jet(p);
-        Sample { value: jet.value, gradient: jet.gradient, slope: jet.gradient.length() }
+        FieldSample { value: jet.value, gradient: jet.gradient, slope: jet.gradient.length() }
     }
 
     /// Second fundamental form [a, b, c] of the surface at p in the tangent frame (u, w): the normal turns by `[a b; b c]`.

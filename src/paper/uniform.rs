@@ -9,12 +9,12 @@
 //! * The paper does not say when a particle corresponds to a child. Here it is within the match radius, on the same sheet of the
 //!   surface: two sheets may be nearer than that.
 
-use super::Run;
+use super::PaperRun;
 use super::buckets::Nearby;
 use super::observer::{ChildSlot, Comparison, Observer};
 use super::particle::{TangentFrame, is_same_sheet};
 use super::projection::Circle;
-use super::rules::{Matched, Start};
+use super::rules::{Matched, SearchStart};
 use super::surface::Landing;
 use crate::math::frame_of;
 use crate::particles::SlotFate;
@@ -55,15 +55,15 @@ pub(crate) fn predicted_angle([a, b, c]: [f64; 3], [cos, sin]: [f64; 2], radius:
     libm::asin((-curvature * radius).clamp(-STEEPEST, STEEPEST))
 }
 
-impl<O: Observer> Run<O> {
+impl<O: Observer> PaperRun<O> {
     /// Treats a particle: the body of Algorithm 2.
     pub(super) fn treat_uniform(&mut self, particle: u32, radius: f64) {
         let child = |slot: usize| ChildSlot { parent: particle, slot: slot as u32 };
         let centre = self.particles[particle as usize].p();
         let frame = self.tangent_frame(particle);
         let form = match self.rules.start {
-            Start::Tangent => None,
-            Start::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
+            SearchStart::Tangent => None,
+            SearchStart::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
         };
         self.seen.frame(particle, &frame, form);
 

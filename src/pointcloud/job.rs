@@ -102,7 +102,7 @@ impl JobError {
 /// Error of a job, as the page shows it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PointsFault"))]
-pub struct Fault {
+pub struct PointsFault {
     /// Kind of error as a word in snake case.
     pub kind: &'static str,
     /// One sentence for the user, in plain text.
@@ -111,7 +111,7 @@ pub struct Fault {
     pub line: Option<u64>,
 }
 
-impl From<&JobError> for Fault {
+impl From<&JobError> for PointsFault {
     fn from(error: &JobError) -> Self {
         Self { kind: error.kind(), message: error.to_string(), line: error.line() }
     }
@@ -173,11 +173,11 @@ impl JobPart {
 
 /// A file or a built-in model on its way to a field.
 pub struct Job {
-    state: State,
+    state: JobState,
     told: Rc<Told>,
 }
 
-enum State {
+enum JobState {
     Working(Pin<Box<dyn Future<Output = Result<Fit, JobError>>>>),
     Done(Box<Fit>),
     Failed(JobError),
@@ -196,7 +196,7 @@ impl Job {
         let info = ModelInfo { name: name.to_owned(), ..ModelInfo::default() };
         let told = Told::new(&READING);
         let work = Box::pin(of_file(reader, centres as usize, info, told.clone()));
-        Ok(Self { state: State::Working(work), told })
+        Ok(Self { state: JobState::Working(work), told })
     }
 
     /// Job for a built-in model. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated, or all of them if
@@ -213,15 +213,15 @@ impl Job {
         let told = Told::new(&SPREADING);
         let given = cloud.position.clone();
         let work = Box::pin(of_cloud(cloud, given, centres as usize, info, told.clone()));
-        Ok(Self { state: State::Working(work), told })
+        Ok(Self { state: JobState::Working(work), told })
     }
 
     /// Current progress.
     #[must_use]
     pub fn progress(&self) -> PointsProgress {
         match self.state {
-            State::Done(_) => DONE.at(0.0),
-            State::Working(_) | State::Failed(_) => self.told.progress.get(),
+            JobState::Done(_) => DONE.at(0.0),
+            JobState::Working(_) | JobState::Failed(_) => self.told.progress.get(),
         }
     }
 
@@ -234,13 +234,13 @@ impl Job {
     ///
     /// What is wrong with the file, the points or the system. Every later call returns the same error.
     pub fn step(&mut self, budget: u32) -> Result<PointsProgress, JobError> {
-        if let State::Working(work) = &mut self.state
+        if let JobState::Working(work) = &mut self.state
             && let Some(result) = slices::advance(work.as_mut(), budget)
         {
-            self.state = result.map_or_else(State::Failed, |fit| State::Done(Box::new(fit)));
+            self.state = result.map_or_else(JobState::Failed, |fit| JobState::Done(Box::new(fit)));
         }
         match &self.state {
-            State::Failed(error) => Err(error.clone()),
+            JobState::Failed(error) => Err(error.clone()),
             _ => Ok(self.progress()),
         }
     }
@@ -249,7 +249,7 @@ impl Job {
     #[must_use]
     pub fn fit(&self) -> Option<&Fit> {
         match &self.state {
-            State::Done(fit) => Some(fit),
+            JobState::Done(fit) => Some(fit),
             _ => None,
         }
     }

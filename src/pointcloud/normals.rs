@@ -44,7 +44,7 @@ const WARN_SHARE: f64 = 0.01;
 ///
 /// If there is not enough memory.
 pub async fn estimate(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Vec<String>, CloudError> {
-    let mut graph = Graph::new(&cloud.position, tell).await;
+    let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
     let edges = graph.edges()?;
     let components = graph.orient(&edges);
     let mut warnings = vec![
@@ -73,7 +73,7 @@ pub async fn estimate(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Vec<Strin
 
 /// Points with normals, each joined to its nearest neighbours.
 #[derive(Debug)]
-struct Graph {
+struct NeighbourGraph {
     /// Points relative to the centre of their box, in units of its diagonal.
     local: Vec<DVec3>,
     /// Number of neighbours of each point.
@@ -84,7 +84,7 @@ struct Graph {
     normal: Vec<DVec3>,
 }
 
-impl Graph {
+impl NeighbourGraph {
     /// Fits a plane to the neighbours of each point.
     async fn new(points: &[DVec3], tell: impl Fn(f64)) -> Self {
         let (lo, hi) = corners(points);

@@ -1,7 +1,7 @@
 //! Connected components of the surface, as far as the points show them.
 
 use super::gaps::LONG;
-use super::scene::Scene;
+use super::points::MeasuredPoints;
 use crate::math::Forest;
 use crate::slices::pause;
 
@@ -16,9 +16,9 @@ pub(super) const NO_LABEL: u32 = u32::MAX;
 ///
 /// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no triangle, and if
 /// their distance is not [`LONG`] at either.
-pub(super) async fn label(scene: &Scene, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
-    let n = scene.tree.len();
-    let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
+pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
+    let n = points.tree.len();
+    let distance = |i: usize, j: usize| points.tree.position[i].distance(points.tree.position[j]);
     let mut forest = Forest::new(n);
     let mut is_used = vec![false; n];
     let mut join = |i: usize, j: usize| {
@@ -37,14 +37,14 @@ pub(super) async fn label(scene: &Scene, spacing: &[f32], mesh: &[[u32; 3]]) -> 
         pause().await;
     }
     for i in (0..n).filter(|&i| !is_used[i]) {
-        scene.rings.of(i).for_each(|j| join(i, j));
+        points.rings.of(i).for_each(|j| join(i, j));
     }
     let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
     // At the root of each component: the number of points, and the first of them in the order given.
     let mut count = vec![0_u32; n];
     let mut first = vec![u32::MAX; n];
-    for (&r, &origin) in root.iter().zip(&scene.tree.origin) {
+    for (&r, &origin) in root.iter().zip(&points.tree.origin) {
         count[r as usize] += 1;
         first[r as usize] = first[r as usize].min(origin);
     }

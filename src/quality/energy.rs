@@ -1,7 +1,7 @@
 //! Energy of every point among its natural neighbours, by which the particles can be coloured.
 
-use super::scene::Scene;
-use super::sizes::Wanted;
+use super::points::MeasuredPoints;
+use super::sizes::WantedRadii;
 use crate::math::functions::exp;
 use crate::slices::{pause, ranges};
 
@@ -14,19 +14,19 @@ const SIX: f32 = 0.812_011_7;
 ///
 /// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both radii where sizes are wanted. With
 /// s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the relaxation, whose σ is r; neighbours farther away add less than 2 %.
-pub(super) async fn of_points(scene: &Scene, wanted: Option<&Wanted>, d_hex: f64) -> Vec<f32> {
-    let n = scene.tree.len();
+pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
+    let n = points.tree.len();
     let mut energy = Vec::with_capacity(n);
     for range in ranges(n, SLICE) {
         energy.extend(range.map(|i| {
             let pair = |j: usize| {
                 let share = match wanted {
-                    Some(wanted) => wanted.ratio(scene, i, j),
-                    None => scene.distance(i, j) / d_hex,
+                    Some(wanted) => wanted.ratio(points, i, j),
+                    None => points.distance(i, j) / d_hex,
                 } as f32;
                 exp(-2.0 * share * share)
             };
-            scene.rings.of(i).map(pair).sum::<f32>() / SIX
+            points.rings.of(i).map(pair).sum::<f32>() / SIX
         }));
         pause().await;
     }

@@ -1,7 +1,7 @@
 //! Triangles across gaps of the surface. Where a box cuts the surface into pieces, or where it ends, points on both sides of the
 //! gap are natural neighbours, and nothing between them is surface.
 
-use super::scene::Scene;
+use super::points::MeasuredPoints;
 use crate::field::Field;
 use crate::field::descent::{BATCH, Descent, descend};
 use crate::math::{Bounds, sort_few};
@@ -24,15 +24,15 @@ const NEAR: f32 = 0.02;
 const SLICE: usize = 512;
 
 /// Returns the spacing at every point.
-pub(super) async fn spacing_of(scene: &Scene) -> Vec<f32> {
-    let n = scene.tree.len();
+pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
+    let n = points.tree.len();
     let mut lengths = Vec::new();
     let mut spacing = Vec::with_capacity(n);
     for range in ranges(n, SLICE) {
         spacing.extend(range.map(|i| {
-            let p = scene.tree.position[i];
+            let p = points.tree.position[i];
             lengths.clear();
-            lengths.extend(scene.rings.of(i).map(|j| p.distance(scene.tree.position[j])));
+            lengths.extend(points.rings.of(i).map(|j| p.distance(points.tree.position[j])));
             sort_few(&mut lengths, |a, b| a < b);
             let before: f32 = lengths.get(RANK - 2).or(lengths.first()).copied().unwrap_or(0.0);
             lengths.get(RANK - 1).map_or(before, |&third| third.min(FARTHEST * before))
@@ -44,7 +44,7 @@ pub(super) async fn spacing_of(scene: &Scene) -> Vec<f32> {
 
 /// Where the surface is: by the field, in the box that was sampled.
 pub(super) struct Gaps<'a> {
-    pub(super) scene: &'a Scene,
+    pub(super) points: &'a MeasuredPoints,
     pub(super) spacing: &'a [f32],
     pub(super) bounds: Option<&'a Bounds>,
 }
@@ -78,12 +78,12 @@ impl Gaps<'_> {
 
     /// The edge of a triangle, if it is long.
     fn long_edge(&self, triangle: usize, i: usize, j: usize) -> Option<LongEdge> {
-        let [p, q] = [i, j].map(|k| self.scene.tree.position[k]);
+        let [p, q] = [i, j].map(|k| self.points.tree.position[k]);
         let length = p.distance(q);
         if length <= LONG * self.spacing[i].min(self.spacing[j]) {
             return None;
         }
-        let [n, m] = [i, j].map(|k| self.scene.normal[k]);
+        let [n, m] = [i, j].map(|k| self.points.normal[k]);
         let up = (n + m).normalize_or(n);
         let middle = 0.5 * (p + q) + up * (0.125 * (q - p).dot(m - n));
         Some(LongEdge { triangle, middle, up, length })

@@ -1,11 +1,11 @@
 //! Figures of the holes: distances from random points of the surface and from Voronoi corners to the nearest point.
 
 use super::border::Border;
-use super::nearby::Nearby;
+use super::nearby::PointsInBox;
 use super::places::{Hole, WIDE};
 use super::probe;
 use super::projection::{LAST_STEP, is_reached, project};
-use super::sizes::Wanted;
+use super::sizes::WantedRadii;
 use super::triangles::area_vector;
 use crate::field::Field;
 use crate::field::descent::BATCH;
@@ -41,7 +41,7 @@ pub(super) struct Cover<'a> {
     pub(super) tree: &'a Tree,
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) border: Option<&'a Border>,
-    pub(super) wanted: Option<&'a Wanted>,
+    pub(super) wanted: Option<&'a WantedRadii>,
     /// Radius of a hole in the perfect lattice, d_hex/√3.
     pub(super) lattice: f32,
     /// Largest leash of a sample whose surroundings are gathered at once: farther ones hold too many points.
@@ -87,7 +87,7 @@ impl LargestHoles {
 /// Statistics of the distances from samples of the surface to their nearest points.
 #[derive(Default)]
 pub(super) struct HoleSearch {
-    nearby: Nearby,
+    nearby: PointsInBox,
     widest_sq: f32,
     relative_sq: f32,
     /// Sum of the squared distances of the random samples, and their number.

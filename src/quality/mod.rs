@@ -28,17 +28,17 @@ mod one_rings;
 mod options;
 mod order;
 mod places;
+mod points;
 mod prepared;
 mod probe;
 mod projection;
-mod scene;
 mod sheets;
 mod sizes;
 mod spacing;
 mod triangles;
 
 pub use figures::Figures;
-pub use options::{Options, Sizes};
+pub use options::{MeasureOptions, Sizes};
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
@@ -53,11 +53,11 @@ use figures::hexagonal_spacing;
 use glam::Vec3;
 use holes::{Cover, HoleSearch, Uncovered, uncovered};
 use moments::{Moments, share};
-use order::Tally;
+use order::ValenceTally;
 use places::Pairs;
+use points::MeasuredPoints;
 use prepared::Prepared;
-use scene::Scene;
-use sizes::{EdgeRatios, Wanted};
+use sizes::{EdgeRatios, WantedRadii};
 use triangles::TriangleAngles;
 
 /// Largest number of random samples for `quant`: the error falls with the root of the number, the time grows with the
@@ -72,7 +72,7 @@ const SPREAD: f64 = 2.0;
 
 /// The figures of a set of particles, and a value of each kind for every particle, in the order given.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct Measurements {
     /// The figures.
     pub figures: Figures,
     /// Number of natural neighbours; 0 for a duplicate or a non-finite position. At the border of a clipped surface the
@@ -124,8 +124,8 @@ pub fn measure(
     normal: &[Vec3],
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &Options,
-) -> Report {
+    options: &MeasureOptions,
+) -> Measurements {
     slices::complete(in_slices(position, normal, field, bounds, options))
 }
 
@@ -135,42 +135,42 @@ pub(crate) async fn in_slices(
     normal: &[Vec3],
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &Options<'_>,
-) -> Report {
+    options: &MeasureOptions<'_>,
+) -> Measurements {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, bounds, options.area).await;
-    let Measured { mut figures, component, energy, mut pairs, holes, opening } =
+    let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening } =
         figures_of(&prepared, field, bounds, options).await;
-    let Prepared { scene, drop, .. } = &prepared;
+    let Prepared { points, drop, .. } = &prepared;
     let n = position.len();
-    let mut report = Report {
+    let mut report = Measurements {
         valence: vec![0; n],
         nearest: (0..n).map(|i| if drop[i] && position[i].is_finite() { 0.0 } else { f32::NAN }).collect(),
         residual: vec![f32::NAN; n],
         energy: vec![f32::NAN; n],
         component: vec![components::NO_LABEL; n],
         opening,
-        ..Report::default()
+        ..Measurements::default()
     };
-    for (k, &i) in scene.tree.origin.iter().enumerate() {
+    for (k, &i) in points.tree.origin.iter().enumerate() {
         let i = i as usize;
-        report.valence[i] = scene.rings.valence(k).min(255) as u8;
-        report.nearest[i] = scene.nearest(k);
-        report.residual[i] = scene.residual[k] as f32;
+        report.valence[i] = points.rings.valence(k).min(255) as u8;
+        report.nearest[i] = points.nearest(k);
+        report.residual[i] = points.residual[k] as f32;
         report.energy[i] = energy[k];
         report.component[i] = component[k];
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
         let jet = field.jet(position[i].as_dvec3());
         report.residual[i] = first_order_height(jet.value, jet.gradient.length()).abs() as f32;
-        let (_, equal) = scene.tree.nearest(position[i], u32::MAX, f32::INFINITY);
+        let (_, equal) = points.tree.nearest(position[i], u32::MAX, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(components::NO_LABEL);
-        if let Some(&twin) = scene.tree.origin.get(equal as usize) {
+        if let Some(&twin) = points.tree.origin.get(equal as usize) {
             pairs.add(0.0, twin, i as u32);
         }
     }
-    figures.spacing.crowded = (!scene.tree.position.is_empty()).then_some(pairs.crowded);
+    figures.spacing.crowded = (!points.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
     report.places = Places { pairs: pairs.told(), holes };
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);
@@ -186,14 +186,14 @@ pub(crate) async fn in_slices(
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let Prepared { scene, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None, None));
-    let origin = &scene.tree.origin;
+    let Prepared { points, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None, None));
+    let origin = &points.tree.origin;
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
 
 /// What is measured of points without duplicates.
 #[derive(Default)]
-struct Measured {
+struct DistinctFigures {
     figures: Figures,
     /// Connected component of each point.
     component: Vec<u32>,
@@ -209,50 +209,50 @@ async fn figures_of(
     prepared: &Prepared,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &Options<'_>,
-) -> Measured {
-    let Prepared { scene, mesh, duplicates, not_finite, .. } = prepared;
+    options: &MeasureOptions<'_>,
+) -> DistinctFigures {
+    let Prepared { points, mesh, duplicates, not_finite, .. } = prepared;
     let mut figures = Figures { dup: *duplicates, not_finite: *not_finite, ..Figures::default() };
-    let mut measured = Measured::default();
-    let n = scene.tree.len();
+    let mut measured = DistinctFigures::default();
+    let n = points.tree.len();
     if n == 0 {
-        return Measured { figures, ..measured };
+        return DistinctFigures { figures, ..measured };
     }
-    figures.area = options.area.unwrap_or_else(|| triangles::area(&scene.tree.position, mesh));
+    figures.area = options.area.unwrap_or_else(|| triangles::area(&points.tree.position, mesh));
     figures.d_hex = hexagonal_spacing(figures.area, n + duplicates);
     pause().await;
-    figures.accuracy = accuracy::measure(&scene.residual, &scene.normal_angles, figures.d_hex);
+    figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.d_hex);
 
     let border = match bounds {
-        Some(bounds) => Some(Border::new(field, bounds, &scene.tree, figures.d_hex).await),
+        Some(bounds) => Some(Border::new(field, bounds, &points.tree, figures.d_hex).await),
         None => None,
     };
-    let inner = points_away_from(border.as_ref(), scene).await;
+    let inner = points_away_from(border.as_ref(), points).await;
     figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
     pause().await;
-    figures.spacing = spacing::measure(scene, &inner, *duplicates, figures.d_hex);
+    figures.spacing = spacing::measure(points, &inner, *duplicates, figures.d_hex);
     pause().await;
-    let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
-    measured.pairs = measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
-    measured.energy = energy::of_points(scene, wanted.as_ref(), figures.d_hex).await;
+    let wanted = WantedRadii::new(points, &inner, field, options.sizes, figures.area).await;
+    measured.pairs = measure_neighbourhoods(points, &inner, wanted.as_ref(), &mut figures).await;
+    measured.energy = energy::of_points(points, wanted.as_ref(), figures.d_hex).await;
     (measured.component, measured.opening) =
         measure_triangles(prepared, &inner, options.euler, &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
-        let cover = Cover { tree: &scene.tree, mesh, border, wanted, lattice, wide };
+        let cover = Cover { tree: &points.tree, mesh, border, wanted, lattice, wide };
         measured.holes = measure_holes(&cover, field, bounds, options, &mut figures).await;
     }
-    Measured { figures, ..measured }
+    DistinctFigures { figures, ..measured }
 }
 
 /// Returns, for each point, whether it is away from the border.
-async fn points_away_from(border: Option<&Border>, scene: &Scene) -> Vec<bool> {
-    let n = scene.tree.len();
+async fn points_away_from(border: Option<&Border>, points: &MeasuredPoints) -> Vec<bool> {
+    let n = points.tree.len();
     let mut inner = vec![true; n];
     if let Some(border) = border {
         for range in ranges(n, SLICE) {
-            range.for_each(|i| inner[i] = !border.is_near(scene.tree.position[i]));
+            range.for_each(|i| inner[i] = !border.is_near(points.tree.position[i]));
             pause().await;
         }
     }
@@ -261,19 +261,19 @@ async fn points_away_from(border: Option<&Border>, scene: &Scene) -> Vec<bool> {
 
 /// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of them.
 async fn measure_neighbourhoods(
-    scene: &Scene,
+    points: &MeasuredPoints,
     inner: &[bool],
-    wanted: Option<&Wanted>,
+    wanted: Option<&WantedRadii>,
     figures: &mut Figures,
 ) -> Pairs {
-    let mut order = Tally::default();
+    let mut order = ValenceTally::default();
     let mut edge = Moments::default();
     let mut ratios = EdgeRatios::default();
-    for range in ranges(scene.tree.len(), SLICE) {
+    for range in ranges(points.tree.len(), SLICE) {
         for i in range.filter(|&i| inner[i]) {
-            order.add(scene, i);
-            scene.mutual(inner, i).for_each(|j| edge.add(scene.distance(i, j)));
-            wanted.iter().for_each(|wanted| ratios.add(wanted, scene, inner, i));
+            order.add(points, i);
+            points.mutual(inner, i).for_each(|j| edge.add(points.distance(i, j)));
+            wanted.iter().for_each(|wanted| ratios.add(wanted, points, inner, i));
         }
         pause().await;
     }
@@ -283,7 +283,7 @@ async fn measure_neighbourhoods(
         figures.edges.size_cv = ratios.edge.variation();
         figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { ratios.least };
     } else {
-        spacing::add_pairs(scene, inner, figures.d_hex, &mut ratios.pairs).await;
+        spacing::add_pairs(points, inner, figures.d_hex, &mut ratios.pairs).await;
     }
     ratios.pairs
 }
@@ -296,14 +296,14 @@ async fn measure_triangles(
     euler: Option<i64>,
     figures: &mut Figures,
 ) -> (Vec<u32>, Option<Opening>) {
-    let Prepared { scene, spacing, triangles, mesh, .. } = prepared;
-    let n = scene.tree.len();
+    let Prepared { points, spacing, triangles, mesh, .. } = prepared;
+    let n = points.tree.len();
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let mut angles = TriangleAngles::default();
     let mut corners = 0;
     for list in [&triangles.unanimous, &triangles.majority] {
         for chunk in list.chunks(SLICE) {
-            chunk.iter().filter(away).for_each(|&triangle| angles.add(&scene.tree.position, triangle));
+            chunk.iter().filter(away).for_each(|&triangle| angles.add(&points.tree.position, triangle));
             corners += chunk.iter().flatten().filter(|&&i| inner[i as usize]).count();
             pause().await;
         }
@@ -311,9 +311,9 @@ async fn measure_triangles(
     figures.angles = angles.figures();
     let topology = Topology::in_slices(mesh, n).await;
     figures.connectivity.euler = topology.euler();
-    let opening = opening(&topology, mesh, inner, &scene.tree.position);
+    let opening = opening(&topology, mesh, inner, &points.tree.position);
     pause().await;
-    let (component, count) = components::label(scene, spacing, mesh).await;
+    let (component, count) = components::label(points, spacing, mesh).await;
     figures.connectivity.components = count;
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.connectivity.agree =
@@ -323,7 +323,7 @@ async fn measure_triangles(
             / (2 * n as i64 - 2 * euler.unwrap_or(figures.connectivity.euler)) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
-        share(corners, (0..n).filter(|&i| inner[i]).map(|i| scene.rings.valence(i)).sum())
+        share(corners, (0..n).filter(|&i| inner[i]).map(|i| points.rings.valence(i)).sum())
     };
     (component, opening)
 }
@@ -344,7 +344,7 @@ async fn measure_holes(
     cover: &Cover<'_>,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &Options<'_>,
+    options: &MeasureOptions<'_>,
     figures: &mut Figures,
 ) -> Vec<Hole> {
     let n = cover.tree.len();

@@ -10,7 +10,7 @@ const REACH: f32 = 4.0;
 
 /// The points of a tree in a box.
 #[derive(Debug, Default)]
-pub(super) struct Nearby {
+pub(super) struct PointsInBox {
     lo: Vec3,
     hi: Vec3,
     /// Indices of the points in tree order.
@@ -19,7 +19,7 @@ pub(super) struct Nearby {
     position: Vec<[Lanes; 3]>,
 }
 
-impl Nearby {
+impl PointsInBox {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(super) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
         (self.lo, self.hi) = (lo, hi);
@@ -72,7 +72,7 @@ mod tests {
         let step = Vec3::new(0.754_877_7, 0.569_840_3, 0.430_159_7);
         let points: Vec<Vec3> = (0..2000).map(|i| (step * i as f32).fract() * 4.0 - 2.0).collect();
         let tree = Tree::new(&points);
-        let mut nearby = Nearby::default();
+        let mut nearby = PointsInBox::default();
         for k in 0..500 {
             // Now and then a query is far from the one before, else near it.
             let p = (step * (k / 25) as f32).fract() * 4.6 - 2.3 + 0.01 * (k % 25) as f32;

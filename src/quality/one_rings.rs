@@ -1,7 +1,7 @@
 //! One-rings: the natural neighbours of every point, counter-clockwise around its normal.
 
 use super::cell::VoronoiCell;
-use super::nearby::Nearby;
+use super::nearby::PointsInBox;
 use super::sheets::Sheets;
 use crate::field::Field;
 use crate::math::{LANES, key, tangent_frame, unkey};
@@ -37,7 +37,7 @@ pub(super) struct OneRings {
 /// Buffers that are reused from leaf to leaf.
 struct RingBuffers {
     cell: VoronoiCell,
-    nearby: Nearby,
+    nearby: PointsInBox,
     keys: Vec<u64>,
 }
 
@@ -53,7 +53,7 @@ impl OneRings {
         };
         rings.start.push(0);
         let mut scratch =
-            RingBuffers { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
+            RingBuffers { cell: VoronoiCell::new(), nearby: PointsInBox::default(), keys: Vec::new() };
         for leaf in sheets.tree.leaves() {
             rings.add_leaf(sheets, field, leaf, &mut scratch);
             pause().await;

@@ -22,7 +22,7 @@ pub enum Sizes<'a> {
 
 /// What is known about the surface, and how many random samples are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options<'a> {
+pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
     /// Euler number of the surface, for [`Connectivity::tri_ok`](super::figures::Connectivity::tri_ok); by default that of the triangles
@@ -37,7 +37,7 @@ pub struct Options<'a> {
     pub seed: u64,
 }
 
-impl Default for Options<'_> {
+impl Default for MeasureOptions<'_> {
     fn default() -> Self {
         // 65,536 stratified samples give `quant` to about 0.1 %.
         Self { area: None, euler: None, sizes: Sizes::None, samples: 65_536, seed: 0 }

@@ -2,7 +2,7 @@
 
 use super::figures::hexagonal_spacing;
 use super::gaps::{Gaps, spacing_of};
-use super::scene::Scene;
+use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
 use crate::math::{Bounds, IndexTable, hash};
@@ -14,7 +14,7 @@ const DUPLICATE: f64 = 1e-6;
 
 /// The points without duplicates and non-finite positions, and their triangles.
 pub(super) struct Prepared {
-    pub(super) scene: Scene,
+    pub(super) points: MeasuredPoints,
     /// The spacing at each point.
     pub(super) spacing: Vec<f32>,
     /// The triangles that lead across no gap of the surface.
@@ -43,21 +43,21 @@ impl Prepared {
         drop_equal(position, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let scene = Scene::new(position, normal, field, &has_duplicate, &drop).await;
-            let spacing = spacing_of(&scene).await;
-            let mut triangles = Triangles::new(&scene.rings).await;
-            let gaps = Gaps { scene: &scene, spacing: &spacing, bounds };
+            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop).await;
+            let spacing = spacing_of(&points).await;
+            let mut triangles = Triangles::new(&points.rings).await;
+            let gaps = Gaps { points: &points, spacing: &spacing, bounds };
             for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
                 gaps.drop_across(field, list).await;
             }
-            let mesh = triangles.settled(&scene.tree.position);
+            let mesh = triangles.settled(&points.tree.position);
             pause().await;
-            let area = known_area.unwrap_or_else(|| area(&scene.tree.position, &mesh));
+            let area = known_area.unwrap_or_else(|| area(&points.tree.position, &mesh));
             let d_hex = hexagonal_spacing(area, position.len() - not_finite);
             pause().await;
-            if !drop_close(&scene, (DUPLICATE * d_hex) as f32, &mut drop) {
-                let duplicates = position.len() - not_finite - scene.tree.len();
-                return Self { scene, spacing, triangles, mesh, duplicates, not_finite, drop };
+            if !drop_close(&points, (DUPLICATE * d_hex) as f32, &mut drop) {
+                let duplicates = position.len() - not_finite - points.tree.len();
+                return Self { points, spacing, triangles, mesh, duplicates, not_finite, drop };
             }
         }
     }
@@ -82,12 +82,12 @@ fn drop_equal(position: &[Vec3], drop: &mut [bool], has_duplicate: &mut [bool]) 
 }
 
 /// Marks every point closer than `limit` to an earlier one in `drop`. Returns whether there was any.
-fn drop_close(scene: &Scene, limit: f32, drop: &mut [bool]) -> bool {
-    let tree = &scene.tree;
+fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
+    let tree = &points.tree;
     let mut near = Vec::new();
     let mut any = false;
     for i in 0..tree.len() {
-        if scene.rings.nearest[i] < limit {
+        if points.rings.nearest[i] < limit {
             near.clear();
             tree.within_box(tree.position[i] - limit, tree.position[i] + limit, &mut near);
             if near.iter().any(|&j| {

@@ -3,7 +3,7 @@
 use super::moments::Moments;
 use super::options::Sizes;
 use super::places::Pairs;
-use super::scene::Scene;
+use super::points::MeasuredPoints;
 use crate::differential::exact_curvature;
 use crate::field::Field;
 use crate::math::SQRT_3;
@@ -19,35 +19,35 @@ const HOLE: f64 = 2.0 / SQRT_3;
 const SLICE: usize = 64;
 
 /// The wanted radii, in tree order; NaN for a point without one.
-pub(super) struct Wanted {
+pub(super) struct WantedRadii {
     radius: Vec<f64>,
     /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the
     /// area of the surface.
     hole: f64,
 }
 
-impl Wanted {
+impl WantedRadii {
     /// Finds the radii that `sizes` asks for, of points on a surface of this `area`.
     pub(super) async fn new(
-        scene: &Scene,
+        points: &MeasuredPoints,
         inner: &[bool],
         field: &mut dyn Field,
         sizes: Sizes<'_>,
         area: f64,
     ) -> Option<Self> {
-        let n = scene.tree.len();
+        let n = points.tree.len();
         let radius: Vec<f64> = match sizes {
             Sizes::None => return None,
             Sizes::Given(given) => {
                 let of = |&i: &u32| given.get(i as usize).map_or(f64::NAN, |&r| f64::from(r));
-                scene.tree.origin.iter().map(of).collect()
+                points.tree.origin.iter().map(of).collect()
             }
             Sizes::Local => {
                 let mut own = vec![Moments::default(); n];
                 for range in ranges(n, SLICE) {
                     for i in range {
-                        for j in scene.mutual(inner, i) {
-                            let half = 0.5 * scene.distance(i, j);
+                        for j in points.mutual(inner, i) {
+                            let half = 0.5 * points.distance(i, j);
                             own[i].add(half);
                             own[j].add(half);
                         }
@@ -62,7 +62,7 @@ impl Wanted {
                     1.0 / curvature.max(lowest).min(highest)
                 };
                 let mut radius = Vec::with_capacity(n);
-                for chunk in scene.tree.position.chunks(SLICE) {
+                for chunk in points.tree.position.chunks(SLICE) {
                     radius.extend(chunk.iter().map(&mut of));
                     pause().await;
                 }
@@ -74,8 +74,8 @@ impl Wanted {
     }
 
     /// Returns the distance of two points over the sum of their radii.
-    pub(super) fn ratio(&self, scene: &Scene, i: usize, j: usize) -> f64 {
-        scene.distance(i, j) / (self.radius[i] + self.radius[j])
+    pub(super) fn ratio(&self, points: &MeasuredPoints, i: usize, j: usize) -> f64 {
+        points.distance(i, j) / (self.radius[i] + self.radius[j])
     }
 
     /// Returns the radius of an ideal hole between some points; NaN if one of them has no radius.
@@ -103,19 +103,19 @@ impl Default for EdgeRatios {
 
 impl EdgeRatios {
     /// Takes in the edges of point `i`.
-    pub(super) fn add(&mut self, wanted: &Wanted, scene: &Scene, inner: &[bool], i: usize) {
-        scene
+    pub(super) fn add(&mut self, wanted: &WantedRadii, points: &MeasuredPoints, inner: &[bool], i: usize) {
+        points
             .mutual(inner, i)
-            .map(|j| wanted.ratio(scene, i, j))
+            .map(|j| wanted.ratio(points, i, j))
             .filter(|ratio| ratio.is_finite())
             .for_each(|ratio| self.edge.add(ratio));
-        for j in scene.rings.of(i) {
-            let ratio = wanted.ratio(scene, i, j);
+        for j in points.rings.of(i) {
+            let ratio = wanted.ratio(points, i, j);
             self.least = self.least.min(ratio);
             // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
-            let is_seen_again = j < i && inner[j] && scene.rings.adjacent(j, i);
+            let is_seen_again = j < i && inner[j] && points.rings.adjacent(j, i);
             if ratio.is_finite() && !is_seen_again {
-                self.pairs.add(ratio, scene.tree.origin[i], scene.tree.origin[j]);
+                self.pairs.add(ratio, points.tree.origin[i], points.tree.origin[j]);
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::figures::Spacing;
 use super::moments::Moments;
 use super::places::{CROWDED, Pairs};
-use super::scene::Scene;
+use super::points::MeasuredPoints;
 use crate::math::{key, unkey};
 use crate::slices::{pause, ranges};
 use serde::Serialize;
@@ -44,13 +44,13 @@ impl Histogram {
 }
 
 /// Adds the pairs of points by their distance over d_hex, of which at least one point is `inner`.
-pub(super) async fn add_pairs(scene: &Scene, inner: &[bool], d_hex: f64, pairs: &mut Pairs) {
-    let tree = &scene.tree;
+pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f64, pairs: &mut Pairs) {
+    let tree = &points.tree;
     let reach = (CROWDED * d_hex) as f32;
     let mut near = Vec::new();
     for range in ranges(inner.len(), SLICE) {
         for i in range.filter(|&i| inner[i]) {
-            let nearest = f64::from(scene.rings.nearest[i]) / d_hex;
+            let nearest = f64::from(points.rings.nearest[i]) / d_hex;
             if !nearest.is_finite() || !pairs.matters(nearest) {
                 continue;
             }
@@ -65,7 +65,7 @@ pub(super) async fn add_pairs(scene: &Scene, inner: &[bool], d_hex: f64, pairs: 
                 let j = j as usize;
                 // Of two inner points, the pair is added at the earlier one.
                 if j != i && (j > i || !inner[j] || nearest >= CROWDED) {
-                    pairs.add(scene.distance(i, j) / d_hex, tree.origin[i], tree.origin[j]);
+                    pairs.add(points.distance(i, j) / d_hex, tree.origin[i], tree.origin[j]);
                 }
             }
         }
@@ -74,11 +74,11 @@ pub(super) async fn add_pairs(scene: &Scene, inner: &[bool], d_hex: f64, pairs: 
 }
 
 /// Nearest-neighbour distances of the points that are `inner`, without those that are too near, and of `duplicates`.
-pub(super) fn measure(scene: &Scene, inner: &[bool], duplicates: usize, d_hex: f64) -> Spacing {
+pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize, d_hex: f64) -> Spacing {
     // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one it equals.
     let mut sorted: Vec<u64> = (0..inner.len())
         .filter(|&i| inner[i])
-        .map(|i| scene.nearest(i))
+        .map(|i| points.nearest(i))
         .filter(|d| d.is_finite())
         .chain(core::iter::repeat_n(0.0, duplicates))
         .map(|d| key(d, 0))

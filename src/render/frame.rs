@@ -22,7 +22,7 @@ pub struct Frame {
     /// Light and background.
     pub light: Light,
     /// Progress of the particles that are appearing, and the range of levels shown.
-    pub growth: Growth,
+    pub appearance: Appearance,
     /// How particles and faces look.
     pub look: Look,
     /// The clip box, drawn where a picture has one.
@@ -70,7 +70,7 @@ pub struct Light {
 /// How new particles appear, and which generation levels are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Growth {
+pub struct Appearance {
     /// Current time in seconds on the renderer's clock.
     pub time: f32,
     /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
@@ -110,13 +110,13 @@ pub struct ClipBox {
 impl Frame {
     /// Every struct of the block with its fields, `Frame` first.
     pub const STRUCTS: &'static [(&'static str, Fields)] = &[
-        ("Frame", fields!(Self: camera, light, growth, look, clip_box, plane)),
+        ("Frame", fields!(Self: camera, light, appearance, look, clip_box, plane)),
         (
             "Camera",
             fields!(Camera: clip_from_world, eye, perspective, forward, pixel_ratio, viewport, padding),
         ),
         ("Light", fields!(Light: key, dim, sky, dim_backfaces, background)),
-        ("Growth", fields!(Growth: time, fade, level, mute)),
+        ("Appearance", fields!(Appearance: time, fade, level, mute)),
         ("Look", fields!(Look: disc_scale, flat_faces, edge_px, light_ground)),
         ("ClipBox", fields!(ClipBox: lo, hi, colour)),
     ];

@@ -115,7 +115,7 @@ pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
 
 /// Format of a vertex attribute, with its WebGPU name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum AttributeFormat {
     /// A single-precision number.
     Float32,
     /// Three single-precision numbers.
@@ -128,7 +128,7 @@ pub enum Format {
     Unorm8x4,
 }
 
-impl Format {
+impl AttributeFormat {
     /// Number of components in the shader, where each is an `f32`.
     #[must_use]
     pub const fn components(self) -> usize {
@@ -159,41 +159,49 @@ pub struct Attribute {
     /// Byte offset in its record.
     pub offset: usize,
     /// Format in the buffer.
-    pub format: Format,
+    pub format: AttributeFormat,
 }
 
 /// Vertex attributes of a [`Record`].
 pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
-    Attribute { location: 0, offset: offset_of!(Record, position), format: Format::Float32x3 },
-    Attribute { location: 1, offset: offset_of!(Record, radius), format: Format::Float32 },
-    Attribute { location: 2, offset: offset_of!(Record, normal), format: Format::Snorm16x2 },
-    Attribute { location: 3, offset: offset_of!(Record, birth), format: Format::Float32 },
-    Attribute { location: 4, offset: offset_of!(Record, level), format: Format::Float32 },
+    Attribute { location: 0, offset: offset_of!(Record, position), format: AttributeFormat::Float32x3 },
+    Attribute { location: 1, offset: offset_of!(Record, radius), format: AttributeFormat::Float32 },
+    Attribute { location: 2, offset: offset_of!(Record, normal), format: AttributeFormat::Snorm16x2 },
+    Attribute { location: 3, offset: offset_of!(Record, birth), format: AttributeFormat::Float32 },
+    Attribute { location: 4, offset: offset_of!(Record, level), format: AttributeFormat::Float32 },
 ];
 
 /// Vertex attribute of the colour buffer.
 pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
-    [Attribute { location: 5, offset: 0, format: Format::Unorm8x4 }];
+    [Attribute { location: 5, offset: 0, format: AttributeFormat::Unorm8x4 }];
 
 /// Vertex attributes of a [`FaceRecord`].
 pub const FACE_ATTRIBUTES: [Attribute; 7] = [
-    Attribute { location: 0, offset: 0, format: Format::Float32x4 },
-    Attribute { location: 1, offset: 16, format: Format::Float32x4 },
-    Attribute { location: 2, offset: 32, format: Format::Float32x4 },
-    Attribute { location: 3, offset: offset_of!(FaceRecord, normals), format: Format::Snorm16x2 },
-    Attribute { location: 4, offset: offset_of!(FaceRecord, normals) + 4, format: Format::Snorm16x2 },
-    Attribute { location: 5, offset: offset_of!(FaceRecord, normals) + 8, format: Format::Snorm16x2 },
-    Attribute { location: 6, offset: offset_of!(FaceRecord, level), format: Format::Float32 },
+    Attribute { location: 0, offset: 0, format: AttributeFormat::Float32x4 },
+    Attribute { location: 1, offset: 16, format: AttributeFormat::Float32x4 },
+    Attribute { location: 2, offset: 32, format: AttributeFormat::Float32x4 },
+    Attribute { location: 3, offset: offset_of!(FaceRecord, normals), format: AttributeFormat::Snorm16x2 },
+    Attribute {
+        location: 4,
+        offset: offset_of!(FaceRecord, normals) + 4,
+        format: AttributeFormat::Snorm16x2,
+    },
+    Attribute {
+        location: 5,
+        offset: offset_of!(FaceRecord, normals) + 8,
+        format: AttributeFormat::Snorm16x2,
+    },
+    Attribute { location: 6, offset: offset_of!(FaceRecord, level), format: AttributeFormat::Float32 },
 ];
 
 /// Vertex attributes of a [`FaceTint`].
 pub const TINT_ATTRIBUTES: [Attribute; 6] = [
-    Attribute { location: 7, offset: 0, format: Format::Unorm8x4 },
-    Attribute { location: 8, offset: 4, format: Format::Unorm8x4 },
-    Attribute { location: 9, offset: 8, format: Format::Unorm8x4 },
-    Attribute { location: 10, offset: offset_of!(FaceTint, marks), format: Format::Unorm8x4 },
-    Attribute { location: 11, offset: offset_of!(FaceTint, marks) + 4, format: Format::Unorm8x4 },
-    Attribute { location: 12, offset: offset_of!(FaceTint, marks) + 8, format: Format::Unorm8x4 },
+    Attribute { location: 7, offset: 0, format: AttributeFormat::Unorm8x4 },
+    Attribute { location: 8, offset: 4, format: AttributeFormat::Unorm8x4 },
+    Attribute { location: 9, offset: 8, format: AttributeFormat::Unorm8x4 },
+    Attribute { location: 10, offset: offset_of!(FaceTint, marks), format: AttributeFormat::Unorm8x4 },
+    Attribute { location: 11, offset: offset_of!(FaceTint, marks) + 4, format: AttributeFormat::Unorm8x4 },
+    Attribute { location: 12, offset: offset_of!(FaceTint, marks) + 8, format: AttributeFormat::Unorm8x4 },
 ];
 
 #[cfg(test)]

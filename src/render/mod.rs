@@ -67,4 +67,4 @@ mod store;
 #[cfg(feature = "render")]
 pub use gpu::{Callbacks, CreateError, OnError, OnLost};
 #[cfg(feature = "render")]
-pub use renderer::{Columns, Outcome, Picture, Renderer};
+pub use renderer::{Columns, DrawOutcome, Picture, Renderer};

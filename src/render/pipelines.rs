@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::layout::{
-    Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint, Format,
+    Attribute, AttributeFormat, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint,
     RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
 };
 use super::shaders::{BOX, DISCS, FACES};
@@ -49,7 +49,7 @@ pub(super) struct TargetKind {
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
 /// What distinguishes one pipeline from another.
-struct Recipe<'a> {
+struct PipelineSpec<'a> {
     label: &'a str,
     shader: &'a wgpu::ShaderModule,
     vertex: &'a str,
@@ -93,7 +93,7 @@ impl Pipelines {
             Some(wgpu::VertexBufferLayout { attributes: &corners, ..instance(size_of::<FaceRecord>()) }),
             Some(wgpu::VertexBufferLayout { attributes: &tint, ..instance(size_of::<FaceTint>()) }),
         ];
-        let disc = Recipe {
+        let disc = PipelineSpec {
             label: "disc core",
             shader: &discs,
             vertex: "vs_core",
@@ -103,7 +103,7 @@ impl Pipelines {
             alpha_to_coverage: false,
             depth_compare: wgpu::CompareFunction::LessEqual,
         };
-        let face = Recipe {
+        let face = PipelineSpec {
             label: "face",
             shader: &faces,
             vertex: "vs_face",
@@ -111,19 +111,25 @@ impl Pipelines {
             buffers: &triangles,
             ..disc
         };
-        let make = |recipe: Recipe<'_>| pipeline(device, &layout, target, &recipe);
+        let make = |recipe: PipelineSpec<'_>| pipeline(device, &layout, target, &recipe);
         Self {
             rims: ["vs_rim_behind", "vs_rim_front"].map(|vertex| {
-                make(Recipe { label: "disc rim", vertex, fragment: "fs_rim", depth_write: false, ..disc })
+                make(PipelineSpec {
+                    label: "disc rim",
+                    vertex,
+                    fragment: "fs_rim",
+                    depth_write: false,
+                    ..disc
+                })
             }),
-            cut_faces: make(Recipe {
+            cut_faces: make(PipelineSpec {
                 label: "cut face",
                 fragment: "fs_cut_face",
                 // A single sample has no share to be covered.
                 alpha_to_coverage: target.samples > 1,
                 ..face
             }),
-            ghost: make(Recipe {
+            ghost: make(PipelineSpec {
                 label: "ghost",
                 vertex: "vs_ghost",
                 fragment: "fs_ghost",
@@ -131,7 +137,7 @@ impl Pipelines {
                 ..face
             }),
             faces: make(face),
-            ring: make(Recipe {
+            ring: make(PipelineSpec {
                 label: "ring",
                 vertex: "vs_ring",
                 fragment: "fs_ring",
@@ -139,7 +145,7 @@ impl Pipelines {
                 depth_compare: wgpu::CompareFunction::Always,
                 ..disc
             }),
-            clip_box: make(Recipe {
+            clip_box: make(PipelineSpec {
                 label: "clip box",
                 shader: &edges,
                 vertex: "vs_box",
@@ -188,7 +194,7 @@ fn pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
     target: TargetKind,
-    recipe: &Recipe<'_>,
+    recipe: &PipelineSpec<'_>,
 ) -> wgpu::RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(recipe.label),
@@ -233,11 +239,11 @@ fn pipeline(
 fn vertex_attribute(attribute: Attribute) -> wgpu::VertexAttribute {
     wgpu::VertexAttribute {
         format: match attribute.format {
-            Format::Float32 => wgpu::VertexFormat::Float32,
-            Format::Float32x3 => wgpu::VertexFormat::Float32x3,
-            Format::Float32x4 => wgpu::VertexFormat::Float32x4,
-            Format::Snorm16x2 => wgpu::VertexFormat::Snorm16x2,
-            Format::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
+            AttributeFormat::Float32 => wgpu::VertexFormat::Float32,
+            AttributeFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
+            AttributeFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
+            AttributeFormat::Snorm16x2 => wgpu::VertexFormat::Snorm16x2,
+            AttributeFormat::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
         },
         offset: attribute.offset as u64,
         shader_location: attribute.location,

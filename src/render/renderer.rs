@@ -7,12 +7,12 @@ use super::painter::{Canvas, Faces, Painter, Scene};
 use super::pixels::{padded_row, straight_rgba};
 use super::screen::Screen;
 use super::store::{Part, Store};
-use super::style::{Drawing, Style, Target};
+use super::style::{Drawing, PictureTarget, Style};
 use super::view::View;
 
 /// Outcome of [`Renderer::draw`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum DrawOutcome {
     /// The picture was submitted and will be shown.
     Drawn,
     /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when something changes.
@@ -295,19 +295,19 @@ impl Renderer {
     }
 
     /// Draws on the surface. `time_s` is the current time on the caller's clock, in seconds.
-    pub fn draw(&mut self, time_s: f64) -> Outcome {
+    pub fn draw(&mut self, time_s: f64) -> DrawOutcome {
         if self.is_lost() {
-            return Outcome::Lost;
+            return DrawOutcome::Lost;
         }
         if self.screen.size.contains(&0) {
-            return Outcome::Skipped;
+            return DrawOutcome::Skipped;
         }
         let (texture, is_new) = self.screen.next(&self.gpu.device);
         if is_new {
             self.painter.forget_buffers();
         }
         let Some(texture) = texture else {
-            return if self.is_lost() { Outcome::Lost } else { Outcome::Skipped };
+            return if self.is_lost() { DrawOutcome::Lost } else { DrawOutcome::Skipped };
         };
         let view = self.screen.view(&texture);
         let size = self.screen.size;
@@ -315,7 +315,7 @@ impl Renderer {
         let copied = self.screen.copied(&texture);
         self.paint(&Canvas { view: &view, copied, size, keep: true }, frame, false);
         self.gpu.queue.present(texture);
-        if self.is_lost() { Outcome::Lost } else { Outcome::Drawn }
+        if self.is_lost() { DrawOutcome::Lost } else { DrawOutcome::Drawn }
     }
 
     /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes
@@ -383,7 +383,7 @@ impl Renderer {
 
     fn frame(&mut self, size: [u32; 2], time_s: f64) -> Frame {
         let time = self.clock.read(time_s);
-        self.style.frame(&self.view, Target { canvas: self.screen.size, size, time })
+        self.style.frame(&self.view, PictureTarget { canvas: self.screen.size, size, time })
     }
 
     fn paint(&mut self, canvas: &Canvas<'_>, frame: Frame, transparent: bool) {

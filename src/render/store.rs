@@ -26,7 +26,7 @@ struct Chunk {
 }
 
 /// Consecutive records in one chunk, as slices of its vertex buffers.
-pub(super) struct Run<'a> {
+pub(super) struct RecordRun<'a> {
     pub(super) buffers: [wgpu::BufferSlice<'a>; 2],
     pub(super) count: u32,
 }
@@ -55,7 +55,7 @@ impl Store {
     }
 
     /// Slices of the vertex buffers for the records `range`, in order.
-    pub(super) fn runs(&self, range: Range<u32>) -> impl Iterator<Item = Run<'_>> {
+    pub(super) fn runs(&self, range: Range<u32>) -> impl Iterator<Item = RecordRun<'_>> {
         split_at_chunks(range.start, range.end.saturating_sub(range.start)).filter_map(
             |(chunk, local, span)| {
                 let chunk = self.chunks.get(chunk)?;
@@ -65,7 +65,8 @@ impl Store {
                     let bytes = u64::from(local) * stride..u64::from(local + count) * stride;
                     chunk.buffers[part as usize].slice(bytes)
                 };
-                (count > 0).then(|| Run { buffers: [slice(Part::Records), slice(Part::Colours)], count })
+                (count > 0)
+                    .then(|| RecordRun { buffers: [slice(Part::Records), slice(Part::Colours)], count })
             },
         )
     }

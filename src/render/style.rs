@@ -1,6 +1,6 @@
 //! Style of a picture, and the uniform block that follows from style and camera.
 
-use super::frame::{self, Camera, Frame, Growth, Light, Look};
+use super::frame::{self, Appearance, Camera, Frame, Light, Look};
 use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
@@ -31,7 +31,7 @@ pub struct Style {
     /// Index of a particle that is marked by a ring.
     pub outline: Option<u32>,
     /// Clip box whose edges are drawn.
-    pub clip_box: Option<ClipBox>,
+    pub clip_box: Option<ClipBoxStyle>,
     /// Plane beyond which nothing is drawn of particles and faces.
     pub plane: Option<CuttingPlane>,
     /// Canvas pixels per page pixel, the unit of line widths.
@@ -57,7 +57,7 @@ pub enum Drawing {
 
 /// A box whose edges are drawn. The default is invisible.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ClipBox {
+pub struct ClipBoxStyle {
     /// Smallest corner, in world coordinates.
     pub min: [f32; 3],
     /// Largest corner.
@@ -97,7 +97,7 @@ impl Default for Style {
 
 /// Target of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub struct PictureTarget {
     /// Size in pixels of the canvas, which the view was made for.
     pub canvas: [u32; 2],
     /// Size of the target in pixels.
@@ -109,7 +109,7 @@ pub struct Target {
 impl Style {
     /// Uniform block for a picture.
     #[must_use]
-    pub fn frame(&self, view: &View, target: Target) -> Frame {
+    pub fn frame(&self, view: &View, target: PictureTarget) -> Frame {
         let clamp = |v: f32, lo: f32, hi: f32| if v >= lo { v.min(hi) } else { lo };
         let share = |v: f32| clamp(v, 0.0, 1.0);
         let background = linear(self.background);
@@ -137,7 +137,7 @@ impl Style {
                 dim_backfaces: share(self.dim_backfaces),
                 background,
             },
-            growth: Growth {
+            appearance: Appearance {
                 time: target.time,
                 fade: clamp(self.fade_s, 0.0, 10.0),
                 level: self.level.map_or(ALL_LEVELS, |level| level as f32),
@@ -212,10 +212,10 @@ mod tests {
             plane: Some(CuttingPlane { normal: [1.0, nan, 0.0], offset: 0.0 }),
             pixel_ratio: nan,
         };
-        let target = Target { canvas: [0, 0], size: [0, 0], time: 0.0 };
+        let target = PictureTarget { canvas: [0, 0], size: [0, 0], time: 0.0 };
         let frame = style.frame(&View::default(), target);
         assert!(bytemuck::cast_slice::<Frame, f32>(&[frame]).iter().all(|c| c.is_finite()), "{frame:?}");
-        assert_eq!((frame.light.dim, frame.light.dim_backfaces, frame.growth.mute), (0.0, 0.0, 0.0));
+        assert_eq!((frame.light.dim, frame.light.dim_backfaces, frame.appearance.mute), (0.0, 0.0, 0.0));
         assert!(frame.look.disc_scale > 0.0 && frame.look.edge_px == 0.0);
     }
 
@@ -223,7 +223,7 @@ mod tests {
     fn a_cutting_plane_hides_what_its_normal_points_to_and_none_hides_nothing() {
         let hides = |plane, p: [f32; 3]| {
             let style = Style { plane, ..Style::default() };
-            let target = Target { canvas: [1, 1], size: [1, 1], time: 0.0 };
+            let target = PictureTarget { canvas: [1, 1], size: [1, 1], time: 0.0 };
             let [x, y, z, offset] = style.frame(&View::default(), target).plane;
             x * p[0] + y * p[1] + z * p[2] > offset
         };
@@ -238,8 +238,8 @@ mod tests {
     #[test]
     fn a_larger_picture_has_thicker_lines_and_the_same_camera() {
         let (style, view) = (Style::default(), View::default());
-        let screen = style.frame(&view, Target { canvas: [640, 480], size: [640, 480], time: 0.0 });
-        let print = style.frame(&view, Target { canvas: [640, 480], size: [1280, 960], time: 0.0 });
+        let screen = style.frame(&view, PictureTarget { canvas: [640, 480], size: [640, 480], time: 0.0 });
+        let print = style.frame(&view, PictureTarget { canvas: [640, 480], size: [1280, 960], time: 0.0 });
         assert_eq!(print.camera.pixel_ratio, 2.0 * screen.camera.pixel_ratio);
         assert_eq!(print.camera.clip_from_world, screen.camera.clip_from_world);
     }
@@ -248,7 +248,9 @@ mod tests {
     fn without_a_level_no_particle_is_hidden_or_muted() {
         let frame = |level| {
             let style = Style { level, ..Style::default() };
-            style.frame(&View::default(), Target { canvas: [1, 1], size: [1, 1], time: 0.0 }).growth
+            style
+                .frame(&View::default(), PictureTarget { canvas: [1, 1], size: [1, 1], time: 0.0 })
+                .appearance
         };
         let (all, seventh) = (frame(None), frame(Some(7)));
         assert!(all.level > u32::MAX as f32 && all.mute == 0.0, "{all:?}");
@@ -257,7 +259,7 @@ mod tests {
 
     #[test]
     fn the_ground_is_called_light_where_black_contrasts_more() {
-        let target = Target { canvas: [1, 1], size: [1, 1], time: 0.0 };
+        let target = PictureTarget { canvas: [1, 1], size: [1, 1], time: 0.0 };
         for (grey, light) in [(0.0, 0.0), (0.3, 0.0), (0.5, 1.0), (1.0, 1.0)] {
             let style = Style { background: [grey, grey, grey, 1.0], ..Style::default() };
             assert_eq!(style.frame(&View::default(), target).look.light_ground, light, "grey {grey}");

@@ -21,7 +21,7 @@ pub(super) struct Measuring {
     pub(super) front_figures: Option<Figures>,
     pub(super) work: Option<Work<Measured>>,
     /// The figures and columns of the last measurement; empty before the first.
-    pub(super) measured: quality::Report,
+    pub(super) measured: quality::Measurements,
 }
 
 impl Measuring {
@@ -57,12 +57,17 @@ impl Kept {
     }
 
     /// [`quality::measure`], a slice at a time.
-    async fn measure(&self, field: &mut dyn Field, bounds: &Bounds, sampling: Sampling) -> quality::Report {
+    async fn measure(
+        &self,
+        field: &mut dyn Field,
+        bounds: &Bounds,
+        sampling: Sampling,
+    ) -> quality::Measurements {
         let sizes = match sampling {
             Sampling::Uniform => quality::Sizes::None,
             Sampling::Adaptive => quality::Sizes::Given(&self.radius),
         };
-        let options = quality::Options { sizes, ..quality::Options::default() };
+        let options = quality::MeasureOptions { sizes, ..quality::MeasureOptions::default() };
         quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
     }
 }
@@ -70,7 +75,7 @@ impl Kept {
 /// What a measurement gives.
 pub(super) struct Measured {
     pub(super) front: Option<Figures>,
-    pub(super) now: quality::Report,
+    pub(super) now: quality::Measurements,
     /// Number of particles that face another sheet.
     pub(super) facing: usize,
 }

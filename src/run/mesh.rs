@@ -4,7 +4,7 @@ use super::Run;
 use crate::export::{MeshFormat, rows, write_rows};
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::mesh::build::{self, Options, Triangulation};
+use crate::mesh::build::{self, MeshOptions, Triangulation};
 use crate::particles::Particles;
 use crate::slices::{self, Work};
 use crate::topology::Component;
@@ -46,12 +46,12 @@ pub struct MeshComponent {
 /// The mesh of a run, as far as it is there, and a file of it that is being written.
 #[derive(Default)]
 pub(super) struct Meshing {
-    state: State,
+    state: MeshState,
     file: Option<File>,
 }
 
 #[derive(Default)]
-enum State {
+enum MeshState {
     /// Nobody has asked for it since the particles have changed.
     #[default]
     None,
@@ -69,7 +69,7 @@ impl Meshing {
         }
         let (position, normal) = (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
         Box::pin(async move {
-            let options = Options { bounds: Some(&bounds), ..Options::default() };
+            let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
             build::in_slices(&position, &normal, &options).await
         })
     }
@@ -116,15 +116,15 @@ impl<F: Field> Run<F> {
     /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays
     /// until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
-        if let State::None = self.meshing.state {
+        if let MeshState::None = self.meshing.state {
             let work =
                 Meshing::work(self.particles(), self.count(), self.sampler.triangles(), self.local_bounds());
-            self.meshing.state = State::Joining(work);
+            self.meshing.state = MeshState::Joining(work);
         }
-        if let State::Joining(work) = &mut self.meshing.state {
-            self.meshing.state = State::Joined(slices::advance(work.as_mut(), budget)?);
+        if let MeshState::Joining(work) = &mut self.meshing.state {
+            self.meshing.state = MeshState::Joined(slices::advance(work.as_mut(), budget)?);
         }
-        let State::Joined(mesh) = &self.meshing.state else { return None };
+        let MeshState::Joined(mesh) = &self.meshing.state else { return None };
         Some(mesh.into())
     }
 
@@ -132,7 +132,7 @@ impl<F: Field> Run<F> {
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         match &self.meshing.state {
-            State::Joined(mesh) => &mesh.triangles,
+            MeshState::Joined(mesh) => &mesh.triangles,
             _ => &[],
         }
     }

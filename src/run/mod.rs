@@ -320,7 +320,7 @@ impl<F: Field> Run<F> {
 
     /// Columns of the last report, a value of each kind for every particle.
     #[must_use]
-    pub fn measured(&self) -> &quality::Report {
+    pub fn measured(&self) -> &quality::Measurements {
         &self.measuring.measured
     }
 

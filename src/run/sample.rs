@@ -45,7 +45,7 @@ pub fn sample(field: impl Field, settings: &Settings) -> Result<Sample, Error> {
 pub struct Sample {
     particles: Particles,
     report: Report,
-    measured: quality::Report,
+    measured: quality::Measurements,
     bounds: Bounds,
     /// The clip box, counted from the origin of the particles.
     local_bounds: Bounds,
@@ -81,7 +81,7 @@ impl Sample {
 
     /// What was measured of each particle: columns as long as those of [`Sample::particles`].
     #[must_use]
-    pub fn measured(&self) -> &quality::Report {
+    pub fn measured(&self) -> &quality::Measurements {
         &self.measured
     }
 

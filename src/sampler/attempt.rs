@@ -210,7 +210,7 @@ impl Attempt {
 
     /// What counts as being on the surface.
     pub(super) fn tolerance(&self, survey: &Survey) -> Tolerance {
-        tolerance(self.front_radius() as f32, survey.accuracy(), survey.gradient_scale)
+        tolerance(self.front_radius() as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
     /// Notes that this attempt has covered the surface with `count` particles. Says whether another one, with the radius as

@@ -32,7 +32,7 @@ const ARC_SAMPLES: usize = 32;
 ///
 /// Its points are p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the centre added.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Circle {
+pub(crate) struct ChildCircle {
     /// Parent position p.
     pub(crate) centre: Vec3,
     /// Parent normal N̂.
@@ -45,7 +45,7 @@ pub(crate) struct Circle {
     pub(crate) guess: [f32; 2],
 }
 
-impl Circle {
+impl ChildCircle {
     /// Returns the point at an angle, given by its cosine and sine.
     pub(crate) fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
@@ -59,7 +59,7 @@ impl Circle {
 
 /// Result of the search on a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Landing {
+pub(crate) enum CircleLanding {
     /// The search has met the surface.
     On {
         /// Point of the surface.
@@ -121,13 +121,13 @@ impl Probe<'_> {
     /// search follows. Both together take at most 50 steps, so the search ends on any field.
     pub(crate) fn land_on_circles(
         &mut self,
-        circles: &[Circle],
+        circles: &[ChildCircle],
         tolerance: Tolerance,
-        landing: &mut Vec<Landing>,
+        landing: &mut Vec<CircleLanding>,
     ) {
         debug_assert!(circles.len() <= BATCH);
         landing.clear();
-        landing.resize(circles.len(), Landing::NotConverged);
+        landing.resize(circles.len(), CircleLanding::NotConverged);
         let mut active = [Active { circle: 0, steps: 0, turn: [1.0, 0.0], last: f32::INFINITY }; BATCH];
         for (i, circle) in circles.iter().enumerate() {
             active[i].circle = i as u32;
@@ -150,7 +150,7 @@ impl Probe<'_> {
                 let slope = gradient.length();
                 if value.abs() <= tolerance.residual * slope && tolerance.is_slope(slope) {
                     landing[a.circle as usize] =
-                        Landing::On { position: points[k], normal: unit(gradient, slope) };
+                        CircleLanding::On { position: points[k], normal: unit(gradient, slope) };
                     continue;
                 }
                 a.steps += 1;
@@ -180,12 +180,12 @@ impl Probe<'_> {
 
     /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the
     /// centre where others are near.
-    pub(crate) fn walk(&mut self, circle: &Circle, tolerance: Tolerance) -> Landing {
+    pub(crate) fn walk(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
         /// Steps from the centre to the circle.
         const STEPS: u32 = 8;
         /// Newton steps in the plane of the circle after each.
         const LANDINGS: u32 = 2;
-        let &Circle { centre, normal, direction, radius, .. } = circle;
+        let &ChildCircle { centre, normal, direction, radius, .. } = circle;
         let plane = |v: Vec3| direction * v.dot(direction) + normal * v.dot(normal);
         let step = radius / STEPS as f32;
         let (mut p, mut n) = (centre, normal);
@@ -202,7 +202,7 @@ impl Probe<'_> {
                 n = within.normalize_or_zero();
             }
             if n == Vec3::ZERO || !p.is_finite() || n.dot(before) <= 0.0 {
-                return Landing::NotConverged;
+                return CircleLanding::NotConverged;
             }
             rise = -0.5 * step * (n - before).dot(ahead);
         }
@@ -210,13 +210,13 @@ impl Probe<'_> {
         let [cos, sin] = [offset.dot(direction), offset.dot(normal)];
         let length = (cos * cos + sin * sin).sqrt();
         let mut landing = Vec::new();
-        let circle = Circle { guess: [cos / length, sin / length], ..*circle };
+        let circle = ChildCircle { guess: [cos / length, sin / length], ..*circle };
         self.land_on_circles(&[circle], tolerance, &mut landing);
         landing[0]
     }
 
     /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois method.
-    fn search_arc(&mut self, circle: &Circle, tolerance: Tolerance) -> Landing {
+    fn search_arc(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
         // θ runs over ±100° in equal steps from the tangent plane.
         let half = HALF_TURN;
         let mut turns = [[1.0, 0.0]; ARC_SAMPLES + 1];
@@ -229,7 +229,7 @@ impl Probe<'_> {
         self.field.values(&points, &mut f);
         self.count(f.len() as u64);
         if f.iter().all(|v| !v.is_finite()) {
-            return Landing::Undefined;
+            return CircleLanding::Undefined;
         }
         // Brackets are tried in the order of their angle to the guess: its cosine falls.
         let nearness = |k: usize| {
@@ -254,17 +254,21 @@ impl Probe<'_> {
             }
         }
         let undefined = f.iter().filter(|v| !v.is_finite()).count();
-        if count == 0 && undefined > ARC_SAMPLES / 2 { Landing::Undefined } else { Landing::NotConverged }
+        if count == 0 && undefined > ARC_SAMPLES / 2 {
+            CircleLanding::Undefined
+        } else {
+            CircleLanding::NotConverged
+        }
     }
 
     /// Finds the root in a bracket; `None` if the sign changes at a pole or a jump.
     fn illinois(
         &mut self,
-        circle: &Circle,
+        circle: &ChildCircle,
         tolerance: Tolerance,
         Bracket { turn, first: mut fa, last: mut fb }: Bracket,
         budget: &mut u32,
-    ) -> Option<Landing> {
+    ) -> Option<CircleLanding> {
         // The unknown t is the tangent of half the angle from the start of the bracket.
         let (mut a, mut b) = (0.0, HALF_TURN);
         let end = fa.abs().max(fb.abs());
@@ -283,9 +287,9 @@ impl Probe<'_> {
             let slope = gradient.length();
             if value.abs() <= tolerance.residual * slope {
                 return Some(if tolerance.is_slope(slope) {
-                    Landing::On { position, normal: unit(gradient, slope) }
+                    CircleLanding::On { position, normal: unit(gradient, slope) }
                 } else {
-                    Landing::Undefined
+                    CircleLanding::Undefined
                 });
             }
             if b - a <= 1e-7 {
@@ -335,14 +339,14 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
 
 /// How near the surface particles have to be. The paper stops "when the child has converged" (§4.3) and gives no number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Accuracy {
+pub(crate) struct ResidualLimits {
     /// The distance that single precision resolves on this field.
     pub(crate) finest: f32,
     /// The distance within which a particle cannot be taken for one of another sheet.
     pub(crate) coarsest: f32,
 }
 
-impl Accuracy {
+impl ResidualLimits {
     /// Nothing is known of the field.
     pub(crate) const UNLIMITED: Self = Self { finest: 0.0, coarsest: f32::INFINITY };
 
@@ -354,6 +358,6 @@ impl Accuracy {
 
 /// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual `gradient_scale` is cancellation
 /// noise at a singular point.
-pub(crate) fn tolerance(radius: f32, accuracy: Accuracy, gradient_scale: f32) -> Tolerance {
-    Tolerance { residual: accuracy.residual(radius), min_gradient: 1e-6 * gradient_scale }
+pub(crate) fn tolerance(radius: f32, residual_limits: ResidualLimits, gradient_scale: f32) -> Tolerance {
+    Tolerance { residual: residual_limits.residual(radius), min_gradient: 1e-6 * gradient_scale }
 }

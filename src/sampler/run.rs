@@ -440,7 +440,7 @@ impl Sampler {
         let law = match self.settings.sampling {
             Sampling::Uniform => RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance },
             Sampling::Adaptive => RepulsionLaw::Overlap {
-                accuracy: self.survey.accuracy(),
+                residual_limits: self.survey.residual_limits(),
                 min_gradient: tolerance.min_gradient,
             },
         };

@@ -23,7 +23,7 @@ use crate::particles::Particles;
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::Accuracy;
+use crate::sampler::projection::ResidualLimits;
 use crate::spatial::Neighbour;
 use glam::Vec3;
 
@@ -41,14 +41,14 @@ impl OrientedPoint {
     }
 
     /// This point and one at `offset` from it with the unit normal `other`.
-    pub(crate) fn pair(self, offset: Vec3, other: Vec3) -> Pair {
-        Pair { offset, normal: self.normal, other }
+    pub(crate) fn pair(self, offset: Vec3, other: Vec3) -> PointPair {
+        PointPair { offset, normal: self.normal, other }
     }
 }
 
 /// Two points of the surface, as seen from the first.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct PointPair {
     /// Offset of the second point from the first.
     pub(crate) offset: Vec3,
     /// Unit normal at the first point.
@@ -57,7 +57,7 @@ pub(crate) struct Pair {
     pub(crate) other: Vec3,
 }
 
-impl Pair {
+impl PointPair {
     /// The lift of the two points.
     pub(crate) fn lift(self) -> f32 {
         (0.5 * self.offset.dot(self.normal + self.other)).abs()
@@ -80,7 +80,7 @@ pub(crate) fn level_slack_sq(match_radius: f32) -> f32 {
 
 /// Whether two particles that are `distance_sq` apart face the same way, and the second rises from the tangent plane at the first
 /// by no more than 45°, or is too near for that to tell.
-pub(crate) fn is_level(pair: Pair, distance_sq: f32, match_radius: f32) -> bool {
+pub(crate) fn is_level(pair: PointPair, distance_sq: f32, match_radius: f32) -> bool {
     let rise = pair.offset.dot(pair.normal);
     pair.faces_one_way() && rise * rise <= MAX_RISE_SQ * (distance_sq + level_slack_sq(match_radius))
 }
@@ -102,7 +102,7 @@ pub(crate) const MAX_LIFT: f32 = 0.02;
 
 /// Whether two points that face the same way may lie on two sheets: their lift is larger than [`MAX_LIFT`] allows at that
 /// distance.
-fn is_doubtful(pair: Pair, spacing: f32) -> bool {
+fn is_doubtful(pair: PointPair, spacing: f32) -> bool {
     let lift = pair.lift();
     // The lift grows with the third power of the distance.
     let share = pair.offset.length_squared() / (spacing * spacing);
@@ -122,10 +122,10 @@ pub(crate) struct SheetRule {
 
 impl SheetRule {
     /// The rule for particles of these radii, on a surface where another sheet and a third one lie `crowding` away from a point.
-    pub(crate) fn new(crowding: f32, radii: RadiusRange, accuracy: Accuracy) -> Self {
+    pub(crate) fn new(crowding: f32, radii: RadiusRange, residual_limits: ResidualLimits) -> Self {
         let is_crowded = crowding <= MAX_LIFT * 2.0 * radii.largest;
         // Both particles of a pair may be a residual away from the surface.
-        Self { resolved: is_crowded.then_some(4.0 * accuracy.residual(radii.smallest)) }
+        Self { resolved: is_crowded.then_some(4.0 * residual_limits.residual(radii.smallest)) }
     }
 
     /// Lift above which a particle that has moved is on another sheet; infinite where sheets are not as near.
@@ -139,7 +139,7 @@ impl SheetRule {
     }
 
     /// Whether two points that face the same way may lie on two sheets.
-    pub(crate) fn is_doubtful(self, pair: Pair, spacing: f32) -> bool {
+    pub(crate) fn is_doubtful(self, pair: PointPair, spacing: f32) -> bool {
         match self.resolved {
             Some(least) => pair.lift() > least,
             None => is_doubtful(pair, spacing),
@@ -154,7 +154,7 @@ impl SheetRule {
     }
 
     /// Whether the field shows that two points which face the same way, the first at `position`, lie on one sheet.
-    pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
+    pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
         /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time.
         const HALVINGS: u32 = 3;
         let Some(least) = self.resolved else {
@@ -187,12 +187,12 @@ impl SheetRule {
 /// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of this
 /// middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
 /// two sheets the middle is half the lift away from both.
-fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
+fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
     /// Smallest lift, as a share of the distance, that rounding leaves meaningful.
     const ROUNDING: f32 = 0.01;
     /// Share of the lift within which the surface has to be of the middle.
     const NEAR: f32 = 0.25;
-    let Pair { offset, normal, other } = pair;
+    let PointPair { offset, normal, other } = pair;
     let length = offset.length();
     let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
     let middle = position + offset * 0.5 + (along(normal) - along(other)) * 0.125;

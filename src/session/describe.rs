@@ -4,7 +4,7 @@
 use super::setting::{self, Setting};
 use crate::export::{COLUMNS, Column};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
-use crate::field::gallery::{self, Group, Surface};
+use crate::field::gallery::{self, Surface, SurfaceGroup};
 use crate::field::model::{self, MODELS, Model};
 use crate::math::Bounds;
 use crate::sampler::COUNT_ROOM;
@@ -207,7 +207,8 @@ pub fn describe() -> Description {
 }
 
 fn surfaces() -> Vec<SurfaceEntry> {
-    let entries = |group: &'static Group| group.surfaces.iter().map(|surface| entry(surface, group.name));
+    let entries =
+        |group: &'static SurfaceGroup| group.surfaces.iter().map(|surface| entry(surface, group.name));
     gallery::GROUPS.iter().flat_map(entries).collect()
 }
 

@@ -64,7 +64,7 @@ pub struct Neighbour {
 
 /// What a query looks for: points within a radius of a centre.
 #[derive(Clone, Copy)]
-struct Ball {
+struct RadiusQuery {
     centre: Vec3,
     radius: f32,
 }
@@ -236,7 +236,7 @@ impl CellGrid {
                     while cells != 0 {
                         let cell = cells.trailing_zeros() as usize & 7;
                         cells &= cells - 1;
-                        self.gather_cell(brick.head[cell], Ball { centre, radius }, &mut hits, found);
+                        self.gather_cell(brick.head[cell], RadiusQuery { centre, radius }, &mut hits, found);
                     }
                 }
             }
@@ -250,7 +250,7 @@ impl CellGrid {
     fn gather_cell(
         &self,
         head: u32,
-        Ball { centre, radius }: Ball,
+        RadiusQuery { centre, radius }: RadiusQuery,
         hits: &mut Hits,
         found: &mut Vec<Neighbour>,
     ) {

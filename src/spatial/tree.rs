@@ -14,7 +14,7 @@ const SLICE: usize = 1024;
 const STACK: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct TreeNode {
     lo: Vec3,
     hi: Vec3,
     first: u32,
@@ -23,7 +23,7 @@ struct Node {
     second: u32,
 }
 
-impl Node {
+impl TreeNode {
     /// Returns the squared distance from `p` to the box; 0 inside.
     #[inline]
     fn distance_sq(&self, p: Vec3) -> f32 {
@@ -49,7 +49,7 @@ pub(crate) struct Tree {
     pub(crate) position: Vec<Vec3>,
     /// For each point in tree order, its index as given.
     pub(crate) origin: Vec<u32>,
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
 }
 
 impl Tree {
@@ -73,7 +73,7 @@ impl Tree {
         while let Some((range, parent)) = open.pop().filter(|(range, _)| !range.is_empty()) {
             let node = nodes.len();
             if let Some(parent) = parent {
-                let parent: &mut Node = &mut nodes[parent];
+                let parent: &mut TreeNode = &mut nodes[parent];
                 parent.second = node as u32;
             }
             nodes.push(node_of(&items[range.clone()], range.start));
@@ -215,18 +215,18 @@ impl Tree {
 }
 
 /// Returns the node over `items`, which begin at `first`, as a leaf.
-fn node_of(items: &[(Vec3, u32)], first: usize) -> Node {
+fn node_of(items: &[(Vec3, u32)], first: usize) -> TreeNode {
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
     for (p, _) in items {
         lo = lo.min(*p);
         hi = hi.max(*p);
     }
-    Node { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
+    TreeNode { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
 }
 
 /// Splits the `items` of `node` at the median along its longest side. Returns where the second part begins.
-fn split(items: &mut [(Vec3, u32)], node: &Node) -> usize {
+fn split(items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
     let side = node.hi - node.lo;
     let axis = if side.x >= side.y && side.x >= side.z {
         0

@@ -4,7 +4,7 @@ use super::values::{answer, to_js};
 use crate::field::formula::Formula;
 use crate::field::rbf::{RbfData, RbfField};
 use crate::field::{Field, Jet};
-use crate::lesson::{self, LessonError, LessonField, Settings};
+use crate::lesson::{self, LessonError, LessonField, LessonSettings};
 use crate::math::Bounds;
 use crate::paper::Particle;
 use crate::session::{Excess, Fault, FaultKind};
@@ -203,7 +203,7 @@ impl Lesson {
 
     fn begin(&mut self, field: Result<(Box<dyn Field>, Bounds), Fault>, settings: JsValue) -> JsValue {
         self.run = None;
-        let settings = read::<Settings>(settings, FaultKind::Settings);
+        let settings = read::<LessonSettings>(settings, FaultKind::Settings);
         answer(field.and_then(|(field, bounds)| {
             let run = lesson::Lesson::new(field, &bounds, &settings?).map_err(|error| refusal(&error))?;
             Ok(self.run.insert(run).progress())

@@ -2,7 +2,7 @@
 
 use super::values::answer;
 use crate::field::model::SolvedModel;
-use crate::pointcloud::job::{DEFAULT_CENTRES, Fault, Job, JobError, PointsProgress};
+use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, PointsFault, PointsProgress};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -51,7 +51,7 @@ impl Points {
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         let job = self.job.as_mut().ok_or_else(|| nothing("no model and no file was begun"));
-        answer(job.and_then(|job| job.step(budget).map_err(|error| Fault::from(&error))))
+        answer(job.and_then(|job| job.step(budget).map_err(|error| PointsFault::from(&error))))
     }
 
     /// The field as `Core.set_points` takes it; nothing before it is there.
@@ -78,13 +78,13 @@ impl Points {
                 let progress: PointsProgress = job.progress();
                 (Some(job), Ok(progress))
             }
-            Err(error) => (None, Err(Fault::from(&error))),
+            Err(error) => (None, Err(PointsFault::from(&error))),
         };
         self.job = job;
         answer(begun)
     }
 }
 
-fn nothing(message: &str) -> Fault {
-    Fault { kind: "nothing", message: message.to_owned(), line: None }
+fn nothing(message: &str) -> PointsFault {
+    PointsFault { kind: "nothing", message: message.to_owned(), line: None }
 }

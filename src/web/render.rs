@@ -3,9 +3,9 @@
 //! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
 //! picture may be on its way while the next frame is drawn.
 
-use crate::render::style::{ClipBox, CuttingPlane, Drawing, Style};
+use crate::render::style::{ClipBoxStyle, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
-use crate::render::{Callbacks, Columns, Outcome, Renderer as Inner};
+use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -259,9 +259,9 @@ impl Renderer {
     /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
     pub fn draw(&self, time_s: f64) -> String {
         match self.inner.borrow_mut().draw(time_s) {
-            Outcome::Drawn => "drawn",
-            Outcome::Skipped => "skipped",
-            Outcome::Lost => "lost",
+            DrawOutcome::Drawn => "drawn",
+            DrawOutcome::Skipped => "skipped",
+            DrawOutcome::Lost => "lost",
         }
         .to_owned()
     }
@@ -420,7 +420,7 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     }
     let clip_box = get(&value, "box")?;
     if clip_box.is_object() {
-        let mut read_box = ClipBox::default();
+        let mut read_box = ClipBoxStyle::default();
         read(&clip_box, "min", &mut read_box.min)?;
         read(&clip_box, "max", &mut read_box.max)?;
         read(&clip_box, "colour", &mut read_box.colour)?;

@@ -36,7 +36,7 @@ fn sampled(surface: &str, settings: &Settings) -> Sampler {
 fn figures(surface: &str, particles: &Particles) -> Figures {
     let surface = gallery::find(surface).expect("a gallery surface");
     let mut field = surface.field();
-    let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..Default::default() };
+    let options = quality::MeasureOptions { sizes: Sizes::Given(&particles.radius), ..Default::default() };
     quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
         .figures
 }
@@ -51,7 +51,7 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
         sampler.start(&mut field, &bounds, &settings).expect("valid settings");
         while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
         let Particles { position, normal, radius, .. } = sampler.particles();
-        let options = quality::Options { sizes: Sizes::Given(radius), ..Default::default() };
+        let options = quality::MeasureOptions { sizes: Sizes::Given(radius), ..Default::default() };
         let figures = quality::measure(position, normal, &mut field, Some(&bounds), &options).figures;
         assert!(figures.edges.overlap_min > 0.6, "{ripple}: {}", figures.edges.overlap_min);
         assert!(
@@ -163,7 +163,7 @@ fn the_bunny_is_even_after_ten_steps() {
     sampler.start(&mut field, &fit.bounds, &settings).expect("valid settings");
     while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
     let particles = sampler.particles();
-    let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..Default::default() };
+    let options = quality::MeasureOptions { sizes: Sizes::Given(&particles.radius), ..Default::default() };
     let report =
         quality::measure(&particles.position, &particles.normal, &mut field, Some(&fit.bounds), &options);
     let figures = report.figures;
@@ -348,7 +348,7 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
             gaps: GapPolicy::Leave; ..settings());
         let sampler = sampled(id, &settings);
         let fast = sampler.particles();
-        let same = lesson::Settings {
+        let same = lesson::LessonSettings {
             sampling: Sampling::Adaptive,
             law: LawKind::MaxCurvature,
             law_scale: scale,
@@ -357,7 +357,7 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
             seeds: vec![fast.position[0].as_dvec3().to_array()],
             matched: Matched::Stay,
             relax_steps: 0,
-            ..lesson::Settings::default()
+            ..lesson::LessonSettings::default()
         };
         let mut run = Lesson::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
         while !run.step(1_000).is_done {}

@@ -4,7 +4,7 @@ use glam::Vec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{Options, Triangulation, triangulate};
+use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
@@ -30,7 +30,7 @@ fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
 }
 
 fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
-    let options = Options { bounds: Some(bounds), ..Options::default() };
+    let options = MeshOptions { bounds: Some(bounds), ..MeshOptions::default() };
     triangulate(&particles.position, &particles.normal, &options)
 }
 
@@ -66,7 +66,7 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
         let (counts, particles) = (sampler.counts(), sampler.particles());
         assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
         assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
-        let options = quality::Options::default();
+        let options = quality::MeasureOptions::default();
         let bounds = &surface.bounds;
         let report =
             quality::measure(&particles.position, &particles.normal, &mut field, Some(bounds), &options);

@@ -187,7 +187,7 @@ fn files_hold_far_places_in_double_precision() {
         export::write_mesh(
             format,
             particles,
-            &quality::Report::default(),
+            &quality::Measurements::default(),
             session.run.triangles(),
             &mut bytes,
         )

@@ -34,7 +34,7 @@ fn front(surface: &str, radius_share: f64) -> Sampler {
 fn figures(surface: &str, particles: &Particles) -> Figures {
     let surface = gallery::find(surface).expect("a gallery surface");
     let mut field = surface.field();
-    let options = quality::Options::default();
+    let options = quality::MeasureOptions::default();
     quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
         .figures
 }
@@ -43,11 +43,11 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
 fn reference_of(id: &str, sampler: &Sampler) -> Lesson {
     let surface = gallery::find(id).expect("a gallery surface");
     assert_eq!(sampler.counts().seeds, 1, "{id}");
-    let settings = lesson::Settings {
+    let settings = lesson::LessonSettings {
         radius: f64::from(sampler.radius() as f32),
         seeds: vec![sampler.particles().position[0].as_dvec3().to_array()],
         relax_steps: 0,
-        ..lesson::Settings::of_fast_front()
+        ..lesson::LessonSettings::of_fast_front()
     };
     let mut run = Lesson::new(Box::new(surface.field()), &surface.bounds, &settings)
         .unwrap_or_else(|error| panic!("{id}: {error}"));
@@ -120,11 +120,11 @@ fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
         let surface = gallery::find(id).expect("a gallery surface");
         let sampler = front(id, share);
         let (fast, radius) = (sampler.particles(), f64::from(sampler.radius() as f32));
-        let settings = lesson::Settings {
+        let settings = lesson::LessonSettings {
             radius,
             seeds: vec![fast.position[0].as_dvec3().to_array()],
             relax_steps: 0,
-            ..lesson::Settings::of_fast_front()
+            ..lesson::LessonSettings::of_fast_front()
         };
         let placed: Vec<Particle> = (0..fast.len())
             .map(|i| {

@@ -24,7 +24,10 @@ fn run(id: &str, settings: &Settings) -> (Sampler, Figures) {
     let mut field = surface.field();
     let sampler = sampled(&mut field, &surface.bounds, settings, 10_000);
     let particles = sampler.particles();
-    let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..quality::Options::default() };
+    let options = quality::MeasureOptions {
+        sizes: Sizes::Given(&particles.radius),
+        ..quality::MeasureOptions::default()
+    };
     let report =
         quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options);
     (sampler, report.figures)

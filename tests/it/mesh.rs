@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{Options, Triangulation, triangulate};
+use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampler, Sampling, Settings, SizeMode};
 use marching_particles::topology::Component;
@@ -24,7 +24,7 @@ fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Se
 /// The triangles of a set of points, held to what is promised of every set.
 #[track_caller]
 fn mesh(position: &[Vec3], normal: &[Vec3], bounds: Option<&Bounds>) -> Triangulation {
-    let options = Options { bounds, ..Options::default() };
+    let options = MeshOptions { bounds, ..MeshOptions::default() };
     let mesh = triangulate(position, normal, &options);
     assert!(mesh.topology.is_manifold(), "{:?}", mesh.topology);
     let mut is_used = vec![false; position.len()];

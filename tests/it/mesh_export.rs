@@ -3,7 +3,7 @@
 use glam::Vec3;
 use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::field::gallery;
-use marching_particles::mesh::build::{Options, triangulate};
+use marching_particles::mesh::build::{MeshOptions, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::{Sampler, Settings};
@@ -19,7 +19,7 @@ fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
     sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
     while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
     let particles = sampler.particles().clone();
-    let options = Options { bounds: Some(&surface.bounds), ..Options::default() };
+    let options = MeshOptions { bounds: Some(&surface.bounds), ..MeshOptions::default() };
     let mesh = triangulate(&particles.position, &particles.normal, &options);
     assert!(mesh.triangles.len() > 1000);
     (particles, mesh.triangles)
@@ -27,7 +27,7 @@ fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
 
 fn written(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut out = Vec::new();
-    let measured = quality::Report::default();
+    let measured = quality::Measurements::default();
     write_mesh(format, particles, &measured, triangles, &mut out).expect("writing to memory does not fail");
     out
 }

@@ -8,20 +8,22 @@ use glam::DVec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
-    ChapterKind, Event, Lesson, LessonError, LessonField, Method, Placing, Seeding, Settings, digest,
+    ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonSettings, Placing, Seeding,
+    digest,
 };
 use marching_particles::paper::{
-    ImplicitSurface, Matched, Order, Particle, Projection, Rules, Run, Sizes, sum_of_curvatures,
+    ImplicitSurface, Matched, PaperRun, Particle, Projection, QueueOrder, RadiusRule, Rules,
+    sum_of_curvatures,
 };
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
 
-fn start(surface: &str, settings: &Settings) -> Result<Lesson, LessonError> {
+fn start(surface: &str, settings: &LessonSettings) -> Result<Lesson, LessonError> {
     let surface = gallery::find(surface).expect("a gallery surface");
     Lesson::new(Box::new(surface.field()), &surface.bounds, settings)
 }
 
-fn run(surface: &str, settings: &Settings) -> Lesson {
+fn run(surface: &str, settings: &LessonSettings) -> Lesson {
     let mut run = start(surface, settings).unwrap_or_else(|error| panic!("{surface}: {error}"));
     while !run.step(1_000).is_done {}
     run.seek(u32::MAX);
@@ -29,30 +31,30 @@ fn run(surface: &str, settings: &Settings) -> Lesson {
 }
 
 /// Some hundred particles.
-fn coarse() -> Settings {
-    settings!(radius: 0.08, relax_steps: 3; ..Settings::default())
+fn coarse() -> LessonSettings {
+    settings!(radius: 0.08, relax_steps: 3; ..LessonSettings::default())
 }
 
 /// Adaptive sampling with some hundred particles.
-fn adaptive() -> Settings {
+fn adaptive() -> LessonSettings {
     settings!(sampling: Sampling::Adaptive,
         law: LawKind::MaxCurvature,
         law_scale: 0.12,
         radius_min: 0.03,
         radius_max: 0.12,
-        relax_steps: 3; ..Settings::default())
+        relax_steps: 3; ..LessonSettings::default())
 }
 
-fn all_settings() -> [Settings; 8] {
+fn all_settings() -> [LessonSettings; 8] {
     [
         coarse(),
         adaptive(),
-        settings!(radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill; ..Settings::of_fast_front()),
-        settings!(order: Order::Stack, matched: Matched::Stay; ..coarse()),
+        settings!(radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill; ..LessonSettings::of_fast_front()),
+        settings!(order: QueueOrder::Stack, matched: Matched::Stay; ..coarse()),
         settings!(projection: Projection::Newton; ..coarse()),
         settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together; ..coarse()),
-        settings!(method: Method::WitkinHeckbert, radius: 0.12, max_iterations: 60; ..Settings::default()),
-        settings!(method: Method::Forces, max_iterations: 60; ..adaptive()),
+        settings!(method: LessonMethod::WitkinHeckbert, radius: 0.12, max_iterations: 60; ..LessonSettings::default()),
+        settings!(method: LessonMethod::Forces, max_iterations: 60; ..adaptive()),
     ]
 }
 
@@ -97,17 +99,17 @@ fn back_is_exact_to_the_last_bit() {
 #[test]
 fn the_paper_by_itself_gives_the_particles_of_the_lesson() {
     let surface = gallery::find("ellipsoid").expect("a gallery surface");
-    let adaptive = Settings { law: LawKind::SumOfCurvatures, ..adaptive() };
-    let by_curvature = Sizes::ByCurvature {
+    let adaptive = LessonSettings { law: LawKind::SumOfCurvatures, ..adaptive() };
+    let by_curvature = RadiusRule::ByCurvature {
         law: sum_of_curvatures,
         scale: adaptive.law_scale,
         least: adaptive.radius_min,
         most: adaptive.radius_max,
     };
-    for (sizes, settings) in [(Sizes::Same(0.08), coarse()), (by_curvature, adaptive)] {
-        let settings = Settings { seeds: vec![[0.0, 0.0, 0.5]], ..settings };
+    for (sizes, settings) in [(RadiusRule::Same(0.08), coarse()), (by_curvature, adaptive)] {
+        let settings = LessonSettings { seeds: vec![[0.0, 0.0, 0.5]], ..settings };
         let zeros = ImplicitSurface::new(Box::new(surface.field()), &surface.bounds);
-        let mut alone = Run::new(zeros, Rules::with_sizes(sizes), ());
+        let mut alone = PaperRun::new(zeros, Rules::with_sizes(sizes), ());
         assert!(alone.begin_at(DVec3::from(settings.seeds[0]), 0));
         alone.sample(settings.relax_steps);
         let lesson = run("ellipsoid", &settings);
@@ -146,7 +148,7 @@ fn an_unfinished_chapter_can_be_looked_at() {
 
 #[test]
 fn the_seed_has_six_children_and_rings_grow_by_six() {
-    let run = run("sphere", &settings!(radius: 0.03, relax_steps: 0; ..Settings::default()));
+    let run = run("sphere", &settings!(radius: 0.03, relax_steps: 0; ..LessonSettings::default()));
     let added: Vec<u64> = run.chapters().iter().map(|chapter| chapter.fates.added).take(4).collect();
     assert_eq!(added, [6, 12, 18, 24]);
     for (level, chapter) in run.chapters().iter().enumerate() {
@@ -162,17 +164,17 @@ fn the_seed_has_six_children_and_rings_grow_by_six() {
 
 #[test]
 fn a_stack_gives_no_rings() {
-    let settings = settings!(radius: 0.05, relax_steps: 0; ..Settings::default());
+    let settings = settings!(radius: 0.05, relax_steps: 0; ..LessonSettings::default());
     let levels = |order| {
         let run = run("sphere", &settings!(order; ..settings.clone()));
         run.particles().iter().map(|particle| particle.level).max().expect("particles")
     };
-    assert!(levels(Order::Stack) > 5 * levels(Order::Queue));
+    assert!(levels(QueueOrder::Stack) > 5 * levels(QueueOrder::Queue));
 }
 
 #[test]
 fn the_circle_keeps_the_distance_and_newton_does_not() {
-    let settings = settings!(radius: 0.1, relax_steps: 0; ..Settings::default());
+    let settings = settings!(radius: 0.1, relax_steps: 0; ..LessonSettings::default());
     let farthest = |projection| {
         let run = run("ellipsoid", &settings!(projection; ..settings.clone()));
         let particles = run.particles();
@@ -368,20 +370,20 @@ fn a_section_lies_on_the_surface() {
 
 #[test]
 fn what_cannot_be_followed_is_refused_in_words() {
-    let refused = |settings: Settings| match start("sphere", &settings) {
+    let refused = |settings: LessonSettings| match start("sphere", &settings) {
         Ok(_) => panic!("{settings:?} was accepted"),
         Err(error) => error.to_string(),
     };
-    let words = refused(settings!(radius: 0.005; ..Settings::default()));
+    let words = refused(settings!(radius: 0.005; ..LessonSettings::default()));
     assert!(words.starts_with("about 14") && words.contains("times as large"), "{words}");
-    assert!(refused(settings!(radius: f64::NAN; ..Settings::default())).starts_with("radius is NaN"));
+    assert!(refused(settings!(radius: f64::NAN; ..LessonSettings::default())).starts_with("radius is NaN"));
     assert!(refused(settings!(match_tolerance: 2.0; ..coarse())).starts_with("match_tolerance is 2"));
     assert!(refused(settings!(placing: Placing::LevelByLevel; ..coarse())).contains("needs a queue"));
     assert!(refused(settings!(seeding: Seeding::Together; ..coarse())).contains("have to be given"));
     assert!(refused(settings!(gaps: GapPolicy::Fill; ..adaptive())).starts_with("adaptive sampling places"));
-    let two_sizes = settings!(method: Method::WitkinHeckbert; ..adaptive());
+    let two_sizes = settings!(method: LessonMethod::WitkinHeckbert; ..adaptive());
     assert!(refused(two_sizes).contains("one radius everywhere"));
-    let negative = settings!(method: Method::WitkinHeckbert, radius_max: -1.0; ..coarse());
+    let negative = settings!(method: LessonMethod::WitkinHeckbert, radius_max: -1.0; ..coarse());
     assert!(refused(negative).starts_with("radius_max is -1"));
     assert!(refused(settings!(max_iterations: 0; ..coarse())).starts_with("max_iterations is 0"));
     assert!(refused(settings!(radius_min: 0.5; ..adaptive())).starts_with("radius_min is 0.5"));
@@ -389,7 +391,10 @@ fn what_cannot_be_followed_is_refused_in_words() {
     assert!(refused(tiny).contains("choose radii"));
     // The factor that the message names is large enough.
     let factor: f64 = words.split(' ').rev().nth(3).and_then(|word| word.parse().ok()).expect("a factor");
-    assert!(start("sphere", &settings!(radius: 0.005 * factor; ..Settings::default())).is_ok(), "{words}");
+    assert!(
+        start("sphere", &settings!(radius: 0.005 * factor; ..LessonSettings::default())).is_ok(),
+        "{words}"
+    );
 }
 
 #[test]
@@ -410,7 +415,7 @@ struct Golden {
 struct GoldenRun {
     name: String,
     field: LessonField,
-    settings: Settings,
+    settings: LessonSettings,
     events: u32,
     /// Of the particles at the end.
     digest: String,

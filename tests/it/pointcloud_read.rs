@@ -4,7 +4,7 @@ use core::cell::Cell;
 use glam::{DVec3, Vec3};
 use marching_particles::export;
 use marching_particles::particles::{Particles, Slots};
-use marching_particles::pointcloud::read::{FileMesh, Format, MAX_BYTES, ReadError, Reader, check_size};
+use marching_particles::pointcloud::read::{FileMesh, InputFormat, MAX_BYTES, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
 use marching_particles::quality;
 use marching_particles::slices::complete;
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use std::fmt::Write as _;
 
 /// Reads a file to its end.
-fn read_all(name: &str, bytes: &[u8]) -> Result<(Format, FileMesh), ReadError> {
+fn read_all(name: &str, bytes: &[u8]) -> Result<(InputFormat, FileMesh), ReadError> {
     let reader = Reader::new(name, bytes.to_vec())?;
     let format = reader.format();
     let before = Cell::new(0.0);
@@ -23,7 +23,7 @@ fn read_all(name: &str, bytes: &[u8]) -> Result<(Format, FileMesh), ReadError> {
     Ok((format, mesh))
 }
 
-fn read(name: &str, bytes: impl AsRef<[u8]>) -> (Format, FileMesh) {
+fn read(name: &str, bytes: impl AsRef<[u8]>) -> (InputFormat, FileMesh) {
     let result = read_all(name, bytes.as_ref());
     result.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
@@ -35,7 +35,7 @@ fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
 }
 
 /// Makes a cloud of what was read from damaged bytes.
-fn made((_, mesh): (Format, FileMesh)) {
+fn made((_, mesh): (InputFormat, FileMesh)) {
     let (cloud, _) = complete(mesh.into_cloud(|_| {})).expect("memory enough");
     assert!(cloud.position.iter().all(|p| p.is_finite()));
     assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-9), "{:?}", cloud.normal);
@@ -228,7 +228,7 @@ fn stl_is_read_as_text_and_binary_and_its_corners_are_merged() {
     // Many programs begin a binary file with `solid`, like a text file.
     for name in [&b""[..], b"solid tetrahedron"] {
         let (format, _) = read("a.stl", stl_binary(name, &stl_triangles()));
-        assert_eq!(format, Format::StlBinary);
+        assert_eq!(format, InputFormat::StlBinary);
         assert_is_tetrahedron(&cloud("a.stl", stl_binary(name, &stl_triangles())).0);
     }
     let mut text = "solid a tetrahedron\n".to_owned();
@@ -241,7 +241,7 @@ fn stl_is_read_as_text_and_binary_and_its_corners_are_merged() {
     }
     for end in ["endsolid a tetrahedron\n", ""] {
         let (format, _) = read("a.stl", format!("{text}{end}"));
-        assert_eq!(format, Format::StlText);
+        assert_eq!(format, InputFormat::StlText);
         assert_is_tetrahedron(&cloud("a.stl", format!("{text}{end}")).0);
     }
 }
@@ -295,7 +295,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
             continue;
         }
         let mut bytes = Vec::new();
-        export::write(format, &particles, &quality::Report::default(), &mut bytes)
+        export::write(format, &particles, &quality::Measurements::default(), &mut bytes)
             .expect("writing to memory does not fail");
         let (_, mesh) = read(&format!("a.{ending}"), bytes);
         assert!(
@@ -312,8 +312,8 @@ fn content_decides_and_a_wrong_extension_gives_a_warning() {
     let (cloud, warnings) = cloud("scan.stl", tetrahedron_ply(true, "float", "int", "uchar"));
     assert_is_tetrahedron(&cloud);
     assert_eq!(warnings, ["The name ends in .stl, the content is PLY; it was read as PLY."]);
-    assert_eq!(read("points", "1 2 3\n").0, Format::Xyz);
-    assert_eq!(read("points.ply", "v 1 2 3\n").0, Format::Obj);
+    assert_eq!(read("points", "1 2 3\n").0, InputFormat::Xyz);
+    assert_eq!(read("points.ply", "v 1 2 3\n").0, InputFormat::Obj);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
-use marching_particles::quality::{CROWDED, Options, Report, Sizes, measure, triangles};
+use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, Sizes, measure, triangles};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -68,8 +68,8 @@ fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
 }
 
 /// Options with the exact area of `n` points of a lattice with cells of area `cell`.
-fn with_area<'a>(n: usize, cell: f64) -> Options<'a> {
-    Options { area: Some(n as f64 * cell), ..Options::default() }
+fn with_area<'a>(n: usize, cell: f64) -> MeasureOptions<'a> {
+    MeasureOptions { area: Some(n as f64 * cell), ..MeasureOptions::default() }
 }
 
 /// `n` points of a Fibonacci spiral on the unit sphere.
@@ -224,7 +224,7 @@ fn jittered_lattice_has_the_known_mean_angle() {
 fn fibonacci_sphere_is_a_closed_manifold() {
     let n = 2000;
     let points = fibonacci(n);
-    let options = Options { area: Some(SPHERE_AREA), euler: Some(2), ..Options::default() };
+    let options = MeasureOptions { area: Some(SPHERE_AREA), euler: Some(2), ..MeasureOptions::default() };
     let report = measure(&points, &points, &mut sphere(), None, &options);
     let f = report.figures;
     println!("{f:#?}");
@@ -245,7 +245,7 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     );
     assert!(f.accuracy.nrm_max < 1e-4, "nrm_max = {}", f.accuracy.nrm_max);
     // The flat triangles have a little less area than the sphere.
-    let flat = measure(&points, &points, &mut sphere(), None, &Options::default()).figures;
+    let flat = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default()).figures;
     let missing = 1.0 - flat.area / SPHERE_AREA;
     assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
     assert!(f.coverage.cover > 1.0 && f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
@@ -279,7 +279,7 @@ fn torus_lattice_has_euler_number_zero() {
             points.push(DVec3::new(ring * u.cos(), ring * u.sin(), 0.5 * v.sin()).as_vec3());
         }
     }
-    let f = measure(&points, &[], &mut torus(), None, &Options::default()).figures;
+    let f = measure(&points, &[], &mut torus(), None, &MeasureOptions::default()).figures;
     println!("{f:#?}");
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (0, 1, 0));
     close("tri_ok", f.connectivity.tri_ok, 1.0, 0.0);
@@ -292,7 +292,7 @@ fn white_noise_has_its_known_figures() {
     let mut random = Random::new(1);
     let n = 40_000;
     let points: Vec<Vec3> = (0..n).map(|_| random.on_sphere()).collect();
-    let options = Options { area: Some(SPHERE_AREA), euler: Some(2), ..Options::default() };
+    let options = MeasureOptions { area: Some(SPHERE_AREA), euler: Some(2), ..MeasureOptions::default() };
     let f = measure(&points, &points, &mut sphere(), None, &options).figures;
     println!("{f:#?}");
     close("six", f.order.six, 0.295, 0.008);
@@ -311,11 +311,11 @@ fn white_noise_has_its_known_figures() {
 #[test]
 fn hole_is_measured_as_a_hole() {
     let mut points = fibonacci(3000);
-    let whole = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    let whole = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
     let centre = points[1500];
     let radius = 2.5 * whole.d_hex as f32;
     points.retain(|p| p.distance(centre) > radius);
-    let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    let f = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
     // The largest empty disc is at least as large as the hole, and at most one spacing larger.
     let gap = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
@@ -334,7 +334,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     });
     let points = fibonacci(2000);
     let bounds = Bounds { min: [-1.5, -1.5, -1.5], max: [5.5, 1.5, 1.5] };
-    let options = Options { area: Some(2.0 * SPHERE_AREA), ..Options::default() };
+    let options = MeasureOptions { area: Some(2.0 * SPHERE_AREA), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut pair, Some(&bounds), &options).figures;
     let hole = f.coverage.cover * f.d_hex / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
@@ -344,7 +344,7 @@ fn missed_component_and_missed_half_are_holes_too() {
     // On half a sphere, the far pole is at the distance √2 from the equator.
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
     let bounds = Bounds::cube(1.25);
-    let f = measure(&half, &[], &mut sphere(), Some(&bounds), &Options::default()).figures;
+    let f = measure(&half, &[], &mut sphere(), Some(&bounds), &MeasureOptions::default()).figures;
     close("hole", f.coverage.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
 }
 
@@ -393,14 +393,14 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
 fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
     let points = fibonacci(4000);
     let touching = Bounds::cube(1.0);
-    let f = measure(&points, &[], &mut sphere(), Some(&touching), &Options::default()).figures;
+    let f = measure(&points, &[], &mut sphere(), Some(&touching), &MeasureOptions::default()).figures;
     assert_eq!(f.boundary_excluded, 0);
 
     let cut = Bounds { min: [-2.0, -2.0, -2.0], max: [2.0, 2.0, 0.5] };
     let points: Vec<Vec3> = points.into_iter().filter(|&p| cut.contains(p)).collect();
     // The part of the sphere below z = 1/2 has the area 2π · 3/2.
     let area = 3.0 * core::f64::consts::PI;
-    let options = Options { area: Some(area), ..Options::default() };
+    let options = MeasureOptions { area: Some(area), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut sphere(), Some(&cut), &options).figures;
     println!("{f:#?}");
     // The zone extends from the border, 60° from the pole, to where the chord to the border is 4 d_hex.
@@ -419,7 +419,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
     let measured = |sizes: Sizes| {
-        let options = Options { sizes, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
+        let options = MeasureOptions { sizes, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
         measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.edges.size_cv
     };
     let equal = vec![0.5 * scale as f32; points.len()];
@@ -432,7 +432,7 @@ fn edges_are_compared_with_the_wanted_radii() {
     // With constant curvature, the variation is that of the edges themselves.
     let points = fibonacci(2000);
     let curvature = Sizes::Curvature { lowest: 0.1, highest: 10.0 };
-    let options = Options { sizes: curvature, ..Options::default() };
+    let options = MeasureOptions { sizes: curvature, ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut sphere(), None, &options).figures;
     close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
 }
@@ -463,7 +463,8 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     let step = 0.02;
     let (points, radii) = growing_lattice(step);
     let bounds = Bounds { min: [0.55, 0.55, -0.5], max: [1.35, 1.35, 0.5] };
-    let options = Options { area: Some(0.64), sizes: Sizes::Given(&radii), ..Options::default() };
+    let options =
+        MeasureOptions { area: Some(0.64), sizes: Sizes::Given(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
     println!("{} points: {f:#?}", points.len());
     // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2)) sums of radii away.
@@ -501,7 +502,8 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let kept = || all.iter().filter(|&&i| i != gone);
         let position: Vec<Vec3> = kept().map(|&i| points[i]).collect();
         let radius: Vec<f32> = kept().map(|&i| radii[i]).collect();
-        let options = Options { area: Some(0.64), sizes: Sizes::Given(&radius), ..Options::default() };
+        let options =
+            MeasureOptions { area: Some(0.64), sizes: Sizes::Given(&radius), ..MeasureOptions::default() };
         measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
     };
     // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of
@@ -523,21 +525,21 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
 fn equal_radii_make_the_local_hole_the_hole() {
     let points = fibonacci(3000);
     let radii = vec![0.7; points.len()];
-    let options = Options { sizes: Sizes::Given(&radii), ..Options::default() };
+    let options = MeasureOptions { sizes: Sizes::Given(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut sphere(), Some(&Bounds::cube(1.5)), &options).figures;
     close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
     close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.d_hex / 1.4, 1e-5);
-    let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    let f = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default()).figures;
     assert!(f.coverage.cover_local.is_nan() && f.edges.overlap_min.is_nan());
 }
 
 #[test]
 fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     let points = fibonacci(500);
-    let clean = measure(&points, &points, &mut sphere(), None, &Options::default());
+    let clean = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default());
     let mut doubled = points.clone();
     doubled.extend([points[17], points[17], points[3]]);
-    let report = measure(&doubled, &doubled, &mut sphere(), None, &Options::default());
+    let report = measure(&doubled, &doubled, &mut sphere(), None, &MeasureOptions::default());
     let f = report.figures;
     assert_eq!((f.dup, f.connectivity.euler), (3, 2));
     close("rho", f.spacing.rho, 0.0, 0.0);
@@ -555,7 +557,7 @@ fn duplicates_are_counted_and_do_not_break_the_triangulation() {
 fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
     let mut random = Random::new(5);
     let points: Vec<Vec3> = (0..700).map(|_| random.on_sphere()).collect();
-    let report = measure(&points, &[], &mut sphere(), None, &Options::default());
+    let report = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
     let limit = CROWDED * report.figures.d_hex;
     let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
     for j in 0..points.len() {
@@ -584,7 +586,7 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
         .expect("a point");
     let radii = vec![1.0 / 64.0; whole.len()];
     let energy_of = |points: &[Vec3], p: usize, sizes| {
-        let options = Options { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+        let options = MeasureOptions { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
         measure(points, &[], &mut plane(), Some(&bounds), &options).energy[p]
     };
     let neighbour = (0..whole.len())
@@ -609,7 +611,7 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
 fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
     let of = |points: &[Vec3], sizes| {
-        let options = Options { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+        let options = MeasureOptions { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
         measure(points, &[], &mut plane(), Some(&bounds), &options)
     };
     let perfect = of(&whole, Sizes::None);
@@ -651,8 +653,9 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     }
 }
 
-fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Report {
-    let report = measure(points, normals, &mut sphere(), Some(&Bounds::cube(0.9)), &Options::default());
+fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Measurements {
+    let report =
+        measure(points, normals, &mut sphere(), Some(&Bounds::cube(0.9)), &MeasureOptions::default());
     assert_eq!(report.valence.len(), points.len());
     assert_eq!(report.nearest.len(), points.len());
     assert_eq!(report.residual.len(), points.len());
@@ -690,7 +693,7 @@ fn degenerate_input_gives_undefined_figures_and_no_panic() {
 fn undefined_field_is_counted_and_given_normals_take_its_place() {
     let points = fibonacci(400);
     let mut nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
-    let f = measure(&points, &points, &mut nowhere, None, &Options::default()).figures;
+    let f = measure(&points, &points, &mut nowhere, None, &MeasureOptions::default()).figures;
     assert_eq!(f.accuracy.undefined, 400);
     assert!(f.accuracy.err_max.is_nan());
     assert_eq!((f.connectivity.euler, f.connectivity.components), (2, 1));
@@ -700,8 +703,8 @@ fn undefined_field_is_counted_and_given_normals_take_its_place() {
 fn order_of_the_points_does_not_matter() {
     let points = fibonacci(1000);
     let reversed: Vec<Vec3> = points.iter().rev().copied().collect();
-    let one = measure(&points, &[], &mut sphere(), None, &Options::default());
-    let mut other = measure(&reversed, &[], &mut sphere(), None, &Options::default());
+    let one = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
+    let mut other = measure(&reversed, &[], &mut sphere(), None, &MeasureOptions::default());
     other.valence.reverse();
     other.nearest.reverse();
     assert_eq!(one.valence, other.valence);
@@ -713,7 +716,7 @@ fn order_of_the_points_does_not_matter() {
 #[test]
 fn histogram_counts_every_particle_once() {
     let points = fibonacci(1000);
-    let report = measure(&points, &[], &mut sphere(), None, &Options::default());
+    let report = measure(&points, &[], &mut sphere(), None, &MeasureOptions::default());
     let h = &report.histogram;
     assert_eq!(h.bins.iter().sum::<u32>(), 1000);
     let bin = (report.figures.spacing.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
@@ -730,7 +733,7 @@ fn icosahedron_has_five_neighbours_everywhere() {
             points.push((p / (1.0 + golden * golden).sqrt()).as_vec3());
         }
     }
-    let report = measure(&points, &points, &mut sphere(), None, &Options::default());
+    let report = measure(&points, &points, &mut sphere(), None, &MeasureOptions::default());
     let f = report.figures;
     assert_eq!(report.valence, [5; 12]);
     assert_eq!((f.connectivity.euler, f.connectivity.components, f.order.open), (2, 1, 0));

@@ -20,7 +20,7 @@ pub(crate) fn sampled(field: &mut Formula, bounds: &Bounds, settings: &Settings,
 }
 
 fn figures(field: &mut Formula, bounds: &Bounds, particles: &Particles) -> Figures {
-    let options = quality::Options::default();
+    let options = quality::MeasureOptions::default();
     quality::measure(&particles.position, &particles.normal, field, Some(bounds), &options).figures
 }
 
@@ -375,7 +375,7 @@ fn a_refusal_names_the_place() {
             &[],
             &mut field,
             Some(&surface.bounds),
-            &quality::Options::default(),
+            &quality::MeasureOptions::default(),
         );
         let spacing = 2.0 * sampler.radius() as f32;
         assert!(far.residual[0] <= spacing, "{id}: {refusal} is {} off the surface", far.residual[0]);

@@ -10,7 +10,7 @@ use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode};
 
 fn figures(surface: &gallery::Surface, particles: &Particles) -> Figures {
     let mut field = surface.field();
-    let options = quality::Options::default();
+    let options = quality::MeasureOptions::default();
     quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
         .figures
 }

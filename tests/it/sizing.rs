@@ -4,7 +4,7 @@
 use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self, Figures, Options, Sizes};
+use marching_particles::quality::{self, Figures, MeasureOptions, Sizes};
 use marching_particles::sampler::{LawKind, Sampler, Sampling, Settings, SettingsError, SizeMode};
 use marching_particles::spatial::CellGrid;
 
@@ -26,7 +26,7 @@ fn sampled(surface: &Surface, settings: &Settings) -> Sampler {
 }
 
 fn figures(surface: &Surface, particles: &Particles) -> Figures {
-    let options = Options { sizes: Sizes::Given(&particles.radius), ..Options::default() };
+    let options = MeasureOptions { sizes: Sizes::Given(&particles.radius), ..MeasureOptions::default() };
     let (position, normal) = (&particles.position, &particles.normal);
     quality::measure(position, normal, &mut surface.field(), Some(&surface.bounds), &options).figures
 }

@@ -1,33 +1,33 @@
 //! Tests of the two particle systems that the paper compares its methods with: they do what their sources say.
 
 use marching_particles::field::gallery;
-use marching_particles::lesson::{Event, Lesson, Method, Settings};
+use marching_particles::lesson::{Event, Lesson, LessonMethod, LessonSettings};
 use marching_particles::paper::Particle;
 use marching_particles::sampler::{LawKind, Sampling};
 
-fn start(surface: &str, settings: &Settings) -> Lesson {
+fn start(surface: &str, settings: &LessonSettings) -> Lesson {
     let surface = gallery::find(surface).expect("a gallery surface");
     Lesson::new(Box::new(surface.field()), &surface.bounds, settings).expect("valid settings")
 }
 
-fn run(surface: &str, settings: &Settings) -> Lesson {
+fn run(surface: &str, settings: &LessonSettings) -> Lesson {
     let mut run = start(surface, settings);
     while !run.step(10_000).is_done {}
     run.seek(u32::MAX);
     run
 }
 
-fn witkin_heckbert(radius: f64) -> Settings {
-    settings!(method: Method::WitkinHeckbert, radius; ..Settings::default())
+fn witkin_heckbert(radius: f64) -> LessonSettings {
+    settings!(method: LessonMethod::WitkinHeckbert, radius; ..LessonSettings::default())
 }
 
-fn forces() -> Settings {
-    settings!(method: Method::Forces,
+fn forces() -> LessonSettings {
+    settings!(method: LessonMethod::Forces,
         sampling: Sampling::Adaptive,
         law: LawKind::MaxCurvature,
         law_scale: 0.12,
         radius_min: 0.03,
-        radius_max: 0.12; ..Settings::default())
+        radius_max: 0.12; ..LessonSettings::default())
 }
 
 /// Distance from each particle to the nearest of its side, in r_i + r_j.

@@ -1,6 +1,6 @@
 //! The command line's arguments, as clap reads and explains them.
 
-use crate::options::Sampling;
+use crate::options::SamplingOptions;
 use clap::{Args, Parser, Subcommand};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
@@ -33,7 +33,7 @@ Examples:
 pub(crate) enum Command {
     /// Sample a surface, write it to files and say how good it is
     #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
-    Sample(Box<Sample>),
+    Sample(Box<SampleArguments>),
     /// List the named surfaces
     Surfaces(Surfaces),
 }
@@ -68,12 +68,12 @@ Exit codes:
 
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
-pub(crate) struct Sample {
+pub(crate) struct SampleArguments {
     #[command(flatten)]
-    pub(crate) surface: Surface,
+    pub(crate) surface: SurfaceArguments,
 
     #[command(flatten)]
-    pub(crate) sampling: Sampling,
+    pub(crate) sampling: SamplingOptions,
 
     /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, distance to the nearest
     /// particle, residual, and whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given
@@ -97,7 +97,7 @@ pub(crate) struct Sample {
 
 /// What is sampled.
 #[derive(Debug, Args)]
-pub(crate) struct Surface {
+pub(crate) struct SurfaceArguments {
     /// Named surface (see `surfaces`); the first one of them by default
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,

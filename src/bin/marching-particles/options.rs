@@ -24,12 +24,12 @@ const MAX_PARTICLES: &str = "max_particles";
 
 /// How a surface is sampled, as it was asked for: lengths are not shares of the box's diagonal before there is a box.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sampling {
+pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
     lengths: Vec<(&'static str, Length)>,
 }
 
-impl Sampling {
+impl SamplingOptions {
     /// The settings in a box; what was not asked for has its default.
     ///
     /// # Panics
@@ -51,7 +51,7 @@ impl Sampling {
     }
 }
 
-impl Args for Sampling {
+impl Args for SamplingOptions {
     fn augment_args(command: Command) -> Command {
         let settings = settings();
         command.args(
@@ -64,7 +64,7 @@ impl Args for Sampling {
     }
 }
 
-impl FromArgMatches for Sampling {
+impl FromArgMatches for SamplingOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
         let mut sampling = Self::default();
         sampling.update_from_arg_matches(matches)?;

@@ -1,6 +1,6 @@
 //! Subcommand `sample`: a run with its files and its report.
 
-use crate::arguments::{BoxChoice, Sample, Surface};
+use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
 use crate::mesh::Mesh;
 use crate::options::refusal;
@@ -42,17 +42,17 @@ struct Chosen {
     has_own_box: bool,
 }
 
-pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
+pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
     let mut seconds = Seconds::default();
-    let clock = Clock::start();
+    let clock = Stopwatch::start();
     let Chosen { field, name, formula, parameters, model, bounds, has_own_box } =
         choose(&arguments.surface, arguments.quiet)?;
     if model.is_some() {
         seconds.points = clock.seconds();
     }
-    let clock = Clock::start();
+    let clock = Stopwatch::start();
     let settings_in = |fitted: &Bounds| {
         let mut settings = arguments.sampling.settings(&bounds.unwrap_or(*fitted));
         settings.bounds = bounds;
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
     let reach = run.reach();
-    let clock = Clock::start();
+    let clock = Stopwatch::start();
     let sample = run.finish().map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
@@ -75,10 +75,10 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         error => Failure::Nothing(error.to_string()),
     })?;
     seconds.quality = clock.seconds();
-    let clock = Clock::start();
+    let clock = Stopwatch::start();
     let mesh = (!mesh_formats.is_empty()).then(|| Mesh::new(&sample.mesh().into()));
     seconds.mesh = clock.seconds();
-    let clock = Clock::start();
+    let clock = Stopwatch::start();
     for (path, format) in arguments.out.iter().zip(formats) {
         write_file(path, |out| sample.write(format, out))?;
     }
@@ -156,7 +156,7 @@ fn formats<T>(
 }
 
 /// Fit to a file of points or a built-in model, if one is requested.
-fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
+fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure> {
     let model = arguments.surface.as_deref().and_then(model::find);
     let bar = bar(quiet || arguments.points.is_none() && model.is_none());
     let centres = arguments.centres.unwrap_or(DEFAULT_CENTRES);
@@ -181,7 +181,7 @@ fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
 }
 
 /// The surface that the arguments name.
-fn choose(arguments: &Surface, quiet: bool) -> Result<Chosen, Failure> {
+fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
     let given = arguments.bounds.and_then(BoxChoice::given);
     if let Some(fit) = fit(arguments, quiet)? {
         return Ok(Chosen {
@@ -265,7 +265,7 @@ fn step_to_end(run: &mut Run<Box<dyn Field>>, seconds: &mut Seconds, bar: &Progr
     let mut phase = Phase::Seeding;
     let mut steps = 0_u32;
     loop {
-        let clock = Clock::start();
+        let clock = Stopwatch::start();
         let progress = run.step(BUDGET);
         let spent = clock.seconds();
         match phase {
@@ -314,9 +314,9 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result
     written.map_err(|error| Failure::File { path: path.to_owned(), error })
 }
 
-struct Clock(Instant);
+struct Stopwatch(Instant);
 
-impl Clock {
+impl Stopwatch {
     #[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
     fn start() -> Self {
         Self(Instant::now())

@@ -8,7 +8,7 @@ use core::ops::Range;
 /// An expression and the range of bytes it was parsed from.
 #[derive(Clone, Debug)]
 pub(crate) struct Expr {
-    pub(crate) kind: Kind,
+    pub(crate) kind: ExprKind,
     pub(crate) span: Range<usize>,
 }
 
@@ -20,7 +20,7 @@ impl PartialEq for Expr {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum ExprKind {
     Number(f64),
     Constant(Constant),
     Coordinate(u8),

@@ -1,7 +1,7 @@
 //! Translation of the syntax tree into the SSA graph.
 
 use super::MAX_OPERATIONS;
-use super::ast::{Equation, Expr, Factor, Function, Kind, Sign};
+use super::ast::{Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
@@ -33,26 +33,26 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn expression(&mut self, expr: &Expr) -> Result<Id, FormulaError> {
         let id = match &expr.kind {
-            Kind::Number(value) => self.graph.constant(*value),
-            Kind::Constant(constant) => self.graph.constant(constant.value()),
-            Kind::Coordinate(axis) => self.graph.intern(Node::Coordinate(*axis)),
-            Kind::Parameter(name) => {
+            ExprKind::Number(value) => self.graph.constant(*value),
+            ExprKind::Constant(constant) => self.graph.constant(constant.value()),
+            ExprKind::Coordinate(axis) => self.graph.intern(Node::Coordinate(*axis)),
+            ExprKind::Parameter(name) => {
                 let index = self.parameters.iter().position(|known| known == name);
                 let index = index.expect("every name was resolved before the tree is built");
                 self.graph.intern(Node::Parameter(u32::try_from(index).unwrap_or(u32::MAX)))
             }
-            Kind::Negated(inner) => {
+            ExprKind::Negated(inner) => {
                 let inner = self.expression(inner)?;
                 self.graph.neg(inner)
             }
-            Kind::Sum(terms) => self.sum(terms)?,
-            Kind::Product(factors) => self.product(factors)?,
-            Kind::Power(base, exponent) => {
+            ExprKind::Sum(terms) => self.sum(terms)?,
+            ExprKind::Product(factors) => self.product(factors)?,
+            ExprKind::Power(base, exponent) => {
                 let base = self.expression(base)?;
                 let exponent = self.expression(exponent)?;
                 self.graph.pow(base, exponent)
             }
-            Kind::Call(function, arguments) => self.call(*function, arguments)?,
+            ExprKind::Call(function, arguments) => self.call(*function, arguments)?,
         };
         if self.graph.as_constant(id).is_some_and(|value| !value.is_finite()) {
             return Err(not_finite(expr));

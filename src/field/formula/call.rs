@@ -5,10 +5,10 @@
 //! sin(2πx²). Then a sign, a bracket that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean
 //! either.
 
-use super::ast::{Expr, Factor, Function, Kind};
+use super::ast::{Expr, ExprKind, Factor, Function};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::lex::slice;
-use super::parse::{Arguments, Parse, Parser, integer};
+use super::parse::{CallArguments, Parse, Parser, integer};
 use super::token::{Spanned, Token};
 use core::ops::Range;
 
@@ -34,7 +34,7 @@ impl Parser<'_> {
     pub(super) fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let exponent = self.exponent_of_value(function, &span)?;
         let (arguments, whole) = if let Token::Open(_) = self.peek().token {
-            let (Arguments { arguments, doubtful, first_doubtful }, inside) = self.arguments()?;
+            let (CallArguments { arguments, doubtful, first_doubtful }, inside) = self.arguments()?;
             // The number of arguments tells whether a comma may be decimal: `min(1,5)` can have two only, `min(x, 1,5)` two or three.
             let count = arguments.len();
             let may_be_fewer = (count - doubtful..count).any(|fewer| function.takes(fewer));
@@ -60,9 +60,9 @@ impl Parser<'_> {
                 format!("`{}` takes {wanted}, and here it has {}", function.signature(), arguments.len());
             return Err(FormulaError::new(ErrorKind::WrongArity, whole, message));
         }
-        let call = Expr { kind: Kind::Call(function, arguments), span: whole.clone() };
+        let call = Expr { kind: ExprKind::Call(function, arguments), span: whole.clone() };
         Ok(match exponent {
-            Some(exponent) => Expr { kind: Kind::Power(Box::new(call), Box::new(exponent)), span: whole },
+            Some(exponent) => Expr { kind: ExprKind::Power(Box::new(call), Box::new(exponent)), span: whole },
             None => call,
         })
     }
@@ -93,13 +93,13 @@ impl Parser<'_> {
                 if is_braced && !self.take(&Token::Close('}')) {
                     return Err(self.unexpected());
                 }
-                Expr { kind: Kind::Number(if is_negative { -value } else { value }), span: raised }
+                Expr { kind: ExprKind::Number(if is_negative { -value } else { value }), span: raised }
             }
             _ => return Ok(None),
         };
         let is_negative = match exponent.kind {
             // −0 is written with a sign, too.
-            Kind::Number(value) => value.is_sign_negative(),
+            ExprKind::Number(value) => value.is_sign_negative(),
             _ => true,
         };
         if is_negative {
@@ -128,7 +128,7 @@ impl Parser<'_> {
         }
         let operand = self.deeper(Self::beside)?;
         let is_root = matches!(function, Function::Sqrt | Function::Cbrt);
-        if self.is_ambiguous_after() || is_root && matches!(operand.kind, Kind::Product(_)) {
+        if self.is_ambiguous_after() || is_root && matches!(operand.kind, ExprKind::Product(_)) {
             return Err(bracketed(self.text, error, name, &operand.span));
         }
         Ok(operand)
@@ -139,7 +139,7 @@ impl Parser<'_> {
     fn beside(&mut self) -> Parse {
         let first = self.power()?;
         let mut is_coefficient = is_coefficient(&first.kind);
-        let mut is_coordinate = matches!(first.kind, Kind::Coordinate(_));
+        let mut is_coordinate = matches!(first.kind, ExprKind::Coordinate(_));
         let span = first.span.clone();
         let mut factors = vec![(Factor::Times, first)];
         let mut end = span.end;
@@ -154,15 +154,15 @@ impl Parser<'_> {
                 break;
             }
             let factor = self.power()?;
-            is_coordinate &= matches!(factor.kind, Kind::Coordinate(_) | Kind::Power(..));
-            is_coordinate |= is_coefficient && matches!(factor.kind, Kind::Coordinate(_));
+            is_coordinate &= matches!(factor.kind, ExprKind::Coordinate(_) | ExprKind::Power(..));
+            is_coordinate |= is_coefficient && matches!(factor.kind, ExprKind::Coordinate(_));
             is_coefficient &= self::is_coefficient(&factor.kind);
             end = factor.span.end;
             factors.push((Factor::Times, factor));
         }
         match factors.len() {
             1 => Ok(factors.remove(0).1),
-            _ => Ok(Expr { kind: Kind::Product(factors), span: span.start..end }),
+            _ => Ok(Expr { kind: ExprKind::Product(factors), span: span.start..end }),
         }
     }
 
@@ -186,6 +186,6 @@ fn bracketed(text: &str, error: FormulaError, name: &str, span: &Range<usize>) -
     FormulaError { span: error.span.start..span.end, ..error }.suggest(format!("{name}({inner})"))
 }
 
-fn is_coefficient(kind: &Kind) -> bool {
-    matches!(kind, Kind::Number(_) | Kind::Constant(_))
+fn is_coefficient(kind: &ExprKind) -> bool {
+    matches!(kind, ExprKind::Number(_) | ExprKind::Constant(_))
 }

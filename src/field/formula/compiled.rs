@@ -29,7 +29,7 @@ pub(super) struct Compiled {
     value_nodes: Vec<Id>,
     gradient_nodes: Vec<Id>,
     /// Empty until it is compiled.
-    factors: Vec<interval::Factor>,
+    factors: Vec<interval::FactorProgram>,
 }
 
 impl Compiled {
@@ -103,7 +103,7 @@ impl Compiled {
     }
 
     /// Programs for the bounds of the factors of f; there is at least one.
-    pub(super) fn factors(&mut self, values: &[f64]) -> &mut [interval::Factor] {
+    pub(super) fn factors(&mut self, values: &[f64]) -> &mut [interval::FactorProgram] {
         if self.factors.is_empty() {
             self.factors = interval::factors(&mut self.graph, self.root, self.gradient);
             for factor in &mut self.factors {

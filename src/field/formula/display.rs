@@ -1,6 +1,6 @@
 //! Plain text of a formula, which parses back to the same tree.
 
-use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
+use super::ast::{COORDINATES, Equation, Expr, ExprKind, Factor, Sign};
 use crate::math::shortest_text;
 
 /// Precedence, weakest first.
@@ -14,15 +14,17 @@ pub(super) enum Precedence {
     Atom,
 }
 
-pub(super) fn level(kind: &Kind) -> Precedence {
+pub(super) fn level(kind: &ExprKind) -> Precedence {
     match kind {
-        Kind::Sum(_) => Precedence::Sum,
-        Kind::Negated(_) => Precedence::Sign,
-        Kind::Product(_) => Precedence::Product,
-        Kind::Power(_, _) => Precedence::Power,
-        Kind::Number(_) | Kind::Constant(_) | Kind::Coordinate(_) | Kind::Parameter(_) | Kind::Call(_, _) => {
-            Precedence::Atom
-        }
+        ExprKind::Sum(_) => Precedence::Sum,
+        ExprKind::Negated(_) => Precedence::Sign,
+        ExprKind::Product(_) => Precedence::Product,
+        ExprKind::Power(_, _) => Precedence::Power,
+        ExprKind::Number(_)
+        | ExprKind::Constant(_)
+        | ExprKind::Coordinate(_)
+        | ExprKind::Parameter(_)
+        | ExprKind::Call(_, _) => Precedence::Atom,
     }
 }
 
@@ -56,15 +58,15 @@ fn write_at(out: &mut String, expr: &Expr, least: Precedence) {
 
 fn write(out: &mut String, expr: &Expr) {
     match &expr.kind {
-        Kind::Number(value) => out.push_str(&shortest_text(*value)),
-        Kind::Constant(constant) => out.push_str(constant.name()),
-        Kind::Coordinate(axis) => out.push_str(COORDINATES[usize::from(*axis)]),
-        Kind::Parameter(name) => out.push_str(name),
-        Kind::Negated(inner) => {
+        ExprKind::Number(value) => out.push_str(&shortest_text(*value)),
+        ExprKind::Constant(constant) => out.push_str(constant.name()),
+        ExprKind::Coordinate(axis) => out.push_str(COORDINATES[usize::from(*axis)]),
+        ExprKind::Parameter(name) => out.push_str(name),
+        ExprKind::Negated(inner) => {
             out.push('-');
             write_at(out, inner, Precedence::Sign);
         }
-        Kind::Sum(terms) => {
+        ExprKind::Sum(terms) => {
             for (index, (sign, term)) in terms.iter().enumerate() {
                 match (index, sign) {
                     (0, _) => {}
@@ -74,7 +76,7 @@ fn write(out: &mut String, expr: &Expr) {
                 write_at(out, term, Precedence::Sign);
             }
         }
-        Kind::Product(factors) => {
+        ExprKind::Product(factors) => {
             for (index, (relation, factor)) in factors.iter().enumerate() {
                 match (index, relation) {
                     (0, _) => {}
@@ -84,17 +86,17 @@ fn write(out: &mut String, expr: &Expr) {
                 write_at(out, factor, Precedence::Power);
             }
         }
-        Kind::Power(base, exponent) => {
+        ExprKind::Power(base, exponent) => {
             write_at(out, base, Precedence::Atom);
             out.push('^');
             let mut exponent = &**exponent;
-            while let Kind::Negated(inner) = &exponent.kind {
+            while let ExprKind::Negated(inner) = &exponent.kind {
                 out.push('-');
                 exponent = inner;
             }
             write_at(out, exponent, Precedence::Power);
         }
-        Kind::Call(function, arguments) => {
+        ExprKind::Call(function, arguments) => {
             out.push_str(function.name());
             out.push('(');
             for (index, argument) in arguments.iter().enumerate() {

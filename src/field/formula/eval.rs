@@ -64,7 +64,7 @@ pub(super) fn run(program: &Program, scratch: &mut RegisterFile, points: &[Vec3]
         }
         let cells = Cell::from_mut(&mut *file).as_slice_of_cells();
         for instruction in &program.instructions {
-            execute(instruction, &program.uniforms, &Registers { cells, stride, groups });
+            execute(instruction, &program.uniforms, &RegisterCells { cells, stride, groups });
         }
         sink.store(first, block.len(), &Outputs { program, file, stride });
         first += block.len();
@@ -83,7 +83,7 @@ fn load(register: &mut [Lanes], points: &[Vec3], axis: usize) {
 }
 
 /// The register file in cells, since the result of an instruction may be one of its operands.
-struct Registers<'a> {
+struct RegisterCells<'a> {
     cells: &'a [Cell<Lanes>],
     /// Distance between registers in the file.
     stride: usize,
@@ -91,32 +91,32 @@ struct Registers<'a> {
     groups: usize,
 }
 
-impl<'a> Registers<'a> {
+impl<'a> RegisterCells<'a> {
     fn get(&self, register: u32) -> &'a [Cell<Lanes>] {
         &self.cells[register as usize * self.stride..][..self.groups]
     }
 }
 
-fn unary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
+fn unary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
     for (out, a) in registers.get(i.out).iter().zip(registers.get(i.a)) {
         out.set(f(a.get()));
     }
 }
 
-fn binary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
+fn binary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
     for ((out, a), b) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.b)) {
         out.set(f(a.get(), b.get()));
     }
 }
 
 /// Applies `f` to the operands a and c.
-fn binary_ac(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
+fn binary_ac(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
     for ((out, a), c) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.c)) {
         out.set(f(a.get(), c.get()));
     }
 }
 
-fn ternary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
+fn ternary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
     let operands = registers.get(i.a).iter().zip(registers.get(i.b)).zip(registers.get(i.c));
     for (out, ((a, b), c)) in registers.get(i.out).iter().zip(operands) {
         out.set(f(a.get(), b.get(), c.get()));
@@ -125,7 +125,7 @@ fn ternary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, 
 
 /// Applies a long function `f` to a copy of the register, in one loop that the compiler vectorises. A function pointer,
 /// called once per register, keeps a single copy of this code.
-fn long(registers: &Registers<'_>, i: &Instruction, f: fn(&mut [f32])) {
+fn long(registers: &RegisterCells<'_>, i: &Instruction, f: fn(&mut [f32])) {
     let mut buffer = [0.0; BLOCK * LANES];
     let (chunks, _) = buffer.as_chunks_mut::<LANES>();
     for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
@@ -139,7 +139,7 @@ fn long(registers: &Registers<'_>, i: &Instruction, f: fn(&mut [f32])) {
 }
 
 /// Computes sine and cosine together.
-fn sine_cosine(registers: &Registers<'_>, i: &Instruction) {
+fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
     let mut sine = [0.0; BLOCK * LANES];
     let mut cosine = [0.0; BLOCK * LANES];
     let (chunks, _) = sine.as_chunks_mut::<LANES>();
@@ -158,7 +158,7 @@ fn sine_cosine(registers: &Registers<'_>, i: &Instruction) {
 
 /// Applies a long function of two operands; see [`long`].
 fn long_binary(
-    registers: &Registers<'_>,
+    registers: &RegisterCells<'_>,
     i: &Instruction,
     b: &dyn Fn(usize) -> Lanes,
     f: fn(&mut [f32], &[f32]),
@@ -207,7 +207,7 @@ fn integer_power(a: Lanes, n: i32) -> Lanes {
     result
 }
 
-fn execute(i: &Instruction, uniforms: &[f32], registers: &Registers<'_>) {
+fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
     let u = |operand: u32| Lanes::splat(uniforms[operand as usize]);
     match i.op {
         Op::Splat => {
@@ -279,7 +279,7 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &Registers<'_>) {
     }
 }
 
-fn execute_unary(operation: Unary, i: &Instruction, registers: &Registers<'_>) {
+fn execute_unary(operation: Unary, i: &Instruction, registers: &RegisterCells<'_>) {
     match operation {
         Unary::Neg => unary(registers, i, |a| -a),
         Unary::Square => unary(registers, i, |a| a * a),

@@ -4,7 +4,7 @@ use super::token::{Bar, Token};
 
 /// What a command stands for.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Command {
+pub(super) enum LatexCommand {
     /// Nothing: a space, or how large a thing is set.
     Nothing,
     /// Nothing, but that it makes a `|` after it one that opens or closes.
@@ -75,16 +75,16 @@ const NAMES: &[(&str, &str)] = &[
 ];
 
 /// What the command `word`, without its backslash, stands for.
-pub(super) fn command(word: &str) -> Option<Command> {
+pub(super) fn command(word: &str) -> Option<LatexCommand> {
     let token = match word {
         "," | ";" | ":" | "!" | " " | "quad" | "qquad" | "displaystyle" | "textstyle" | "big" | "Big"
-        | "bigg" | "Bigg" | "(" | ")" | "[" | "]" | "limits" => return Some(Command::Nothing),
-        "left" | "bigl" | "Bigl" | "biggl" | "Biggl" => return Some(Command::Side(Bar::Opening)),
-        "right" | "bigr" | "Bigr" | "biggr" | "Biggr" => return Some(Command::Side(Bar::Closing)),
-        "operatorname" | "mathrm" | "text" | "mathit" => return Some(Command::Word),
-        "lt" | "le" | "leq" | "leqslant" => return Some(Command::Comparison('<')),
-        "gt" | "ge" | "geq" | "geqslant" => return Some(Command::Comparison('>')),
-        "ne" | "neq" => return Some(Command::Comparison('≠')),
+        | "bigg" | "Bigg" | "(" | ")" | "[" | "]" | "limits" => return Some(LatexCommand::Nothing),
+        "left" | "bigl" | "Bigl" | "biggl" | "Biggl" => return Some(LatexCommand::Side(Bar::Opening)),
+        "right" | "bigr" | "Bigr" | "biggr" | "Biggr" => return Some(LatexCommand::Side(Bar::Closing)),
+        "operatorname" | "mathrm" | "text" | "mathit" => return Some(LatexCommand::Word),
+        "lt" | "le" | "leq" | "leqslant" => return Some(LatexCommand::Comparison('<')),
+        "gt" | "ge" | "geq" | "geqslant" => return Some(LatexCommand::Comparison('>')),
+        "ne" | "neq" => return Some(LatexCommand::Comparison('≠')),
         "frac" | "dfrac" | "tfrac" => Token::Fraction,
         "sqrt" => Token::Root,
         "cdot" | "times" | "ast" => Token::Star,
@@ -99,5 +99,5 @@ pub(super) fn command(word: &str) -> Option<Command> {
             Token::Name((*name).into())
         }
     };
-    Some(Command::Token(token))
+    Some(LatexCommand::Token(token))
 }

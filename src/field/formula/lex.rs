@@ -4,7 +4,7 @@
 //! such as `\frac` stands for. Any other character outside the language is an error that names its code point.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::latex::{self, Command};
+use super::latex::{self, LatexCommand};
 use super::token::{Bar, Spanned, Token};
 use core::ops::Range;
 
@@ -243,9 +243,9 @@ impl Lexer<'_> {
         let word = self.written(start + 1, self.next);
         let command = latex::command(&word);
         let token = match command {
-            Some(Command::Nothing) => return Ok(()),
+            Some(LatexCommand::Nothing) => return Ok(()),
             // `\left|` opens and `\right|` closes; other brackets say themselves which they do.
-            Some(Command::Side(bar)) => {
+            Some(LatexCommand::Side(bar)) => {
                 let at = self.after_spaces(self.next);
                 if self.get(at) != Some('|') {
                     return Ok(());
@@ -253,7 +253,7 @@ impl Lexer<'_> {
                 self.next = at + 1;
                 Token::Bar(bar)
             }
-            Some(Command::Word) => {
+            Some(LatexCommand::Word) => {
                 let open = self.after_spaces(self.next);
                 let Some((name, end)) = (self.get(open) == Some('{')).then(|| self.braced(open)).flatten()
                 else {
@@ -266,12 +266,12 @@ impl Lexer<'_> {
                 };
                 self.next = end;
                 match latex::command(&name) {
-                    Some(Command::Token(token)) => token,
+                    Some(LatexCommand::Token(token)) => token,
                     _ => Token::Name(name),
                 }
             }
-            Some(Command::Comparison(c)) => return Err(comparison(c, self.span(start, self.next))),
-            Some(Command::Token(token)) => token,
+            Some(LatexCommand::Comparison(c)) => return Err(comparison(c, self.span(start, self.next))),
+            Some(LatexCommand::Token(token)) => token,
             None => {
                 let span = self.span(start, self.next);
                 let message = format!("`{}` is no command that a formula can have", slice(self.text, &span));

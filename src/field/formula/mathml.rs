@@ -1,6 +1,6 @@
 //! Presentation MathML of a formula, with fractions, roots, powers and Greek letters.
 
-use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
+use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::display::{Precedence, level};
 use crate::math::shortest_text;
 use serde::Serialize;
@@ -110,15 +110,15 @@ fn at(expr: &Expr, least: Precedence) -> MathNode {
 /// `expr` as one element.
 fn expression(expr: &Expr) -> MathNode {
     match &expr.kind {
-        Kind::Number(value) => number(*value),
-        Kind::Constant(constant) => mi(constant_letter(*constant)),
-        Kind::Coordinate(axis) => mi(COORDINATES[usize::from(*axis)]),
-        Kind::Parameter(name) => parameter(name),
-        Kind::Negated(inner) => row([mo("−"), at(inner, Precedence::Product)]),
-        Kind::Sum(terms) => sum(terms),
-        Kind::Product(factors) => product(factors),
-        Kind::Power(base, exponent) => power(base, exponent),
-        Kind::Call(function, arguments) => call(*function, arguments),
+        ExprKind::Number(value) => number(*value),
+        ExprKind::Constant(constant) => mi(constant_letter(*constant)),
+        ExprKind::Coordinate(axis) => mi(COORDINATES[usize::from(*axis)]),
+        ExprKind::Parameter(name) => parameter(name),
+        ExprKind::Negated(inner) => row([mo("−"), at(inner, Precedence::Product)]),
+        ExprKind::Sum(terms) => sum(terms),
+        ExprKind::Product(factors) => product(factors),
+        ExprKind::Power(base, exponent) => power(base, exponent),
+        ExprKind::Call(function, arguments) => call(*function, arguments),
     }
 }
 
@@ -172,14 +172,14 @@ fn side_by_side(factors: &[(Factor, Expr)], before: Option<MathNode>) -> Vec<Mat
 
 fn power(base: &Expr, exponent: &Expr) -> MathNode {
     // The power of a function is written sin²(x).
-    if let (Kind::Call(function, inputs), Kind::Number(n)) = (&base.kind, &exponent.kind)
+    if let (ExprKind::Call(function, inputs), ExprKind::Number(n)) = (&base.kind, &exponent.kind)
         && let Some(name) = plain_name(*function)
         && *n >= 2.0
     {
         return row([msup(mi(name), number(*n)), mo(APPLY), arguments(inputs)]);
     }
-    let exponential = matches!(base.kind, Kind::Call(Function::Exp | Function::Log10, _));
-    let long_number = matches!(base.kind, Kind::Number(value) if shortest_text(value).contains('e'));
+    let exponential = matches!(base.kind, ExprKind::Call(Function::Exp | Function::Log10, _));
+    let long_number = matches!(base.kind, ExprKind::Number(value) if shortest_text(value).contains('e'));
     let base =
         if exponential || long_number { bracketed(expression(base)) } else { at(base, Precedence::Atom) };
     msup(base, expression(exponent))
@@ -274,9 +274,9 @@ fn plain_name(function: Function) -> Option<&'static str> {
 /// Whether the typeset `expr` begins with a digit.
 fn starts_with_digit(expr: &Expr) -> bool {
     match &expr.kind {
-        Kind::Number(_) => true,
-        Kind::Power(base, _) => starts_with_digit(base),
-        Kind::Product(factors) => starts_with_digit(&factors[0].1),
+        ExprKind::Number(_) => true,
+        ExprKind::Power(base, _) => starts_with_digit(base),
+        ExprKind::Product(factors) => starts_with_digit(&factors[0].1),
         _ => false,
     }
 }

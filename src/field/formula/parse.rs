@@ -14,7 +14,7 @@
 //! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call) says what a function without
 //! brackets is applied to.
 
-use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
+use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::lex::{slice, tokens};
 use super::token::{Bar, Spanned, Token, closing};
@@ -75,7 +75,7 @@ pub(super) struct Parser<'a> {
 pub(super) type Parse = Result<Expr, FormulaError>;
 
 /// The arguments of a function.
-pub(super) struct Arguments {
+pub(super) struct CallArguments {
     pub(super) arguments: Vec<Expr>,
     /// Number of the commas between them that may be decimal ones, and the token of the first.
     pub(super) doubtful: usize,
@@ -229,7 +229,7 @@ impl Parser<'_> {
             };
             terms.push((sign, self.term()?));
         }
-        Ok(flatten(terms, Kind::Sum))
+        Ok(flatten(terms, ExprKind::Sum))
     }
 
     fn term(&mut self) -> Parse {
@@ -246,7 +246,7 @@ impl Parser<'_> {
         if self.take(&Token::Minus) {
             let inner = self.deeper(again)?;
             let span = start..inner.span.end;
-            Ok(Expr { kind: Kind::Negated(Box::new(inner)), span })
+            Ok(Expr { kind: ExprKind::Negated(Box::new(inner)), span })
         } else if self.take(&Token::Plus) {
             self.deeper(again)
         } else {
@@ -280,7 +280,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        Ok(flatten(factors, Kind::Product))
+        Ok(flatten(factors, ExprKind::Product))
     }
 
     /// Whether the next token begins a factor that stands beside the one before it.
@@ -329,7 +329,7 @@ impl Parser<'_> {
             _ => return Ok(base),
         };
         let span = base.span.start..exponent.span.end;
-        Ok(Expr { kind: Kind::Power(Box::new(base), Box::new(exponent)), span })
+        Ok(Expr { kind: ExprKind::Power(Box::new(base), Box::new(exponent)), span })
     }
 
     fn atom(&mut self) -> Parse {
@@ -337,7 +337,7 @@ impl Parser<'_> {
         match token {
             Token::Number(value) => {
                 self.next += 1;
-                Ok(Expr { kind: Kind::Number(value), span })
+                Ok(Expr { kind: ExprKind::Number(value), span })
             }
             Token::Name(name) => {
                 self.next += 1;
@@ -354,13 +354,16 @@ impl Parser<'_> {
                 if !(self.take(&Token::Bar(Bar::Either)) || self.take(&Token::Bar(Bar::Closing))) {
                     return Err(self.unclosed(&span, "|"));
                 }
-                Ok(Expr { kind: Kind::Call(Function::Abs, vec![inner]), span: span.start..end })
+                Ok(Expr { kind: ExprKind::Call(Function::Abs, vec![inner]), span: span.start..end })
             }
             Token::Fraction => {
                 self.next += 1;
                 let (above, below) = (self.group()?, self.group()?);
                 let span = span.start..below.span.end;
-                Ok(Expr { kind: Kind::Product(vec![(Factor::Times, above), (Factor::Over, below)]), span })
+                Ok(Expr {
+                    kind: ExprKind::Product(vec![(Factor::Times, above), (Factor::Over, below)]),
+                    span,
+                })
             }
             Token::Root => {
                 self.next += 1;
@@ -411,7 +414,7 @@ impl Parser<'_> {
     }
 
     /// Parses the arguments of a function with the brackets around them; returns their span, too.
-    pub(super) fn arguments(&mut self) -> Result<(Arguments, Range<usize>), FormulaError> {
+    pub(super) fn arguments(&mut self) -> Result<(CallArguments, Range<usize>), FormulaError> {
         self.bracketed(|parser| {
             let (mut arguments, mut doubtful, mut first_doubtful) = (Vec::new(), 0, 0);
             if !matches!(parser.peek().token, Token::Close(_)) {
@@ -425,7 +428,7 @@ impl Parser<'_> {
                     arguments.push(parser.within(false, Self::sum)?);
                 }
             }
-            Ok(Arguments { arguments, doubtful, first_doubtful })
+            Ok(CallArguments { arguments, doubtful, first_doubtful })
         })
     }
 
@@ -458,10 +461,10 @@ impl Parser<'_> {
     fn name(&mut self, name: String, span: Range<usize>) -> Parse {
         if let Some(axis) = COORDINATES.iter().position(|&coordinate| coordinate == name) {
             let axis = u8::try_from(axis).unwrap_or(0);
-            return Ok(Expr { kind: Kind::Coordinate(axis), span });
+            return Ok(Expr { kind: ExprKind::Coordinate(axis), span });
         }
         if let Some(constant) = Constant::find(&name) {
-            return Ok(Expr { kind: Kind::Constant(constant), span });
+            return Ok(Expr { kind: ExprKind::Constant(constant), span });
         }
         if let Some(function) = Function::find(&name) {
             return self.call(function, span);
@@ -490,7 +493,7 @@ impl Parser<'_> {
         if !self.names.iter().any(|(known, _)| *known == name) {
             self.names.push((name.clone(), span.clone()));
         }
-        Ok(Expr { kind: Kind::Parameter(name), span })
+        Ok(Expr { kind: ExprKind::Parameter(name), span })
     }
 
     /// Function that was probably meant by `name`.
@@ -501,28 +504,28 @@ impl Parser<'_> {
 
 /// Tree of an integer; a negative one is a negated number.
 pub(super) fn integer(value: i32, span: Range<usize>) -> Expr {
-    let magnitude = Expr { kind: Kind::Number(f64::from(value).abs()), span: span.clone() };
-    if value < 0 { Expr { kind: Kind::Negated(Box::new(magnitude)), span } } else { magnitude }
+    let magnitude = Expr { kind: ExprKind::Number(f64::from(value).abs()), span: span.clone() };
+    if value < 0 { Expr { kind: ExprKind::Negated(Box::new(magnitude)), span } } else { magnitude }
 }
 
 /// The root of the given degree, or the square root.
-fn root(degree: Option<Expr>, inner: Expr) -> Kind {
+fn root(degree: Option<Expr>, inner: Expr) -> ExprKind {
     match degree {
-        None => Kind::Call(Function::Sqrt, vec![inner]),
-        Some(Expr { kind: Kind::Number(2.0), .. }) => Kind::Call(Function::Sqrt, vec![inner]),
-        Some(Expr { kind: Kind::Number(3.0), .. }) => Kind::Call(Function::Cbrt, vec![inner]),
+        None => ExprKind::Call(Function::Sqrt, vec![inner]),
+        Some(Expr { kind: ExprKind::Number(2.0), .. }) => ExprKind::Call(Function::Sqrt, vec![inner]),
+        Some(Expr { kind: ExprKind::Number(3.0), .. }) => ExprKind::Call(Function::Cbrt, vec![inner]),
         Some(degree) => {
             let span = degree.span.clone();
-            let one = Expr { kind: Kind::Number(1.0), span: span.clone() };
+            let one = Expr { kind: ExprKind::Number(1.0), span: span.clone() };
             let inverse =
-                Expr { kind: Kind::Product(vec![(Factor::Times, one), (Factor::Over, degree)]), span };
-            Kind::Power(Box::new(inner), Box::new(inverse))
+                Expr { kind: ExprKind::Product(vec![(Factor::Times, one), (Factor::Over, degree)]), span };
+            ExprKind::Power(Box::new(inner), Box::new(inverse))
         }
     }
 }
 
 /// The only item, or a `list` node of several.
-fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> Kind) -> Expr {
+fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> ExprKind) -> Expr {
     if items.len() == 1
         && let Some((_, only)) = items.pop()
     {

@@ -1,6 +1,6 @@
 //! Periods of a formula along the axes, found in its syntax tree.
 
-use super::ast::{Constant, Equation, Expr, Factor, Function, Kind, Sign};
+use super::ast::{Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use core::f64::consts::{PI, TAU};
 
 /// Largest numerator and denominator of the ratio of two periods that have a common multiple. What comes together only after
@@ -45,24 +45,24 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn along(&self, expr: &Expr) -> Along {
         match &expr.kind {
-            Kind::Number(value) => Along::Constant(Some(*value)),
-            Kind::Constant(constant) => Along::Constant(Some(Constant::value(*constant))),
-            Kind::Parameter(name) => Along::Constant((self.parameter)(name)),
-            Kind::Coordinate(axis) if *axis == self.axis => Along::Linear(1.0),
-            Kind::Coordinate(_) => Along::Constant(None),
-            Kind::Negated(inner) => negated(self.along(inner)),
-            Kind::Sum(terms) => terms.iter().fold(Along::Constant(Some(0.0)), |before, (sign, term)| {
+            ExprKind::Number(value) => Along::Constant(Some(*value)),
+            ExprKind::Constant(constant) => Along::Constant(Some(Constant::value(*constant))),
+            ExprKind::Parameter(name) => Along::Constant((self.parameter)(name)),
+            ExprKind::Coordinate(axis) if *axis == self.axis => Along::Linear(1.0),
+            ExprKind::Coordinate(_) => Along::Constant(None),
+            ExprKind::Negated(inner) => negated(self.along(inner)),
+            ExprKind::Sum(terms) => terms.iter().fold(Along::Constant(Some(0.0)), |before, (sign, term)| {
                 let term = self.along(term);
                 sum(before, if *sign == Sign::Minus { negated(term) } else { term })
             }),
-            Kind::Product(factors) => {
+            ExprKind::Product(factors) => {
                 factors.iter().fold(Along::Constant(Some(1.0)), |before, (factor, term)| {
                     let term = self.along(term);
                     product(before, if *factor == Factor::Over { inverse(term) } else { term })
                 })
             }
-            Kind::Power(base, exponent) => joined(self.along(base), self.along(exponent)),
-            Kind::Call(function, arguments) => self.call(*function, arguments),
+            ExprKind::Power(base, exponent) => joined(self.along(base), self.along(exponent)),
+            ExprKind::Call(function, arguments) => self.call(*function, arguments),
         }
     }
 

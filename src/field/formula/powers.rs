@@ -4,7 +4,7 @@
 //! and the residual |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute
 //! values are replaced by their arguments too, since their slope at 0 is infinite or jumps.
 
-use super::ast::{Equation, Expr, Factor, Function, Kind, Sign};
+use super::ast::{Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::build::build;
 use super::graph::Graph;
 
@@ -32,31 +32,33 @@ fn reduced(expr: &Expr, sole: bool) -> Expr {
     if !varies(expr) {
         return expr.clone();
     }
-    let with = |kind: Kind| Expr { kind, span: expr.span.clone() };
+    let with = |kind: ExprKind| Expr { kind, span: expr.span.clone() };
     match &expr.kind {
-        Kind::Negated(inner) => with(Kind::Negated(Box::new(reduced(inner, sole)))),
-        Kind::Power(base, exponent) => {
+        ExprKind::Negated(inner) => with(ExprKind::Negated(Box::new(reduced(inner, sole)))),
+        ExprKind::Power(base, exponent) => {
             let Some(n) = constant(exponent).filter(|&n| n > 0.0) else { return expr.clone() };
             let is_root = n.fract() != 0.0;
             if is_root && !sole {
                 return expr.clone();
             }
             let base = reduced(base, sole);
-            let Kind::Product(factors) = base.kind else { return base };
+            let ExprKind::Product(factors) = base.kind else { return base };
             if is_root && factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) {
                 return expr.clone();
             }
             // The order of a pole is kept, because it decides whether f changes its sign there.
             let factors = factors.into_iter().map(|(relation, factor)| match relation {
                 Factor::Times => (relation, factor),
-                Factor::Over => (relation, with(Kind::Power(Box::new(factor), exponent.clone()))),
+                Factor::Over => (relation, with(ExprKind::Power(Box::new(factor), exponent.clone()))),
             });
-            with(Kind::Product(factors.collect()))
+            with(ExprKind::Product(factors.collect()))
         }
-        Kind::Call(Function::Sqrt, arguments) if sole => reduced(&arguments[0], true),
-        Kind::Call(Function::Cbrt | Function::Abs, arguments) => reduced(&arguments[0], sole),
+        ExprKind::Call(Function::Sqrt, arguments) if sole => reduced(&arguments[0], true),
+        ExprKind::Call(Function::Cbrt | Function::Abs, arguments) => reduced(&arguments[0], sole),
         // Without poles only: where a pole meets a zero, the order of the zero matters.
-        Kind::Product(factors) if !factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) => {
+        ExprKind::Product(factors)
+            if !factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) =>
+        {
             let varying = factors.iter().filter(|(_, factor)| varies(factor)).count();
             product(factors, sole && varying == 1, with)
         }
@@ -89,25 +91,25 @@ fn lower_bound(expr: &Expr) -> Option<LowerBound> {
     }
     let or_zero = |bound: Option<LowerBound>| Some(bound.unwrap_or(LowerBound::Zero));
     match &expr.kind {
-        Kind::Sum(terms) => {
+        ExprKind::Sum(terms) => {
             terms.iter().try_fold(LowerBound::Zero, |sum, (sign, term)| match (sign, lower_bound(term)?) {
                 (Sign::Minus, _) => None,
                 (Sign::Plus, LowerBound::Positive) => Some(LowerBound::Positive),
                 (Sign::Plus, LowerBound::Zero) => Some(sum),
             })
         }
-        Kind::Power(base, exponent) => match constant(exponent) {
+        ExprKind::Power(base, exponent) => match constant(exponent) {
             Some(n) if n > 0.0 && n % 2.0 == 0.0 => or_zero(lower_bound(base)),
             _ => lower_bound(base),
         },
-        Kind::Call(Function::Exp, _) => Some(LowerBound::Positive),
-        Kind::Call(Function::Abs | Function::Sqrt, arguments) => or_zero(lower_bound(&arguments[0])),
+        ExprKind::Call(Function::Exp, _) => Some(LowerBound::Positive),
+        ExprKind::Call(Function::Abs | Function::Sqrt, arguments) => or_zero(lower_bound(&arguments[0])),
         _ => None,
     }
 }
 
 /// Product of the reduced `factors`, in which a repeated varying factor stands once.
-fn product(factors: &[(Factor, Expr)], sole: bool, with: impl Fn(Kind) -> Expr) -> Expr {
+fn product(factors: &[(Factor, Expr)], sole: bool, with: impl Fn(ExprKind) -> Expr) -> Expr {
     let mut kept: Vec<(Factor, Expr)> = Vec::new();
     let mut add = |relation: Factor, factor: Expr| {
         let is_repeated =
@@ -119,7 +121,7 @@ fn product(factors: &[(Factor, Expr)], sole: bool, with: impl Fn(Kind) -> Expr) 
     for (relation, factor) in factors {
         match relation {
             Factor::Times => match reduced(factor, sole).kind {
-                Kind::Product(inner) => {
+                ExprKind::Product(inner) => {
                     inner.into_iter().for_each(|(relation, factor)| add(relation, factor));
                 }
                 kind => add(Factor::Times, Expr { kind, span: factor.span.clone() }),
@@ -129,18 +131,18 @@ fn product(factors: &[(Factor, Expr)], sole: bool, with: impl Fn(Kind) -> Expr) 
     }
     match kept.len() {
         1 => kept.remove(0).1,
-        _ => with(Kind::Product(kept)),
+        _ => with(ExprKind::Product(kept)),
     }
 }
 
 /// Whether the expression depends on a coordinate.
 fn varies(expr: &Expr) -> bool {
-    any(expr, &|kind| matches!(kind, Kind::Coordinate(_)))
+    any(expr, &|kind| matches!(kind, ExprKind::Coordinate(_)))
 }
 
 /// Value of an expression without coordinates and parameters.
 fn constant(expr: &Expr) -> Option<f64> {
-    if any(expr, &|kind| matches!(kind, Kind::Coordinate(_) | Kind::Parameter(_))) {
+    if any(expr, &|kind| matches!(kind, ExprKind::Coordinate(_) | ExprKind::Parameter(_))) {
         return None;
     }
     let mut graph = Graph::default();
@@ -149,14 +151,17 @@ fn constant(expr: &Expr) -> Option<f64> {
 }
 
 /// Whether `is` holds for any node of the expression.
-fn any(expr: &Expr, is: &impl Fn(&Kind) -> bool) -> bool {
+fn any(expr: &Expr, is: &impl Fn(&ExprKind) -> bool) -> bool {
     is(&expr.kind)
         || match &expr.kind {
-            Kind::Number(_) | Kind::Constant(_) | Kind::Coordinate(_) | Kind::Parameter(_) => false,
-            Kind::Negated(inner) => any(inner, is),
-            Kind::Sum(terms) => terms.iter().any(|(_, term)| any(term, is)),
-            Kind::Product(factors) => factors.iter().any(|(_, factor)| any(factor, is)),
-            Kind::Power(base, exponent) => any(base, is) || any(exponent, is),
-            Kind::Call(_, arguments) => arguments.iter().any(|argument| any(argument, is)),
+            ExprKind::Number(_)
+            | ExprKind::Constant(_)
+            | ExprKind::Coordinate(_)
+            | ExprKind::Parameter(_) => false,
+            ExprKind::Negated(inner) => any(inner, is),
+            ExprKind::Sum(terms) => terms.iter().any(|(_, term)| any(term, is)),
+            ExprKind::Product(factors) => factors.iter().any(|(_, factor)| any(factor, is)),
+            ExprKind::Power(base, exponent) => any(base, is) || any(exponent, is),
+            ExprKind::Call(_, arguments) => arguments.iter().any(|argument| any(argument, is)),
         }
 }

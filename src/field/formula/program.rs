@@ -8,7 +8,7 @@
 
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
-use super::registers::Registers;
+use super::registers::RegisterAllocator;
 use crate::math::sort_few;
 use core::cmp::Reverse;
 
@@ -501,7 +501,7 @@ impl<'a> Compiler<'a> {
             Location::Register(register) => Some(register),
             Location::Uniform(_) => None,
         });
-        let mut real = Registers::new(self.code.len(), uses, kept);
+        let mut real = RegisterAllocator::new(self.code.len(), uses, kept);
         for (axis, coordinate) in (0..).zip(&mut self.program.coordinates) {
             *coordinate = real.is_used(axis).then(|| real.assign(axis));
         }
@@ -554,7 +554,7 @@ fn registers(instruction: &Instruction) -> impl Iterator<Item = u32> {
 }
 
 /// Instruction with its register operands replaced through `real`.
-fn substituted(instruction: &Instruction, real: &Registers) -> Instruction {
+fn substituted(instruction: &Instruction, real: &RegisterAllocator) -> Instruction {
     let [a, b, c] = register_operands(instruction.op);
     let replaced = |used: bool, operand: u32| if used { real.of(operand) } else { operand };
     Instruction {

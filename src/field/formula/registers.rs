@@ -4,7 +4,7 @@
 const NEVER: usize = usize::MAX;
 
 /// Registers for the values of a straight-line program, whose steps are asked about in their order.
-pub(super) struct Registers {
+pub(super) struct RegisterAllocator {
     /// For each value the step that uses it last, 0 for none.
     last_use: Vec<usize>,
     /// For each value its register.
@@ -13,7 +13,7 @@ pub(super) struct Registers {
     count: u32,
 }
 
-impl Registers {
+impl RegisterAllocator {
     /// No register yet for so many values. `uses` are the steps, in their order, with the values that each uses; `kept` are the values
     /// to be kept to the end.
     pub(super) fn new(

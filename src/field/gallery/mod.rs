@@ -59,7 +59,7 @@ pub struct Surface {
 
 /// Surfaces that teach the same thing.
 #[derive(Clone, Copy, Debug)]
-pub struct Group {
+pub struct SurfaceGroup {
     /// Name for the user.
     pub name: &'static str,
     /// Its surfaces, the simplest first.
@@ -111,12 +111,12 @@ const fn parameter(
 }
 
 /// The gallery. Its first surface is the default.
-pub static GROUPS: &[Group] = &[
-    Group { name: "Closed", surfaces: closed::SURFACES },
-    Group { name: "Parts", surfaces: many::SURFACES },
-    Group { name: "Singular", surfaces: singular::SURFACES },
-    Group { name: "Periodic", surfaces: periodic::SURFACES },
-    Group { name: "Open", surfaces: open::SURFACES },
+pub static GROUPS: &[SurfaceGroup] = &[
+    SurfaceGroup { name: "Closed", surfaces: closed::SURFACES },
+    SurfaceGroup { name: "Parts", surfaces: many::SURFACES },
+    SurfaceGroup { name: "Singular", surfaces: singular::SURFACES },
+    SurfaceGroup { name: "Periodic", surfaces: periodic::SURFACES },
+    SurfaceGroup { name: "Open", surfaces: open::SURFACES },
 ];
 
 /// All surfaces of the gallery, group by group.

@@ -28,7 +28,7 @@ use glam::{DVec3, Vec3};
 #[derive(Clone, Debug)]
 pub struct RbfField {
     data: RbfData,
-    tree: tree::Tree,
+    tree: tree::CellTree,
 }
 
 impl RbfField {
@@ -39,7 +39,7 @@ impl RbfField {
     /// If `data` fails [`RbfData::check`].
     pub fn new(data: RbfData) -> Result<Self, DataError> {
         data.check()?;
-        let tree = tree::Tree::new(&data);
+        let tree = tree::CellTree::new(&data);
         Ok(Self { data, tree })
     }
 

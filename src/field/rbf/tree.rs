@@ -47,7 +47,7 @@ const LEAF: u32 = 1 << 31;
 
 /// A cell that is split into eight.
 #[derive(Clone, Debug)]
-struct Branch {
+struct BranchCell {
     middle: [f32; 3],
     /// Index of each octant, with the bit [`LEAF`] for a leaf, or [`NONE`] until a point falls into it.
     octants: [u32; 8],
@@ -58,7 +58,7 @@ struct Branch {
 
 /// A cell that is not split.
 #[derive(Clone, Debug)]
-struct Leaf {
+struct LeafCell {
     middle: [f32; 3],
     half: f32,
     inverse: f32,
@@ -70,18 +70,18 @@ struct Leaf {
 
 /// Octree of the cells made so far.
 #[derive(Clone, Debug)]
-pub(super) struct Tree {
+pub(super) struct CellTree {
     centres: Vec<Centre>,
     origin: [f32; 3],
     scale: f32,
     taylor: Taylor,
-    branches: Vec<Branch>,
-    leaves: Vec<Leaf>,
+    branches: Vec<BranchCell>,
+    leaves: Vec<LeafCell>,
     /// Index of the root cell, with the bit [`LEAF`] for a leaf.
     root: u32,
 }
 
-impl Tree {
+impl CellTree {
     pub(super) fn new(data: &RbfData) -> Self {
         let frame = CentredFrame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
@@ -123,7 +123,7 @@ impl Tree {
         let mut far = Box::new(*far);
         self.taylor.expand(&mut far, middle, half, &away);
         if near.len() > MAX_NEAR && close && half > MIN_HALF_WIDTH {
-            self.branches.push(Branch {
+            self.branches.push(BranchCell {
                 middle: middle.as_vec3().to_array(),
                 octants: [NONE; 8],
                 half,
@@ -133,7 +133,7 @@ impl Tree {
             self.branches.len() as u32 - 1
         } else {
             let near: Vec<Centre> = near.iter().map(|&j| self.centres[j as usize]).collect();
-            self.leaves.push(Leaf {
+            self.leaves.push(LeafCell {
                 middle: middle.as_vec3().to_array(),
                 half: half as f32,
                 inverse: (1.0 / half) as f32,
@@ -197,7 +197,7 @@ impl Tree {
                 }
                 last = self.leaf(first);
             }
-            let Leaf { middle, half, inverse, far, near, centres } = &self.leaves[last];
+            let LeafCell { middle, half, inverse, far, near, centres } = &self.leaves[last];
             let together = (1..count)
                 .find(|&lane| !contains(middle, *half, &local.map(|lanes| lanes.0[lane])))
                 .unwrap_or(count);

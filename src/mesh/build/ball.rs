@@ -46,10 +46,10 @@ impl BallPoints {
 }
 
 /// A number for each point of a ball.
-type Row = [f32; MOST];
+type PerPoint = [f32; MOST];
 
 /// Four numbers of a row.
-fn four(row: &Row, block: usize) -> Vec4 {
+fn four(row: &PerPoint, block: usize) -> Vec4 {
     Vec4::from_array(row.as_chunks().0[block])
 }
 
@@ -60,10 +60,10 @@ pub(super) struct Ball {
     /// The points, by their place in the tree.
     index: [u32; MOST],
     /// Offset from the centre and normal.
-    point: [Row; 6],
+    point: [PerPoint; 6],
     /// Place in the tangent plane, and the true distance, squared.
-    flat: [Row; 2],
-    distance_sq: Row,
+    flat: [PerPoint; 2],
+    distance_sq: PerPoint,
     /// Squared distance of the nearest point, whatever its sheet.
     nearest_sq: f32,
 }

@@ -35,7 +35,7 @@ const SLICE: usize = 2048;
 
 /// How points are joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options<'a> {
+pub struct MeshOptions<'a> {
     /// Most edges of a hole that is filled. A longer loop is taken for a border of the surface.
     pub largest_hole: usize,
     /// The box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be
@@ -43,7 +43,7 @@ pub struct Options<'a> {
     pub bounds: Option<&'a Bounds>,
 }
 
-impl Default for Options<'_> {
+impl Default for MeshOptions<'_> {
     fn default() -> Self {
         Self { largest_hole: 24, bounds: None }
     }
@@ -57,7 +57,7 @@ pub struct Triangulation {
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles.
     pub topology: Topology,
-    /// Borders of at most [`Options::largest_hole`] edges that are not at the box: places where no manifold could be had.
+    /// Borders of at most [`MeshOptions::largest_hole`] edges that are not at the box: places where no manifold could be had.
     /// Each starts at its smallest vertex and has the mesh on its left.
     pub unfilled: Vec<Vec<u32>>,
     /// Points in no triangle, in ascending order: those without a finite position or a normal, those at the place of another
@@ -94,18 +94,22 @@ impl Triangulation {
 ///
 /// If the slices differ in length, or there are 2³¹ points or more.
 #[must_use]
-pub fn triangulate(position: &[Vec3], normal: &[Vec3], options: &Options) -> Triangulation {
+pub fn triangulate(position: &[Vec3], normal: &[Vec3], options: &MeshOptions) -> Triangulation {
     slices::complete(in_slices(position, normal, options))
 }
 
 /// [`triangulate`] in slices of work. The last few look at all points and triangles, for some 50 ns each.
-pub(crate) async fn in_slices(position: &[Vec3], normal: &[Vec3], options: &Options<'_>) -> Triangulation {
+pub(crate) async fn in_slices(
+    position: &[Vec3],
+    normal: &[Vec3],
+    options: &MeshOptions<'_>,
+) -> Triangulation {
     assert_eq!(position.len(), normal.len(), "every point has a normal");
     assert!(position.len() < 1 << 31, "indices of points have 31 bits");
     let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
     let mut usable: Vec<bool> = (0..position.len()).map(is_usable).collect();
     loop {
-        let points = Points::new(position, normal, &usable).await;
+        let points = JoinablePoints::new(position, normal, &usable).await;
         let stars = Stars::new(&points.tree, &points.normal).await;
         if stars.twins.is_empty() {
             return points.triangulate(&stars, position.len(), options).await;
@@ -118,13 +122,13 @@ pub(crate) async fn in_slices(position: &[Vec3], normal: &[Vec3], options: &Opti
 }
 
 /// The points that can be joined, in tree order.
-struct Points {
+struct JoinablePoints {
     tree: Tree,
     /// Unit normals.
     normal: Vec<Vec3>,
 }
 
-impl Points {
+impl JoinablePoints {
     async fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool]) -> Self {
         let points: Vec<(Vec3, u32)> =
             position.iter().copied().zip(0..).filter(|&(_, i)| usable[i as usize]).collect();
@@ -133,7 +137,12 @@ impl Points {
         Self { tree, normal }
     }
 
-    async fn triangulate(&self, stars: &Stars, point_count: usize, options: &Options<'_>) -> Triangulation {
+    async fn triangulate(
+        &self,
+        stars: &Stars,
+        point_count: usize,
+        options: &MeshOptions<'_>,
+    ) -> Triangulation {
         let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
         let agreed = patch.len();
         let borders = Borders { largest_hole: options.largest_hole, bounds: options.bounds };

@@ -6,7 +6,7 @@ use core::fmt;
 
 /// File format that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum InputFormat {
     /// Polygon file format, text or binary.
     Ply,
     /// Wavefront object.
@@ -19,7 +19,7 @@ pub enum Format {
     Xyz,
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for InputFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Ply => "PLY",
@@ -30,7 +30,7 @@ impl fmt::Display for Format {
     }
 }
 
-impl Format {
+impl InputFormat {
     /// Extension of `name`, if it is that of another format.
     pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
         let extension = extension(name);
@@ -85,21 +85,21 @@ const OBJ_WORDS: [&[u8]; 14] =
 /// # Errors
 ///
 /// [`ReadError::Unknown`] with the name of the format, as far as it is known, and an advice.
-pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
+pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if bytes.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace)) {
-        return Ok(Format::Ply);
+        return Ok(InputFormat::Ply);
     }
     if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
         return Err(ReadError::Unknown { found, advice });
     }
     // Many programs begin a binary STL file with `solid`, like a text one, so the size decides.
     if stl_size(bytes).is_some_and(|size| size == bytes.len() as u64) {
-        return Ok(Format::StlBinary);
+        return Ok(InputFormat::StlBinary);
     }
     let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
     if looked_at.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c)) {
         if extension(name) == "stl" || bytes.starts_with(b"solid") {
-            return Ok(Format::StlBinary);
+            return Ok(InputFormat::StlBinary);
         }
         return Err(ReadError::Unknown { found: "a binary file of no known kind", advice: CHOOSE });
     }
@@ -114,22 +114,22 @@ pub(super) fn stl_size(bytes: &[u8]) -> Option<u64> {
 }
 
 /// Format of a text file.
-fn of_text(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
+fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#") && !line.starts_with(b"//"));
     let line = first.unwrap_or_default();
     let word = words(line).next().unwrap_or_default();
     if word.eq_ignore_ascii_case(b"solid") {
-        return Ok(Format::StlText);
+        return Ok(InputFormat::StlText);
     }
     if OBJ_WORDS.contains(&word) {
-        return Ok(Format::Obj);
+        return Ok(InputFormat::Obj);
     }
     if xyz::words(line).next().is_some_and(|word| number(word).is_some())
-        || xyz::Columns::named(line).is_some()
+        || xyz::ColumnLayout::named(line).is_some()
     {
-        return Ok(Format::Xyz);
+        return Ok(InputFormat::Xyz);
     }
     let unknown = |found, advice| Err(ReadError::Unknown { found, advice });
     if [&b"OFF"[..], b"NOFF", b"COFF", b"STOFF"].contains(&word) {
@@ -146,9 +146,9 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     }
     // If the first line may be faulty, the error of its reader helps more than "no known kind".
     match extension(name).as_str() {
-        "obj" => Ok(Format::Obj),
-        "stl" => Ok(Format::StlText),
-        "xyz" | "txt" | "csv" | "asc" | "pts" => Ok(Format::Xyz),
+        "obj" => Ok(InputFormat::Obj),
+        "stl" => Ok(InputFormat::StlText),
+        "xyz" | "txt" | "csv" | "asc" | "pts" => Ok(InputFormat::Xyz),
         _ if line.is_empty() => unknown("a text file without content", CHOOSE),
         _ => unknown("a text file of no known kind", CHOOSE),
     }

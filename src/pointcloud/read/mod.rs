@@ -13,7 +13,7 @@ mod ply_header;
 mod stl;
 mod xyz;
 
-pub use format::Format;
+pub use format::InputFormat;
 pub use mesh::FileMesh;
 
 use crate::field::model::MAX_FILE_BYTES;
@@ -91,7 +91,7 @@ pub enum ReadError {
     #[error("there are no points in this {format} file; choose one that holds points")]
     NoPoints {
         /// Format that the file was read as.
-        format: Format,
+        format: InputFormat,
     },
 }
 
@@ -144,7 +144,7 @@ trait RowReader {
 
 /// Reader of a file whose header has been read.
 pub struct Reader {
-    format: Format,
+    format: InputFormat,
     input: Input,
     rows: Box<dyn RowReader>,
     mesh: FileMesh,
@@ -163,11 +163,11 @@ impl Reader {
         let mut input = Input::new(bytes);
         let mut mesh = FileMesh::default();
         let rows: Box<dyn RowReader> = match format {
-            Format::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
-            Format::Obj => Box::new(obj::Obj::default()),
-            Format::StlText => Box::new(stl::Text::default()),
-            Format::StlBinary => Box::new(stl::Binary::new(&mut input)?),
-            Format::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
+            InputFormat::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
+            InputFormat::Obj => Box::new(obj::Obj::default()),
+            InputFormat::StlText => Box::new(stl::Text::default()),
+            InputFormat::StlBinary => Box::new(stl::BinaryStl::new(&mut input)?),
+            InputFormat::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
         };
         if let Some(extension) = format.contradicting_extension(name) {
             mesh.warnings.push(format!(
@@ -179,7 +179,7 @@ impl Reader {
 
     /// Detected format.
     #[must_use]
-    pub fn format(&self) -> Format {
+    pub fn format(&self) -> InputFormat {
         self.format
     }
 

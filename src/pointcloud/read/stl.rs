@@ -63,13 +63,13 @@ impl RowReader for Text {
 
 /// Reader of the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three
 /// corners and two bytes of attributes.
-pub(super) struct Binary {
+pub(super) struct BinaryStl {
     table: IndexTable,
     row: u64,
     count: u64,
 }
 
-impl Binary {
+impl BinaryStl {
     pub(super) fn new(input: &mut Input) -> Result<Self, ReadError> {
         let header = input.slice(0..input.remaining().min(STL_HEADER)).to_vec();
         let Some(size) = stl_size(&header) else {
@@ -90,7 +90,7 @@ impl Binary {
     }
 }
 
-impl RowReader for Binary {
+impl RowReader for BinaryStl {
     fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let byte = input.offset() as u64;
         if self.row == self.count {

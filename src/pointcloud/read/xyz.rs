@@ -15,7 +15,7 @@ const UNIT: core::ops::Range<f64> = 0.9..1.1;
 const UNIT_SHARE: f64 = 0.9;
 
 /// Columns of a line that hold the components of a point.
-pub(super) struct Columns {
+pub(super) struct ColumnLayout {
     /// Column of each component.
     index: [usize; 6],
     /// Number of columns.
@@ -25,7 +25,7 @@ pub(super) struct Columns {
     named: bool,
 }
 
-impl Columns {
+impl ColumnLayout {
     /// Columns by a header; `None` if the line does not name x, y and z.
     pub(super) fn named(line: &[u8]) -> Option<Self> {
         let found = NAMES.map(|name| {
@@ -47,7 +47,7 @@ impl Columns {
 
 #[derive(Default)]
 pub(super) struct Xyz {
-    columns: Option<Columns>,
+    columns: Option<ColumnLayout>,
     /// Number of rows whose columns 4 to 6 may be a unit normal.
     unit_normals: usize,
 }
@@ -118,11 +118,11 @@ impl RowReader for Xyz {
         let columns = match &self.columns {
             Some(columns) => columns,
             None => {
-                if let Some(columns) = Columns::named(line) {
+                if let Some(columns) = ColumnLayout::named(line) {
                     self.columns = Some(columns);
                     return Ok(true);
                 }
-                self.columns.insert(Columns::usual(count))
+                self.columns.insert(ColumnLayout::usual(count))
             }
         };
         if count < 3 {

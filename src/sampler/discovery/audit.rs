@@ -13,7 +13,7 @@ use crate::sampler::discovery::sheets::{
     ExactPoint, MOST_TRIED_BY_SEGMENTS, Prover, Segment, TOGETHER, value_at,
 };
 use crate::sampler::probe::Probe;
-use crate::sampler::sheet::{Pair, SheetRule};
+use crate::sampler::sheet::{PointPair, SheetRule};
 use crate::spatial::tree::Tree;
 use glam::DVec3;
 
@@ -170,7 +170,7 @@ impl Audit {
         let seen = &mut Probe::new(&mut *prover.field, probe.memory);
         let seems_held = near.iter().take(TOGETHER).any(|&j| {
             let offset = particles.position[j] - seed.position;
-            let pair = Pair { offset, normal: seed.normal, other: particles.normal[j] };
+            let pair = PointPair { offset, normal: seed.normal, other: particles.normal[j] };
             pair.faces_one_way() && rule.is_one_sheet(seen, seed.position, pair)
         });
         if seems_held {

@@ -13,7 +13,7 @@ use crate::sampler::discovery::sheets::{ExactPoint, MOST_TRIED_BY_SEGMENTS, Prov
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{MAX_NEWTON_STEPS, Tolerance};
-use crate::sampler::sheet::{Pair, SheetRule};
+use crate::sampler::sheet::{PointPair, SheetRule};
 use glam::{DVec3, Vec3};
 
 /// Units of work that a witness counts for.
@@ -175,7 +175,7 @@ impl ComponentSearch {
             || near.iter().take(TOGETHER).any(|&j| {
                 let j = j as usize;
                 let offset = particles.position[j] - position;
-                rule.is_one_sheet(probe, position, Pair { offset, normal, other: particles.normal[j] })
+                rule.is_one_sheet(probe, position, PointPair { offset, normal, other: particles.normal[j] })
             })
     }
 

@@ -9,7 +9,7 @@ use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
 use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
 use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Accuracy, MAX_NEWTON_STEPS, Tolerance, tolerance};
+use crate::sampler::projection::{MAX_NEWTON_STEPS, ResidualLimits, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
 /// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
@@ -262,7 +262,7 @@ fn project(
 ) {
     let coarse = Tolerance {
         residual: (1e-4 * spacing).max(ulps(bounds)),
-        ..tolerance(0.0, Accuracy::UNLIMITED, out.gradient_scale)
+        ..tolerance(0.0, ResidualLimits::UNLIMITED, out.gradient_scale)
     };
     let mut normal = [Vec3::ZERO; BATCH];
     let mut ok = [false; BATCH];
@@ -303,12 +303,12 @@ fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
 
 impl Survey {
     /// How near this surface particles have to be.
-    pub(crate) fn accuracy(&self) -> Accuracy {
+    pub(crate) fn residual_limits(&self) -> ResidualLimits {
         /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
         /// fifth of the way there.
         const SHARE: f32 = 0.1;
         let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
-        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
+        ResidualLimits { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
     }
 
     /// Sheets nearer to each other than this are not told apart.
@@ -319,7 +319,7 @@ impl Survey {
     /// What counts as being on the surface before there is a radius.
     pub(crate) fn tolerance(&self) -> Tolerance {
         let residual = self.residual.max(self.resolution);
-        Tolerance { residual, ..tolerance(0.0, Accuracy::UNLIMITED, self.gradient_scale) }
+        Tolerance { residual, ..tolerance(0.0, ResidualLimits::UNLIMITED, self.gradient_scale) }
     }
 
     /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
@@ -421,7 +421,7 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
     const STEPS: u32 = 3 * MAX_NEWTON_STEPS;
     /// Longest way of a point, in residuals of the survey.
     const REACH: f32 = 8.0;
-    let residual = out.accuracy().residual(f32::INFINITY);
+    let residual = out.residual_limits().residual(f32::INFINITY);
     let reach = REACH * out.residual;
     out.residual = residual.min(out.residual);
     let least = out.tolerance().min_gradient;

@@ -50,7 +50,7 @@ pub(crate) struct FrontSetup<'a> {
 impl FrontSetup<'_> {
     /// How particles with radii in this range tell sheets apart.
     pub(crate) fn rule(&self, radii: RadiusRange) -> SheetRule {
-        SheetRule::new(self.survey.crowding, radii, self.survey.accuracy())
+        SheetRule::new(self.survey.crowding, radii, self.survey.residual_limits())
     }
 }
 

@@ -8,7 +8,7 @@ use super::walls::Walls;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::mesh::build::{Options, Triangulation, triangulate};
+use crate::mesh::build::{MeshOptions, Triangulation, triangulate};
 use crate::mesh::half_edge::HalfEdges;
 use crate::particles::Particles;
 use glam::Vec3;
@@ -58,7 +58,7 @@ pub(super) fn join(
     let radius = particles.radius.first().copied().unwrap_or(0.0);
     let spacing = 2.0 * radius;
     let grown = border::grown(bounds, f64::from(radius));
-    let options = Options { bounds: Some(&grown), ..Options::default() };
+    let options = MeshOptions { bounds: Some(&grown), ..MeshOptions::default() };
     let joined = triangulate(&particles.position, &particles.normal, &options);
     judge_triangles(&joined, particles, bounds)?;
     let mesh =

@@ -9,7 +9,7 @@ use super::refusal::Refusal;
 use super::{Count, Refinement, Target};
 use crate::differential::{Curvature, curvatures};
 use crate::math::{Bounds, Forest};
-use crate::mesh::build::{Options, triangulate};
+use crate::mesh::build::{MeshOptions, triangulate};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
@@ -26,7 +26,7 @@ const COPIES_PER_UNIT: usize = 16;
 
 /// A component with a front that is good enough.
 #[derive(Clone, Debug)]
-struct Component {
+struct AcceptedComponent {
     refinement: Refinement,
     area: f64,
     /// Particles that it should have, relative to those of the others.
@@ -64,7 +64,7 @@ impl SurfaceFacts<'_> {
 /// The fronts from which a refinement begins, one after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CoarseFronts {
-    components: Vec<Component>,
+    components: Vec<AcceptedComponent>,
     /// A stack: the next one to try is at its end.
     candidates: Vec<Candidate>,
     /// The particles of the first front, once another one begins.
@@ -160,7 +160,7 @@ impl CoarseFronts {
             let weight = area * sizing.map_or(1.0, |sizing| density(probe, sizing, &part.position));
             // A lone component hands its levels on by itself.
             let particles = if self.are_several { part } else { Particles::default() };
-            self.components.push(Component { refinement, area, weight, particles });
+            self.components.push(AcceptedComponent { refinement, area, weight, particles });
         }
         self.candidates.reverse();
         if !self.candidates.is_empty() {
@@ -205,7 +205,7 @@ fn split(particles: &Particles) -> Vec<Particles> {
     // A child is on the component of its parent, which comes before it.
     let links = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i));
     let mut components = Forest::with_links(links.collect());
-    let joined = triangulate(&particles.position, &particles.normal, &Options::default());
+    let joined = triangulate(&particles.position, &particles.normal, &MeshOptions::default());
     for [a, b, c] in joined.triangles {
         for other in [b, c] {
             components.join(a, other);
@@ -247,7 +247,7 @@ fn density(probe: &mut Probe, sizing: &Sizing, points: &[Vec3]) -> f64 {
 /// The refinement of all components.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
-    components: Vec<Component>,
+    components: Vec<AcceptedComponent>,
     /// Number of levels after the one under way.
     to_come: u32,
     /// The finished level of all components, while it is put together.
@@ -264,7 +264,7 @@ struct Joint {
 }
 
 impl Components {
-    fn new(mut components: Vec<Component>, target: Target) -> Self {
+    fn new(mut components: Vec<AcceptedComponent>, target: Target) -> Self {
         if let Count::Total(count) = target.count
             && components.len() > 1
         {
@@ -306,7 +306,7 @@ impl Components {
         let mut first = self.components.first().map_or(0, |component| component.particles.len() as u32);
         let mut all =
             self.components.first_mut().map(|c| mem::take(&mut c.refinement.corners)).unwrap_or_default();
-        for Component { refinement, particles, .. } in self.components.iter().skip(1) {
+        for AcceptedComponent { refinement, particles, .. } in self.components.iter().skip(1) {
             all.extend(refinement.corners.iter().map(|corner| first + corner));
             first += particles.len() as u32;
         }
@@ -348,7 +348,7 @@ impl Components {
                 continue;
             }
             // Those that are coarser catch up first.
-            let pending = |component: &&mut Component| component.refinement.pending();
+            let pending = |component: &&mut AcceptedComponent| component.refinement.pending();
             let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
             let Some(component) = next.max_by_key(pending) else { break };
             if component.refinement.pending() < self.to_come {
@@ -368,11 +368,13 @@ impl Components {
 
 impl Joint {
     /// Goes on for a slice. Returns whether all particles are there.
-    fn step(&mut self, components: &[Component]) -> bool {
+    fn step(&mut self, components: &[AcceptedComponent]) -> bool {
         if self.particles.is_empty() {
             self.particles.reserve(components.iter().map(|component| component.particles.len()).sum());
         }
-        let Some(Component { particles: own, .. }) = components.get(self.component) else { return true };
+        let Some(AcceptedComponent { particles: own, .. }) = components.get(self.component) else {
+            return true;
+        };
         let first = (self.particles.len() - self.next) as u32;
         let end = own.len().min(self.next + SLICE);
         for i in self.next..end {
@@ -424,7 +426,7 @@ mod tests {
         let refinement = Refinement::new(&mut probe, &known, &bounds, target(1)).expect("a good front");
         let area = refinement.area();
         let mut fronts = CoarseFronts {
-            components: vec![Component { refinement, area, weight: area, particles: known }],
+            components: vec![AcceptedComponent { refinement, area, weight: area, particles: known }],
             are_several: true,
             ..CoarseFronts::default()
         };

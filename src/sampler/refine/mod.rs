@@ -40,7 +40,7 @@ use crate::mesh::half_edge::{NONE, Stage, Subdivision};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
-use net::{BLOCK, Block, Ground, Net, Springs};
+use net::{BLOCK, Ground, MovedBlock, Net, Springs};
 use recipe::{LevelFacts, Pass, Recipe, TUNING};
 use rings::Rings;
 use surgery::{Aim, Surgeon};
@@ -123,7 +123,7 @@ struct Goals {
 /// Memory that the passes of all levels reuse.
 #[derive(Clone, Debug, Default)]
 struct Memory {
-    block: Block,
+    block: MovedBlock,
     surgeon: Surgeon,
     /// Particles near defects, in ascending order.
     near: Vec<u32>,
@@ -169,13 +169,13 @@ impl Refinement {
         bounds: &Bounds,
         target: Target,
     ) -> Result<Self, Refusal> {
-        let mut block = Block::default();
+        let mut block = MovedBlock::default();
         let mut ground = Ground { probe, block: &mut block };
         let net = coarse::join(&mut ground, particles, bounds, target.halvings)?;
         Ok(Self::of_layer(net, block, target))
     }
 
-    fn of_layer(net: Net, block: Block, target: Target) -> Self {
+    fn of_layer(net: Net, block: MovedBlock, target: Target) -> Self {
         let shape = Shape { euler: net.mesh.euler(), has_border: net.has_border(), wanted: 0.0 };
         let mut refinement = Self {
             target,

@@ -43,12 +43,12 @@ impl Springs {
 /// The field, with the memory that it takes to evaluate it at blocks of particles.
 pub(super) struct Ground<'a, 'field> {
     pub(super) probe: &'a mut Probe<'field>,
-    pub(super) block: &'a mut Block,
+    pub(super) block: &'a mut MovedBlock,
 }
 
 /// Particles that have been moved and not yet been brought back onto the surface.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Block {
+pub(super) struct MovedBlock {
     which: Vec<u32>,
     /// Where they were before the move.
     before: Vec<Vec3>,
@@ -59,7 +59,7 @@ pub(super) struct Block {
     pub(super) refused: Vec<u32>,
 }
 
-impl Block {
+impl MovedBlock {
     fn clear(&mut self) {
         self.which.clear();
         self.before.clear();
@@ -238,7 +238,7 @@ impl Net {
     /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
     /// planes of the box on which they lie. Those that could not be go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32) {
-        let Block { which, before, points, refused, .. } = &mut *ground.block;
+        let MovedBlock { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
         for first in (0..points.len()).step_by(BATCH) {
             let range = first..points.len().min(first + BATCH);

@@ -33,7 +33,7 @@ use crate::particles::Particles;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{Accuracy, Tolerance};
+use crate::sampler::projection::{ResidualLimits, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
 use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
 use crate::sampler::relaxation::stepper::{Stepper, batches};
@@ -84,7 +84,7 @@ pub(crate) enum RepulsionLaw {
     /// For particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
     /// For particles of many radii.
-    Overlap { accuracy: Accuracy, min_gradient: f32 },
+    Overlap { residual_limits: ResidualLimits, min_gradient: f32 },
 }
 
 impl Default for RepulsionLaw {
@@ -225,8 +225,8 @@ impl Relaxation {
             (RepulsionLaw::Gaussian { radius, tolerance }, _) => {
                 self.run(&Gaussian::new(radius, tolerance), probe, pairs, particles, budget)
             }
-            (RepulsionLaw::Overlap { accuracy, min_gradient }, Some(sizing)) => {
-                let law = Overlap { sizing, accuracy, min_gradient };
+            (RepulsionLaw::Overlap { residual_limits, min_gradient }, Some(sizing)) => {
+                let law = Overlap { sizing, residual_limits, min_gradient };
                 self.run(&law, probe, pairs, particles, budget)
             }
             (RepulsionLaw::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),

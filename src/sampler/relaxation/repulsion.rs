@@ -9,7 +9,7 @@ use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Accuracy, Tolerance};
+use crate::sampler::projection::{ResidualLimits, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
@@ -193,7 +193,7 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
     /// How near the surface particles have to be.
-    pub(crate) accuracy: Accuracy,
+    pub(crate) residual_limits: ResidualLimits,
     /// Smallest length of a gradient that has a direction.
     pub(crate) min_gradient: f32,
 }
@@ -253,7 +253,7 @@ impl Repulsion for Overlap<'_> {
         let mut position = [Vec3::ZERO; BATCH];
         let mut descents = CurvatureDescents {
             radius: [0.0; BATCH],
-            accuracy: self.accuracy,
+            residual_limits: self.residual_limits,
             trust,
             needs_curvature: true,
             hessian: [Sym3::default(); BATCH],
@@ -293,7 +293,7 @@ const RADIUS_LASTS: f32 = 0.1;
 /// A batch of descents to the surface that notes the curvature at each evaluation.
 struct CurvatureDescents {
     radius: [f32; BATCH],
-    accuracy: Accuracy,
+    residual_limits: ResidualLimits,
     trust: f32,
     /// Whether evaluations include the Hessian.
     needs_curvature: bool,
@@ -307,7 +307,7 @@ impl Descents for CurvatureDescents {
     fn of(&self, i: usize) -> Descent {
         let radius = self.radius[i];
         Descent {
-            residual: self.accuracy.residual(radius),
+            residual: self.residual_limits.residual(radius),
             reach: MAX_MOVE * radius,
             trust: self.trust * radius,
         }

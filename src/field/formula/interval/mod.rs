@@ -13,7 +13,7 @@ mod rows;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
-use super::registers::Registers;
+use super::registers::RegisterAllocator;
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
 use range::Range;
@@ -21,7 +21,7 @@ use rows::{BOXES, Row};
 
 /// Operation of a step. Its operands a, b and c are rows unless stated otherwise.
 #[derive(Clone, Copy, Debug)]
-enum Op {
+enum BoxOp {
     /// Uniform a over every box.
     Fill,
     Unary(Unary),
@@ -35,8 +35,8 @@ enum Op {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Step {
-    op: Op,
+struct BoxStep {
+    op: BoxOp,
     out: u32,
     operands: [u32; 3],
 }
@@ -48,7 +48,7 @@ pub(super) struct BoxProgram {
     uniform_nodes: Vec<Node>,
     /// Current bounds of the uniform nodes. They contain the rounding errors, so they are seldom single numbers.
     uniforms: Vec<Range>,
-    steps: Vec<Step>,
+    steps: Vec<BoxStep>,
     /// Rows of the results.
     outputs: Vec<u32>,
     /// The first three are the coordinates.
@@ -87,19 +87,19 @@ impl BoxProgram {
                 k += 1;
             });
             let op = match node {
-                Node::Unary(operation, _) => Op::Unary(operation),
-                Node::Power(_, n) => Op::Power(n),
-                Node::Binary(_, _, _) if scaled => Op::Scale,
-                Node::Binary(operation, _, _) => Op::Binary(operation),
-                Node::Smin(_, _, _) => Op::Smin,
-                Node::IfLe(_, _, _) => Op::IfLe,
-                Node::IfGt(_, _, _) => Op::IfGt,
+                Node::Unary(operation, _) => BoxOp::Unary(operation),
+                Node::Power(_, n) => BoxOp::Power(n),
+                Node::Binary(_, _, _) if scaled => BoxOp::Scale,
+                Node::Binary(operation, _, _) => BoxOp::Binary(operation),
+                Node::Smin(_, _, _) => BoxOp::Smin,
+                Node::IfLe(_, _, _) => BoxOp::IfLe,
+                Node::IfGt(_, _, _) => BoxOp::IfGt,
                 Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => {
                     unreachable!("dealt with above")
                 }
             };
             row[id] = next;
-            program.steps.push(Step { op, out: next, operands });
+            program.steps.push(BoxStep { op, out: next, operands });
             next += 1;
         }
         for &id in outputs {
@@ -113,7 +113,7 @@ impl BoxProgram {
     /// Virtual row of a node. A uniform node is broadcast into a row.
     fn row_of(&mut self, graph: &Graph, id: Id, uniform: &[u32], row: &mut [u32], next: &mut u32) -> u32 {
         if graph.is_uniform(id) && row[id as usize] == u32::MAX {
-            self.steps.push(Step { op: Op::Fill, out: *next, operands: [uniform[id as usize], 0, 0] });
+            self.steps.push(BoxStep { op: BoxOp::Fill, out: *next, operands: [uniform[id as usize], 0, 0] });
             row[id as usize] = *next;
             *next += 1;
         }
@@ -125,7 +125,7 @@ impl BoxProgram {
         let uses = self.steps.iter().enumerate().flat_map(|(at, step)| step.rows().map(move |row| (at, row)));
         // The coordinates are filled in anew for each batch of boxes.
         let kept = self.outputs.iter().copied().chain(0..3);
-        let mut real = Registers::new(count as usize, uses, kept);
+        let mut real = RegisterAllocator::new(count as usize, uses, kept);
         (0..3).for_each(|axis| _ = real.assign(axis));
         for (at, step) in self.steps.iter_mut().enumerate() {
             let used = *step;
@@ -205,12 +205,12 @@ impl BoxProgram {
         });
     }
 
-    fn execute(&self, step: &Step, n: usize) -> Row {
+    fn execute(&self, step: &BoxStep, n: usize) -> Row {
         let [a, b, c] = step.operands;
         let row = |operand: u32| &self.rows[operand as usize];
         match step.op {
-            Op::Fill => Row::fill(self.uniforms[a as usize]),
-            Op::Unary(operation) => match operation {
+            BoxOp::Fill => Row::fill(self.uniforms[a as usize]),
+            BoxOp::Unary(operation) => match operation {
                 Unary::Neg => row(a).neg(),
                 Unary::Square => row(a).square(),
                 Unary::Abs => row(a).abs(),
@@ -220,9 +220,9 @@ impl BoxProgram {
                 Unary::Cos => row(a).sine(true),
                 _ => Row::each(n, |k| row(a).at(k).unary(operation)),
             },
-            Op::Power(2) => row(a).square(),
-            Op::Power(n_th) => Row::each(n, |k| row(a).at(k).power(n_th)),
-            Op::Scale => {
+            BoxOp::Power(2) => row(a).square(),
+            BoxOp::Power(n_th) => Row::each(n, |k| row(a).at(k).power(n_th)),
+            BoxOp::Scale => {
                 let factor = self.uniforms[b as usize];
                 if factor.bounds.lo == factor.bounds.hi && !factor.is_empty() {
                     row(a).scale(factor.bounds.lo)
@@ -230,7 +230,7 @@ impl BoxProgram {
                     row(a).mul(&Row::fill(factor))
                 }
             }
-            Op::Binary(operation) => match operation {
+            BoxOp::Binary(operation) => match operation {
                 Binary::Add => row(a).add(row(b)),
                 Binary::Sub => row(a).sub(row(b)),
                 Binary::Mul => row(a).mul(row(b)),
@@ -238,14 +238,14 @@ impl BoxProgram {
                 Binary::Max => row(a).max(row(b)),
                 _ => Row::each(n, |k| row(a).at(k).binary(operation, row(b).at(k))),
             },
-            Op::Smin => Row::each(n, |k| Range::smooth_minimum(row(a).at(k), row(b).at(k), row(c).at(k))),
-            Op::IfLe => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), true)),
-            Op::IfGt => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), false)),
+            BoxOp::Smin => Row::each(n, |k| Range::smooth_minimum(row(a).at(k), row(b).at(k), row(c).at(k))),
+            BoxOp::IfLe => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), true)),
+            BoxOp::IfGt => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), false)),
         }
     }
 }
 
-impl Op {
+impl BoxOp {
     /// Whether each of the operands is a row.
     fn row_operands(self) -> [bool; 3] {
         match self {
@@ -257,7 +257,7 @@ impl Op {
     }
 }
 
-impl Step {
+impl BoxStep {
     /// Operands that are rows.
     fn rows(&self) -> impl Iterator<Item = u32> {
         let (used, operands) = (self.op.row_operands(), self.operands);
@@ -288,14 +288,14 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
 
 /// A factor of the field, whose zeros are among those of the field, compiled for boxes.
 #[derive(Clone, Debug)]
-pub(super) struct Factor {
+pub(super) struct FactorProgram {
     /// The factor and its gradient, with the whole field as result 4.
     pub(super) first: BoxProgram,
     /// The second derivatives of the factor; `None` if they take more than [`MAX_SECOND_OPERATIONS`].
     pub(super) second: Option<BoxProgram>,
 }
 
-impl Factor {
+impl FactorProgram {
     /// Recomputes the bounds of what depends on the parameters alone.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.first.set_parameters(parameters);
@@ -315,7 +315,7 @@ const MAX_FACTORS: usize = 16;
 ///
 /// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its
 /// argument. A factor is simpler than the product, and it has a gradient where two factors vanish together.
-pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Factor> {
+pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<FactorProgram> {
     let mut factors = Vec::new();
     let mut open = vec![root];
     while let Some(id) = open.pop() {
@@ -352,7 +352,7 @@ pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Fac
                 .then(|| derivative::hessian(graph, [x, y, z]))
                 .map(|second| BoxProgram::compile(graph, &second))
                 .filter(|second| second.operations() <= MAX_SECOND_OPERATIONS);
-            Factor { first, second }
+            FactorProgram { first, second }
         })
         .collect()
 }

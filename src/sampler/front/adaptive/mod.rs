@@ -28,8 +28,8 @@ use crate::sampler::front::level::{
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
-use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, is_level};
+use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
+use crate::sampler::sheet::{OrientedPoint, PointPair, SheetRule, is_level};
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
@@ -81,7 +81,7 @@ struct FrontRules {
     match_tolerance: f32,
     /// Distance from a parent within which others are gathered, in its radii.
     reach: f32,
-    accuracy: Accuracy,
+    residual_limits: ResidualLimits,
     gradient_scale: f32,
     sheets: SheetRule,
 }
@@ -89,7 +89,7 @@ struct FrontRules {
 impl FrontRules {
     /// What counts as being on the surface for a particle of this radius.
     fn tolerance(&self, radius: f32) -> Tolerance {
-        tolerance(radius, self.accuracy, self.gradient_scale)
+        tolerance(radius, self.residual_limits, self.gradient_scale)
     }
 }
 
@@ -158,7 +158,7 @@ impl AdaptiveFront {
             let j = near.index as usize;
             let both = spot.radius + particles.radius[j];
             let limit = share * both;
-            let pair = Pair { offset: near.offset, normal: spot.normal, other: particles.normal[j] };
+            let pair = PointPair { offset: near.offset, normal: spot.normal, other: particles.normal[j] };
             j < settled
                 && near.distance_sq <= limit * limit
                 && is_level(pair, near.distance_sq, limit)
@@ -196,7 +196,7 @@ impl LevelFront for AdaptiveFront {
             grading,
             match_tolerance: settings.match_tolerance as f32,
             reach: REACH.max(LISTED * (1.0 + ratio)),
-            accuracy: survey.accuracy(),
+            residual_limits: survey.residual_limits(),
             gradient_scale: survey.gradient_scale,
             sheets: setup.rule(radii),
         };
@@ -273,7 +273,7 @@ impl LevelFront for AdaptiveFront {
             if let DirectLanding::On(spot) = landing {
                 let circle = &problems[k].circle;
                 let offset = spot.position - circle.centre;
-                let pair = Pair { offset, normal: circle.normal, other: spot.normal };
+                let pair = PointPair { offset, normal: circle.normal, other: spot.normal };
                 if rules.sheets.is_fine() && !is_on_sheet(rules.sheets, context.probe, circle.centre, pair) {
                     *landing = DirectLanding::NotConverged;
                     continue;
@@ -387,6 +387,6 @@ impl LevelFront for AdaptiveFront {
 
 /// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair is not doubtful, or the field
 /// between them says so.
-fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
+fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
     pair.lift() <= sheets.suspicious(0.0) || sheets.is_one_sheet(probe, position, pair)
 }

@@ -6,7 +6,9 @@ use crate::differential::{Curvature, curvatures_of};
 use crate::math::Sym3;
 use crate::sampler::front::adaptive::MAX_SLOPE;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Circle, Landing, MAX_TURN, MIN_COS, MIN_CROSSING, Tolerance, turned};
+use crate::sampler::projection::{
+    ChildCircle, CircleLanding, MAX_TURN, MIN_COS, MIN_CROSSING, Tolerance, turned,
+};
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
@@ -37,7 +39,7 @@ const LOOSE_TOUCH: f32 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// The circle of the first guess; its radius is the guessed distance from the parent.
-    pub(crate) circle: Circle,
+    pub(crate) circle: ChildCircle,
     /// Radius of the parent.
     pub(crate) parent_radius: f32,
     /// Change of the radius per length away from the parent, as guessed.
@@ -97,7 +99,7 @@ pub(crate) struct DirectPlacement {
     gradient: Vec<Vec3>,
     hessian: Vec<Sym3<f32>>,
     curvature: Vec<Curvature>,
-    landing: Vec<Landing>,
+    landing: Vec<CircleLanding>,
 }
 
 impl DirectPlacement {
@@ -159,7 +161,7 @@ impl DirectPlacement {
         while count > 0 {
             self.points.clear();
             self.points.extend(active[..count].iter().map(|a| {
-                Circle { radius: a.distance, ..proposals[a.proposal as usize].circle }.point(a.turn)
+                ChildCircle { radius: a.distance, ..proposals[a.proposal as usize].circle }.point(a.turn)
             }));
             self.evaluate(probe);
             let mut kept = 0;
@@ -211,7 +213,7 @@ impl DirectPlacement {
             a.slope = ((radius - a.last[1]) / way).clamp(-MAX_SLOPE, MAX_SLOPE);
         }
         a.last = [a.distance, radius];
-        let circle = Circle { radius: a.distance, ..proposal.circle };
+        let circle = ChildCircle { radius: a.distance, ..proposal.circle };
         // The limits are constants, in shares of the distance: with others `clamp` can panic, and its message would have to be
         // linked.
         let pull = (-touch / ((1.0 - a.slope) * a.distance)).clamp(-MAX_PULL, MAX_PULL) * a.distance;
@@ -222,7 +224,7 @@ impl DirectPlacement {
         a.distance += pull;
         a.steps += 1;
         // The Hessian predicts f at the corrected place. If that is within the tolerance, no evaluation is needed there.
-        let corrected = Circle { radius: a.distance, ..proposal.circle }.point(a.turn);
+        let corrected = ChildCircle { radius: a.distance, ..proposal.circle }.point(a.turn);
         let moved = corrected - position;
         let corrected_gradient = gradient + hessian.apply(moved);
         let corrected_slope = corrected_gradient.length();
@@ -278,8 +280,8 @@ impl DirectPlacement {
             let result = landing[0];
             self.landing = landing;
             let position = match result {
-                Landing::On { position, .. } => position,
-                Landing::Undefined if best.is_none() => return DirectLanding::Undefined,
+                CircleLanding::On { position, .. } => position,
+                CircleLanding::Undefined if best.is_none() => return DirectLanding::Undefined,
                 _ => break,
             };
             let mut spot = self.look(probe, sizing, position);

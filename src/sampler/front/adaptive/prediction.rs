@@ -7,7 +7,7 @@ use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild};
 use crate::sampler::front::adaptive::placement::Proposal;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
 use crate::sampler::front::level::initial_slots;
-use crate::sampler::projection::Circle;
+use crate::sampler::projection::ChildCircle;
 use core::f32::consts::TAU;
 
 impl AdaptiveFront {
@@ -113,7 +113,7 @@ impl AdaptiveFront {
         let level = particles.level[parent] + 1;
         particles.push(position, child.normal, child.radius, parent as u32, level, initial_slots());
         let &PredictedChild { direction, distance, turn, slope, largest, .. } = child;
-        let circle = Circle { centre, normal, direction, radius: distance, guess: turn };
+        let circle = ChildCircle { centre, normal, direction, radius: distance, guess: turn };
         let parent_radius = particles.radius[parent];
         self.children.list.push(AdaptiveChild {
             proposal: Proposal { circle, parent_radius, slope, largest },

@@ -5,7 +5,7 @@ use crate::particles::Particles;
 use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::sheet::{Pair, is_level};
+use crate::sampler::sheet::{PointPair, is_level};
 use crate::spatial::Neighbour;
 use core::f32::consts::TAU;
 
@@ -70,7 +70,7 @@ impl Vicinity {
                 return (near.index, false);
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
-            let pair = Pair { offset: near.offset, normal, other };
+            let pair = PointPair { offset: near.offset, normal, other };
             if is_level(pair, near.distance_sq, rules.match_tolerance * both) {
                 if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
                     self.touching.push(self.ring.len() as u32);

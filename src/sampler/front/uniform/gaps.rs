@@ -11,7 +11,7 @@ use crate::math::tangent_frame;
 use crate::particles::{SlotFate, Slots};
 use crate::sampler::front::level::FrontContext;
 use crate::sampler::neighbours::constants::{FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE};
-use crate::sampler::projection::{Circle, Landing};
+use crate::sampler::projection::{ChildCircle, CircleLanding};
 use crate::spatial::Neighbour;
 use glam::Vec2;
 
@@ -90,10 +90,11 @@ impl UniformFront {
         let Some(centre) = widest_gap(&plane[..count]) else { return };
         let width = centre.length();
         let direction = (u * centre.x + w * centre.y) / width;
-        let circle = Circle { centre: p, normal: n, direction, radius: width * spacing, guess: [1.0, 0.0] };
+        let circle =
+            ChildCircle { centre: p, normal: n, direction, radius: width * spacing, guess: [1.0, 0.0] };
         let landing = &mut self.children.solutions;
         probe.land_on_circles(&[circle], self.tolerance, landing);
-        let Landing::On { position, normal } = landing[0] else { return };
+        let CircleLanding::On { position, normal } = landing[0] else { return };
         if !self.level.bounds.contains(position) || normal.dot(n) <= 0.0 {
             return;
         }

@@ -28,8 +28,8 @@ use crate::sampler::neighbours::constants::{
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{Circle, Landing, Tolerance, tolerance};
-use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, is_level, level_slack_sq};
+use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance, tolerance};
+use crate::sampler::sheet::{OrientedPoint, PointPair, SheetRule, is_level, level_slack_sq};
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use core::ops::Range;
 use glam::Vec3;
@@ -45,7 +45,7 @@ const DRIFT_ROOM: f32 = 0.2;
 /// A child on its way to the surface. Its provisional place stands in the particle columns.
 #[derive(Clone, Copy, Debug)]
 struct UniformChild {
-    circle: Circle,
+    circle: ChildCircle,
     slot: u32,
     handle: CellHandle,
     /// Distance to the nearest particle, of whatever sheet, when it was found free; at most the known reach.
@@ -62,7 +62,7 @@ pub(crate) struct UniformFront {
     level: FrontLevel,
     /// Particles of the level, which place children.
     parents: Range<usize>,
-    children: ProvisionalChildren<UniformChild, Circle, Landing>,
+    children: ProvisionalChildren<UniformChild, ChildCircle, CircleLanding>,
     grid: CellGrid,
     /// Where the last seed sits in the grid.
     seed: CellHandle,
@@ -135,7 +135,7 @@ impl UniformFront {
         (self.rule.is_fine() || self.around.are_doubtful(normal, spacing))
             && found.iter().any(|near| {
                 let other = particles.normal[near.index as usize];
-                let pair = Pair { offset: near.offset, normal, other };
+                let pair = PointPair { offset: near.offset, normal, other };
                 (near.index as usize) < self.level.settled
                     && pair.faces_one_way()
                     && self.rule.is_doubtful(pair, spacing)
@@ -189,7 +189,7 @@ impl LevelFront for UniformFront {
         let &FrontSetup { settings, bounds, survey, radius, .. } = setup;
         self.radius = radius;
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
-        self.tolerance = tolerance(radius, survey.accuracy(), survey.gradient_scale);
+        self.tolerance = tolerance(radius, survey.residual_limits(), survey.gradient_scale);
         self.rule = setup.rule(RadiusRange::of(radius));
         self.level = FrontLevel::new(*bounds, settings.max_particles as usize);
         self.parents = 0..0;
@@ -260,7 +260,7 @@ impl LevelFront for UniformFront {
             particles.push(position, normal, self.radius, parent as u32, level, initial_slots());
             let direction = u * direction[0] + w * direction[1];
             self.children.list.push(UniformChild {
-                circle: Circle { centre: p, normal: n, direction, radius: distance, guess },
+                circle: ChildCircle { centre: p, normal: n, direction, radius: distance, guess },
                 slot: k as u32,
                 handle: self.grid.insert(position, index),
                 // The distances to the particles that were dropped are not known.
@@ -284,25 +284,25 @@ impl LevelFront for UniformFront {
             // The circle may meet the far side of a rim or of a thin sheet, which is no place for a child.
             let (rule, spacing) = (self.rule, 2.0 * self.radius);
             let is_stranger = |probe: &mut Probe, position: Vec3, normal: Vec3| {
-                let Circle { centre, normal: above, .. } = problems[k];
-                let pair = Pair { offset: position - centre, normal: above, other: normal };
+                let ChildCircle { centre, normal: above, .. } = problems[k];
+                let pair = PointPair { offset: position - centre, normal: above, other: normal };
                 !pair.faces_one_way()
                     || rule.is_doubtful(pair, spacing) && !rule.is_one_sheet(probe, centre, pair)
             };
-            if let Landing::On { position, normal } = *landing
+            if let CircleLanding::On { position, normal } = *landing
                 && is_stranger(probe, position, normal)
             {
-                *landing = Landing::NotConverged;
+                *landing = CircleLanding::NotConverged;
                 if rule.is_fine() {
                     *landing = probe.walk(&problems[k], self.tolerance);
-                    if let Landing::On { position, normal } = *landing
+                    if let CircleLanding::On { position, normal } = *landing
                         && is_stranger(probe, position, normal)
                     {
-                        *landing = Landing::NotConverged;
+                        *landing = CircleLanding::NotConverged;
                     }
                 }
             }
-            if let Landing::On { position, .. } = *landing {
+            if let CircleLanding::On { position, .. } = *landing {
                 let provisional = particles.position[self.level.first_child + children.start + k];
                 *drift = drift.max((position - provisional).length());
             }
@@ -317,10 +317,10 @@ impl LevelFront for UniformFront {
         let provisional = self.level.first_child + child;
         let parent = particles.parent[provisional] as usize;
         let fate = match self.children.landings[child] {
-            Landing::NotConverged => SlotFate::NotConverged,
-            Landing::Undefined => SlotFate::Undefined,
-            Landing::On { position, .. } if !self.level.bounds.contains(position) => SlotFate::Outside,
-            Landing::On { position, normal } => {
+            CircleLanding::NotConverged => SlotFate::NotConverged,
+            CircleLanding::Undefined => SlotFate::Undefined,
+            CircleLanding::On { position, .. } if !self.level.bounds.contains(position) => SlotFate::Outside,
+            CircleLanding::On { position, normal } => {
                 let moved = (position - particles.position[provisional]).length();
                 // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all
                 // sheets, because the final normal may belong to another sheet than the provisional one.

@@ -146,7 +146,7 @@ impl Surroundings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampler::sheet::{Pair, SheetRule};
+    use crate::sampler::sheet::{PointPair, SheetRule};
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg32;
 
@@ -166,7 +166,7 @@ mod tests {
                 let other = (normal + vector(0.1)).normalize_or(normal) * if k % 3 == 2 { -1.0 } else { 1.0 };
                 let offset = offset - normal * offset.dot(normal) * 0.98;
                 around.push(offset, other, true);
-                let is_one = SheetRule::default().is_doubtful(Pair { offset, normal, other }, spacing);
+                let is_one = SheetRule::default().is_doubtful(PointPair { offset, normal, other }, spacing);
                 expected |= is_one && other.dot(normal) > 0.0;
             }
             assert_eq!(around.are_doubtful(normal, spacing), expected, "case {case}");

@@ -92,7 +92,7 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
             let [d, e] = [p, q].map(|p| net.walls.depth(p, plane));
             let start = p + (q - p) * (d / (d - e)).clamp(0.0, 1.0);
             let planes = common.joined(Planes::of(plane));
-            split(net, ground, h, Crossing { near: start, planes, reach: spacing })?;
+            split(net, ground, h, EdgeSplit { near: start, planes, reach: spacing })?;
         }
         h += 1;
     }
@@ -100,7 +100,7 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
 }
 
 /// Where an edge is to be split.
-struct Crossing {
+struct EdgeSplit {
     /// A place near it.
     near: Vec3,
     /// The planes on which it lies.
@@ -110,8 +110,8 @@ struct Crossing {
 }
 
 /// Splits an edge by a particle on planes of the box.
-fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: Crossing) -> Result<(), Refusal> {
-    let Crossing { near, planes, reach } = crossing;
+fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Result<(), Refusal> {
+    let EdgeSplit { near, planes, reach } = crossing;
     // The box may be left along the plane: what is beyond its other planes is cut later, and need not lie on the surface.
     let place = net.walls.pinned(near, planes);
     let clear = (net.walls.lo - place).max(place - net.walls.hi).max_element();
@@ -167,7 +167,7 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
         if m.common(n).is_inner() {
             let start = (net.position[a as usize] + net.position[b as usize]) * 0.5;
             let planes = m.joined(n);
-            split(net, ground, h, Crossing { near: start, planes, reach: 2.0 * spacing })?;
+            split(net, ground, h, EdgeSplit { near: start, planes, reach: 2.0 * spacing })?;
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Clipping and surgery along the border are held to the invariants of the mesh and of the walls.
 
-use super::super::net::{Block, Ground, Net, Springs};
+use super::super::net::{Ground, MovedBlock, Net, Springs};
 use super::super::surgery::{Aim, Surgeon};
 use super::super::tally::Tally;
 use super::super::walls::{Planes, Walls};
@@ -118,7 +118,7 @@ proptest! {
         let bounds = Bounds::symmetric([half[0], half[1], 1.0]);
         let mut field = saddle();
         let mut net = grid(&mut field, &bounds, shift);
-        let mut block = Block::default();
+        let mut block = MovedBlock::default();
         let mut memory = ProbeMemory::default();
         let mut probe = Probe::new(&mut field, &mut memory);
         let mut ground = Ground { probe: &mut probe, block: &mut block };

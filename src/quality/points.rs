@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 const BATCH: usize = 64;
 
 /// The points and what the figures are made from. All columns are in tree order.
-pub(super) struct Scene {
+pub(super) struct MeasuredPoints {
     pub(super) tree: Tree,
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
     pub(super) normal: Vec<Vec3>,
@@ -25,7 +25,7 @@ pub(super) struct Scene {
     has_duplicate: Vec<bool>,
 }
 
-impl Scene {
+impl MeasuredPoints {
     pub(super) async fn new(
         position: &[Vec3],
         given: &[Vec3],
