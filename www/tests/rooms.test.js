@@ -39,7 +39,7 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/bundle',
-    'engine/points/protocol',
+    'engine/points/types',
   ],
   'engine/commands': [
     'engine/types',
@@ -47,7 +47,7 @@ const MAY_USE = {
     'engine/store',
     'engine/share',
     'engine/points',
-    'engine/index',
+    'engine/parts',
   ],
   // The files beside these rooms put them together.
   engine: ['engine'],

@@ -5,7 +5,7 @@
  */
 
 /**
- * @import { Parts } from './index.js'
+ * @import { Parts } from './parts.js'
  * @import { EngineDebug } from './types.js'
  */
 

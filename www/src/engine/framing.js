@@ -31,10 +31,7 @@ export class Framing {
   #effects;
 
   /**
-   * @param {object} parts
-   * @param {Store} parts.store
-   * @param {Columns} parts.columns
-   * @param {Viewer} parts.viewer
+   * @param {{ store: Store, columns: Columns, viewer: Viewer }} parts
    */
   constructor({ store, columns, viewer }) {
     this.#store = store;

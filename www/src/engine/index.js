@@ -19,31 +19,14 @@ import { surfaceOf } from './share/state.js';
 import { createStore } from './store.js';
 
 /**
- * @import { Picture } from './picture.js'
- * @import { Store } from './store.js'
- * @import { Engine, State } from './types.js'
- * @import { BackendKind } from './view/backends.js'
- */
-
-/**
- * The parts of the engine, on which its commands act.
- * @typedef {object} Parts
- * @property {Store} store
- * @property {Columns} columns
- * @property {Picture} picture
- * @property {Runs} runs
- * @property {Framing} framing
- * @property {(state: State) => void} adopt  takes over a whole valid state and samples it
+ * @import { Parts } from './parts.js'
+ * @import { Engine, EngineOptions } from './types.js'
  */
 
 /**
  * Creates an engine that draws in an element of the page and begins with a state. It knows neither the page's address
  * nor another engine, so that several can be on one page.
- * @param {object} options
- * @param {HTMLElement} options.host  must be positioned; a canvas fills it
- * @param {string} [options.link]  the state to begin with, as {@link Engine.link} gives it
- * @param {Record<string, unknown>} [options.state]  what differs from it
- * @param {BackendKind | null} [options.backend]  the back end to try first
+ * @param {EngineOptions} options
  * @returns {Engine}
  */
 export function createEngine({ host, link = '', state = {}, backend = null }) {

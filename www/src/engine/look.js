@@ -19,10 +19,7 @@ import { seenOf } from './view/style.js';
 const MOST_TO_COME = 200_000;
 
 /**
- * @param {object} parts
- * @param {Store} parts.store
- * @param {Viewer} parts.viewer
- * @param {Runs} parts.runs
+ * @param {{ store: Store, viewer: Viewer, runs: Runs }} parts
  * @returns ends it
  */
 export function keepLook({ store, viewer, runs: { loader, sampling } }) {

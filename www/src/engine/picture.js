@@ -14,24 +14,13 @@ import { Viewer } from './view/viewer.js';
 
 /**
  * @import { Columns } from './columns.js'
+ * @import { Picture, PictureOptions } from './parts.js'
  * @import { Store } from './store.js'
- * @import { BackendKind, Device } from './view/backends.js'
+ * @import { Device } from './view/types.js'
  */
 
 /**
- * @typedef {object} Picture
- * @property {Viewer} viewer
- * @property {(index: number | null, x: number, y: number, tapped?: boolean) => void} hover  reports the particle under
- *   a point of the host, or null for none
- * @property {() => void} close
- */
-
-/**
- * @param {object} parts
- * @param {HTMLElement} parts.host
- * @param {Store} parts.store
- * @param {Columns} parts.columns
- * @param {BackendKind | null} parts.first  the back end to try first
+ * @param {PictureOptions} parts
  * @returns {Picture}
  */
 export function createPicture({ host, store, columns, first }) {

@@ -10,15 +10,8 @@ import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
 
 /**
- * @import { Columns } from './columns.js'
- * @import { Picture } from './sampling/presenter.js'
+ * @import { RunOptions, RunsOptions } from './parts.js'
  * @import { SampleRequest } from './sampling/types.js'
- * @import { Store } from './store.js'
- * @import { Settings } from './types.js'
- */
-
-/**
- * @typedef {{grow?: boolean, fit?: boolean, settings?: Settings}} RunOptions
  */
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
@@ -36,11 +29,7 @@ export class Runs {
   #timer;
 
   /**
-   * @param {object} parts
-   * @param {Store} parts.store
-   * @param {Columns} parts.columns
-   * @param {Picture} parts.picture
-   * @param {() => void} parts.onReady  called when the core has loaded for the first time
+   * @param {RunsOptions} parts
    */
   constructor({ store, columns, picture, onReady }) {
     this.store = store;

@@ -3,7 +3,7 @@
 // otherwise.
 import type { Columns } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
-import type { Surface } from './lesson/protocol.js';
+import type { LessonClientOptions, Surface } from './lesson/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
@@ -43,7 +43,7 @@ export type LessonPush = import('./core-types.js').LessonPush;
 export type LessonChapter = import('./core-types.js').LessonChapter;
 export type LessonSettings = import('./core-types.js').LessonSettings;
 export type LessonClient = import('./lesson/client.js').LessonClient;
-export type LessonParticles = import('./lesson/protocol.js').Particles;
+export type LessonParticles = import('./lesson/types.js').Particles;
 /** A mesh over all particles on the page, three indices a triangle. */
 export type Mesh = { triangles: Uint32Array; about: MeshAnswer };
 export type CoreAnswer<T> = Answer<T, FieldFault>;
@@ -111,7 +111,8 @@ export type Shape = Omit<State, 'v' | 'view'>;
 
 // ---- what the engine reports
 
-export type BackendName = 'starting' | 'webgpu' | 'webgl2' | 'canvas2d';
+export type BackendKind = 'webgpu' | 'webgl2' | 'canvas2d';
+export type BackendName = 'starting' | BackendKind;
 /**
  * A message for the user. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`,
  * `file`, `share-file`, …); a later notice of the same cause replaces it, and it is removed when it no longer applies.
@@ -332,9 +333,7 @@ export interface EngineCommands {
   /** returns the ray from the eye through a point of the canvas host */
   rayThrough: (x: number, y: number) => Ray;
   /** the paper's algorithms, event by event; its worker and its bundle are loaded with the first run */
-  openLesson: (
-    options?: ConstructorParameters<typeof import('./lesson/client.js').LessonClient>[0],
-  ) => Promise<import('./lesson/client.js').LessonClient>;
+  openLesson: (options?: LessonClientOptions) => Promise<LessonClient>;
   /** returns the present surface for such a run */
   lessonSurface: () => Surface | null;
   /** frees all that the engine holds: its workers, its device and its canvas */
@@ -356,3 +355,14 @@ export interface EngineDebug {
   counts: () => { frames: number; uploads: number; opened: number; restarts: number; stale: number; dimmed: boolean };
 }
 export type Engine = EngineSignals & EngineCommands & { debug: EngineDebug };
+/** What an engine begins with. */
+export interface EngineOptions {
+  /** must be positioned; a canvas fills it */
+  host: HTMLElement;
+  /** the state to begin with, as {@link Engine.link} gives it */
+  link?: string;
+  /** what differs from it */
+  state?: Record<string, unknown>;
+  /** the back end to try first */
+  backend?: BackendKind | null;
+}

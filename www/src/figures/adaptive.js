@@ -10,11 +10,7 @@ import { arcOf, polar, unrolled, widthOf } from './geometry.js';
 import { label, line, ring } from './svg.js';
 import { FATES, inDegrees } from './words.js';
 
-/**
- * @import { Plane } from './types.js'
- * @import { Child, Moment } from './types.js'
- * @import { Opened } from './types.js'
- */
+/** @import { Child, Moment, Opened, Plane } from './types.js' */
 
 /** Half size of the drawing, in radii of the particle. */
 const HALF = 4.5;

@@ -7,11 +7,7 @@ import { inPlane, scaledBy, slotPlace } from './geometry.js';
 import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
 
-/**
- * @import { Plane, Point } from './types.js'
- * @import { Child, Moment } from './types.js'
- * @import { Opened, Profile } from './types.js'
- */
+/** @import { Child, Moment, Opened, Plane, Point, Profile } from './types.js' */
 
 /** Half sizes of the drawings, in radii. */
 const TANGENT_HALF = 5.05;

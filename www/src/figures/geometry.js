@@ -1,9 +1,7 @@
 /** Places in a plane through a particle, in radii. */
 import { dot } from '../engine/vector.js';
 
-/**
- * @import { Point, Plane } from './types.js'
- */
+/** @import { Plane, Point } from './types.js' */
 
 /**
  * Returns where a place is in the plane, projected along its normal, in radii.

@@ -5,7 +5,7 @@
 
 /**
  * @import { LessonEvent } from '../engine/types.js'
- * @import { Of, Child, Moment } from './types.js'
+ * @import { Child, Moment, Of } from './types.js'
  */
 
 const SLOTS = 6;

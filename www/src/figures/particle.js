@@ -7,9 +7,8 @@ import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
 /**
- * @import { Profile } from './types.js'
  * @import { LessonClient, LessonParticles, Vec3 } from '../engine/types.js'
- * @import { Child } from './types.js'
+ * @import { Child, Profile } from './types.js'
  */
 
 /** Limit on |f|/|∇f| in radii, as the runs of the lesson have it. */

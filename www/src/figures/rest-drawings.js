@@ -7,11 +7,7 @@ import { inPlane, scaledBy, tangentsOf } from './geometry.js';
 import { pushWords } from './rest.js';
 import { label, line, ring } from './svg.js';
 
-/**
- * @import { Plane, Point } from './types.js'
- * @import { Rest } from './types.js'
- * @import { Subject } from './words.js'
- */
+/** @import { Plane, Point, Rest, Subject } from './types.js' */
 
 /** Half size of the drawing, in radii: particles push each other up to 3r. */
 const HALF = 4.1;

@@ -4,8 +4,8 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { inRadii } from './words.js';
 
 /**
- * @import { Rest } from './types.js'
  * @import { LessonChapter, LessonClient, Vec3 } from '../engine/types.js'
+ * @import { Rest } from './types.js'
  */
 
 /** @param {Float32Array} column @param {number} i @returns {Vec3} */

@@ -1,6 +1,5 @@
 // What is known of a particle and drawn of it.
 import type { LessonEvent, LessonIterate, LessonPush, Vec3 } from '../engine/types.js';
-import type { Subject } from './words.js';
 
 export type Of<T extends LessonEvent['type']> = Extract<LessonEvent, { type: T }>;
 /** A child as far as it is known. `fate` is `open` until it is decided; `particle` is the one that it became or met. */
@@ -87,3 +86,6 @@ export interface Rest {
 export type Point = [number, number];
 /** Two perpendicular unit vectors at a particle, and its radius. */
 export type Plane = { centre: ArrayLike<number>; right: ArrayLike<number>; up: ArrayLike<number>; radius: number };
+
+/** Whose events are told. `parent` is null for a seed; `levels` is the last level of the run. */
+export type Subject = { particle: number; level: number; levels?: number; parent: number | null; radius: number };

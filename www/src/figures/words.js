@@ -3,12 +3,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 
 /**
  * @import { LessonEvent } from '../engine/types.js'
- * @import { Moment } from './types.js'
- */
-
-/**
- * Whose events are told. `parent` is null for a seed; `levels` is the last level of the run.
- * @typedef {{ particle: number, level: number, levels?: number, parent: number | null, radius: number }} Subject
+ * @import { Moment, Subject } from './types.js'
  */
 
 /** A length in radii. @param {number} length @param {number} radius @param {number} [digits] */

@@ -2,13 +2,9 @@
 import { PARTICLES } from './lab.js';
 
 /**
- * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { LessonSettings } from '../engine/lesson/types.js'
  * @import { Lab } from './lab.js'
- * @import { LabRun } from './types.js'
- */
-
-/**
- * @typedef {LessonSettings['law']} Law
+ * @import { LabRun, Law } from './types.js'
  */
 
 /** The laws in words. @type {readonly { value: Law, label: string }[]} */

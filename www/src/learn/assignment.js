@@ -14,10 +14,8 @@ import { WHAT_IFS } from './whatifs.js';
 
 /**
  * @import { Lab } from './lab.js'
- * @import { LabRun } from './types.js'
  * @import { Stops } from './predict.js'
- * @import { Task, Work } from './types.js'
- * @import { Control, Setup } from './types.js'
+ * @import { Control, LabRun, Setup, Task, Work } from './types.js'
  */
 
 /** A run as plain numbers. @param {string} label @param {LabRun} run */

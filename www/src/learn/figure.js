@@ -5,9 +5,7 @@
 import { h } from '../ui/dom.js';
 import { NoSurface } from './lab.js';
 
-/**
- * @import { Figure } from './types.js'
- */
+/** @import { Figure } from './types.js' */
 
 /** How far from the window a figure begins, in pixels. */
 const AHEAD_PX = 500;

@@ -9,20 +9,13 @@ import { fill, h } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 import { PREDICTIONS } from './predictions.js';
 
-/**
- * @import { Figure } from './types.js'
- * @import { Lab } from './lab.js'
- */
+/** @import { HandoutOptions } from './types.js' */
 
 const UNKNOWN = 'The run has not been asked yet. Print from the page’s own button to have the answer here.';
 
 /**
  * @param {HTMLElement} host  the last page
- * @param {object} about
- * @param {readonly Figure[]} about.figures
- * @param {Promise<Lab>} about.lab
- * @param {() => Promise<void>} about.compare  shows the comparison that stands on the bench
- * @param {(words: string) => void} about.say
+ * @param {HandoutOptions} about
  */
 export function createHandout(host, { figures, lab, compare, say }) {
   const title = host.querySelector('h2');

@@ -6,10 +6,10 @@
 import { RESIDUAL } from '../figures/particle.js';
 
 /**
- * @import { LabRun } from './types.js'
- * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { LessonSettings } from '../engine/lesson/types.js'
  * @import { LessonClient } from '../engine/types.js'
- * @import { FormulaSurface } from '../ui/surface-link.js'
+ * @import { FormulaSurface } from '../ui/types.js'
+ * @import { LabRun } from './types.js'
  */
 
 /** Particles that the figures have: many enough for rings, few enough to tell them apart. */

@@ -10,12 +10,8 @@ import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 
 /**
- * @import { Colouring, Side } from './types.js'
- */
-
-/**
  * @import { Lab } from './lab.js'
- * @import { LabRun } from './types.js'
+ * @import { Colouring, LabRun, Side } from './types.js'
  */
 
 /** Distances over the ideal one span this range of colours. */

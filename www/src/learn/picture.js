@@ -10,11 +10,10 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
- * @import { Mark, Scene } from './types.js'
  * @import { Signal } from '@preact/signals-core'
  * @import { Bounds, LessonParticles } from '../engine/types.js'
- * @import { View } from '../engine/view/camera.js'
- * @import { Palette } from '../engine/view/palettes.js'
+ * @import { Palette, View } from '../engine/view/types.js'
+ * @import { Mark, Scene } from './types.js'
  */
 
 const KEY_STEP_RAD = 0.14;

@@ -9,9 +9,9 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 
 /**
- * @import { Prediction, Guessed } from './types.js'
- * @import { Lab } from './lab.js'
  * @import { Signal } from '@preact/signals-core'
+ * @import { Lab } from './lab.js'
+ * @import { Guessed, Prediction } from './types.js'
  */
 
 /** Which predictions are out. Figures show what would give the answer away only then. */

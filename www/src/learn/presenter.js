@@ -4,15 +4,16 @@ import { button } from '../ui/button.js';
 import { h } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
 
-/** @import { Signal } from '@preact/signals-core' */
+/**
+ * @import { Signal } from '@preact/signals-core'
+ * @import { PresenterOptions } from './types.js'
+ */
 
 /** Elements in which a letter is text. */
 const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), textarea, select';
 
 /**
- * @param {object} about
- * @param {readonly string[]} about.stops  ids of elements, in their order
- * @param {(stop: string, isPresenting: boolean) => void} about.to  leads the address to a stop
+ * @param {PresenterOptions} about
  */
 export function createPresenter({ stops, to }) {
   const root = document.documentElement;

@@ -17,8 +17,7 @@ import { byValue, Orbit, Picture } from './picture.js';
 
 /**
  * @import { Signal } from '@preact/signals-core'
- * @import { LessonSettings } from '../engine/lesson/protocol.js'
- * @import { Lane } from '../engine/lesson/race.js'
+ * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
  * @import { LessonParticles } from '../engine/types.js'
  * @import { Lab } from './lab.js'
  */

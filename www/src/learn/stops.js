@@ -3,17 +3,15 @@ import { nearestStop, readAddress, writeAddress } from './address.js';
 import { STOP } from './bench.js';
 import { createPresenter } from './presenter.js';
 
+/** @import { StopsOptions } from './types.js' */
+
 /** Value of the address's `mode` while presenting. */
 const PRESENT = 'present';
 /** Height of what stays at the top of the window, in pixels. */
 const HEAD_PX = 60;
 
 /**
- * @param {object} about
- * @param {readonly string[]} about.stops  ids of elements
- * @param {readonly string[]} about.others  stops of the bench: `what-if-…`
- * @param {(id: string) => Promise<void>} about.onBench  shows a comparison; the one that is there for an empty id
- * @param {(words: string) => void} about.say
+ * @param {StopsOptions} about
  */
 export function mountStops({ stops, others, onBench, say }) {
   const all = [...stops, ...others];

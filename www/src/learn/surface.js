@@ -1,9 +1,10 @@
 /** The surface of the lesson: the learner's own, or the ellipsoid. */
 import { unpackCarried } from '../ui/surface-link.js';
 
-/** @import { FormulaSurface } from '../ui/surface-link.js' */
-
-/** @typedef {{ surface: FormulaSurface, isOwn: boolean, from: string, notice: string }} Subject */
+/**
+ * @import { FormulaSurface } from '../ui/types.js'
+ * @import { Subject } from './types.js'
+ */
 
 /** @type {FormulaSurface} */
 const ELLIPSOID = {

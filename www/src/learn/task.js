@@ -2,10 +2,7 @@
 import { packed, unpacked } from '../ui/surface-link.js';
 import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 
-/**
- * @import { Task, Work } from './types.js'
- * @import { Control } from './types.js'
- */
+/** @import { Control, Task, Work } from './types.js' */
 
 export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;

@@ -1,8 +1,10 @@
 // Types of the learn page: its runs, its pictures, its questions and its choices.
-import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/protocol.js';
+import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
 import type { LessonClient, LessonParticles } from '../engine/types.js';
-import type { Palette } from '../engine/view/palettes.js';
+import type { Palette } from '../engine/view/types.js';
+import type { FormulaSurface } from '../ui/types.js';
 import type { Lab } from './lab.js';
+import type { Stops } from './predict.js';
 
 /** What an assignment may lock: on its bench, then on the rest of the page. */
 export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
@@ -71,3 +73,30 @@ export type Work = {
 };
 /** `ready` is fulfilled once it is live, and never if it cannot be made. */
 export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Promise<void> };
+
+export type Law = LessonSettings['law'];
+export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
+/** What a figure is given: the runs, and which predictions are out. */
+export type Context = { lab: Promise<Lab>; stops: Stops };
+export interface HandoutOptions {
+  figures: readonly Figure[];
+  lab: Promise<Lab>;
+  /** shows the comparison that stands on the bench */
+  compare: () => Promise<void>;
+  say: (words: string) => void;
+}
+export interface PresenterOptions {
+  /** ids of elements, in their order */
+  stops: readonly string[];
+  /** leads the address to a stop */
+  to: (stop: string, isPresenting: boolean) => void;
+}
+export interface StopsOptions {
+  /** ids of elements */
+  stops: readonly string[];
+  /** stops of the bench: `what-if-…` */
+  others: readonly string[];
+  /** shows a comparison; the one that is there for an empty id */
+  onBench: (id: string) => Promise<void>;
+  say: (words: string) => void;
+}

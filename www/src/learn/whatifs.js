@@ -2,10 +2,9 @@
 import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
- * @import { Setup, WhatIf } from './types.js'
- * @import { LessonSettings } from '../engine/lesson/protocol.js'
+ * @import { LessonSettings } from '../engine/lesson/types.js'
  * @import { Lab } from './lab.js'
- * @import { Side } from './types.js'
+ * @import { Setup, Side, WhatIf } from './types.js'
  */
 
 /**

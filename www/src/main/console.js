@@ -8,39 +8,9 @@ import { MEASURED } from '../engine/columns.js';
 import { createEngine } from '../engine/index.js';
 
 /**
- * @import { Columns, Figures } from '../engine/columns.js'
- * @import { Engine, Report, State } from '../engine/types.js'
- */
-
-/**
- * @typedef {object} Console
- * @property {string} version  of the core; empty until the core has loaded
- * @property {Promise<Report | null>} ready  resolves once the first run is done and on screen
- * @property {State} state
- * @property {(patch: object) => Promise<Report | null>} set  changes the state, samples, and resolves with the report
- * @property {() => Promise<Report | null>} run
- * @property {() => Promise<Report | null>} stop
- * @property {(file: File) => Promise<Report | null>} open  samples the points of a file
- * @property {(steps?: number) => Promise<Report | null>} relax
- * @property {() => Report | null} report
- * @property {() => Particles} particles
- * @property {() => object} status
- * @property {(width: number, height: number, transparent?: boolean) => Promise<{width: number, height: number, pixels:
- *   Uint8Array}>} pixels
- * @property {() => Promise<string>} link  the address that restores the present state
- * @property {(options: Parameters<typeof createEngine>[0]) => Engine} create  another engine, in another element
- * @property {Engine} engine
- * @property {Omit<Engine['debug'], 'provoke' | 'isOff'> & Record<'panic' | 'overflow' | 'hang', () => void>} debug
- */
-/**
- * The columns of the report, null before it has arrived.
- * @typedef {{[K in keyof Figures]: Figures[K] | null}} Measured
- */
-/**
- * Copies of the columns: index i of each belongs to particle i. `exact`: the positions in double precision, in a box
- * far from the origin; `curvature`: two per particle, only while they are shown.
- * @typedef {Measured & Pick<Columns, 'count' | 'positions' | 'normals' | 'radii' | 'levels' | 'parents' | 'slots'>
- *   & {exact: Float64Array | null, curvature: Float32Array | null}} Particles
+ * @import { Columns } from '../engine/columns.js'
+ * @import { Engine, Report } from '../engine/types.js'
+ * @import { Console, Measured, Particles } from './types.js'
  */
 
 /**

@@ -6,7 +6,7 @@ import { effect } from '@preact/signals-core';
 
 /**
  * @import { Engine } from '../engine/types.js'
- * @import { Toast } from '../ui/toasts.js'
+ * @import { Toast } from '../ui/types.js'
  */
 
 const SCRIPT = './service-worker.js';

@@ -20,13 +20,10 @@ import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
 /**
- * @import { Description, Engine } from '../engine/types.js'
- * @import { Dialog } from './dialog.js'
- * @import { Timeline, Told } from './levels/timeline.js'
- * @import { Motion } from './motion.js'
- * @import { Shortcut } from './shortcuts.js'
- * @import { Toast } from './toasts.js'
  * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Description, Engine } from '../engine/types.js'
+ * @import { Told } from './levels/types.js'
+ * @import { Dialog, Motion, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
 /** @param {Engine} engine @returns {Toast}  shows a notice of the page */
@@ -230,13 +227,7 @@ function pictureOf(engine, motion, toast) {
 /**
  * Returns the shortcuts of the page.
  * @param {Engine} engine
- * @param {object} page
- * @param {ReturnType<typeof createHistory>} page.history
- * @param {Motion} page.motion
- * @param {() => void} page.print
- * @param {Promise<Timeline | null>} page.timeline  a key that is pressed before it has loaded acts as soon as it has
- * @param {() => void} page.hide  hides or shows the panels
- * @param {() => void} page.open  opens the list of the shortcuts
+ * @param {ShortcutTargets} page
  * @returns {Shortcut[]}
  */
 function shortcutsOf(engine, { history, motion, print, timeline, hide, open }) {

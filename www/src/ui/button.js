@@ -3,10 +3,7 @@ import { h } from './dom.js';
 import { explain } from './explain.js';
 import { icon as draw } from './icons.js';
 
-/**
- * @import { Explanation, Side } from './explain.js'
- * @import { ButtonProps, Children } from './types.js'
- */
+/** @import { ButtonProps, Children, Explanation, Side } from './types.js' */
 
 /**
  * Creates a button of the class `button` and those of `class`, with a text or with an icon alone.

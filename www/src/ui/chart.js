@@ -5,17 +5,7 @@
 import { h, s } from './dom.js';
 import { formatCount } from './format.js';
 
-/**
- * What a chart shows. `first` is the number of the first place.
- * @typedef {object} Drawn
- * @property {'bars' | 'line'} kind
- * @property {{ fate: string, name: string, counts: readonly number[] }[]} rows
- * @property {number} first
- * @property {number | null} at  the place that is shown, null for none of these
- * @property {(value: number) => string} format
- * @property {string[]} [ends]  what stands below its ends, in place of the numbers of the places
- * @property {number} [ideal]  where the ideal is, as a share of the width
- */
+/** @import { Drawn } from './types.js' */
 
 /** Sums of a stack at each place. @param {Drawn['rows']} rows */
 const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));

@@ -1,5 +1,4 @@
 /** Creates modal dialogs with a title and a close button. */
-/** @typedef {ReturnType<typeof createDialog>} Dialog */
 import { button } from './button.js';
 import { h, uniqueId } from './dom.js';
 

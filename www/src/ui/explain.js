@@ -5,7 +5,7 @@
 import { fill, h, usesKeyboard } from './dom.js';
 import { clamp } from './scale.js';
 
-/** @typedef {{ title?: string, text: string, ideal?: string }} Explanation */
+/** @import { Explanation, Side } from './types.js' */
 
 const HOVER_DELAY_MS = 350;
 const LEAVE_DELAY_MS = 120;
@@ -57,8 +57,6 @@ function hide() {
   described = null;
   if (popover?.matches(':popover-open')) popover.hidePopover();
 }
-
-/** The preferred side of a popover, used if there is room. @typedef {'below' | 'above' | 'left'} Side */
 
 /** @param {Element} anchor @param {Explanation} explanation @param {Side} [side] */
 function show(anchor, explanation, side) {

@@ -6,8 +6,8 @@
 import { effect, signal } from '@preact/signals-core';
 
 /**
- * @import { Engine, Shape, State } from '../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine, Shape, State } from '../engine/types.js'
  */
 
 export const MOST_ENTRIES = 100;

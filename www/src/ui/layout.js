@@ -6,7 +6,10 @@ import { button } from './button.js';
 import { live } from './dom.js';
 import { explain } from './explain.js';
 
-/** @import { Signal } from '@preact/signals-core' */
+/**
+ * @import { Signal } from '@preact/signals-core'
+ * @import { LayoutOptions } from './types.js'
+ */
 
 /** Width below which the report is initially folded, to leave room for the picture. */
 const NARROW = '(max-width: 67.45em)';
@@ -17,19 +20,9 @@ const COMPACT = '(max-width: 44.95em)';
  * What is hidden: `panels` leaves the picture with caption and timeline, to be presented.
  * @typedef {'nothing' | 'panels' | 'all'} Hidden
  */
-/**
- * A panel with a `head` can be folded.
- * @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel
- */
 
 /**
- * @param {object} parts
- * @param {HTMLElement} parts.shell
- * @param {HTMLElement} parts.view
- * @param {HTMLElement} parts.nav
- * @param {Panel[]} parts.panels
- * @param {() => number} parts.covered  pixels at the bottom of the view that something else than panels covers
- * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
+ * @param {LayoutOptions} parts
  */
 export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   const last = panels.findLast(({ head }) => head);

@@ -7,13 +7,8 @@ import { snap } from './scale.js';
 
 /**
  * @import { Signal } from '@preact/signals-core'
- * @import { Engine, Parameter } from '../engine/types.js'
- */
-
-/** @typedef {Pick<Parameter, 'name' | 'min' | 'max' | 'step'>} Range */
-/**
- * `bounce`: to the end and back; `loop`: to the end, and again from the beginning.
- * @typedef {'bounce' | 'loop'} Course
+ * @import { Engine } from '../engine/types.js'
+ * @import { Course, Range } from './types.js'
  */
 
 /** Seconds in which a parameter crosses its range, and in which the turntable turns once, at the usual speed. */
@@ -103,8 +98,6 @@ export function createMotion(engine, stage) {
     },
   };
 }
-
-/** @typedef {ReturnType<typeof createMotion>} Motion */
 
 /** A parameter that moves. */
 class Player {

@@ -1,14 +1,7 @@
 /** Converts between the position of a slider (0 to 1) and its value, on linear and logarithmic scales. */
 import { decimalsOf } from './format.js';
 
-/**
- * @typedef {object} Scale
- * @property {number} min
- * @property {number} max
- * @property {number} step the grid of values, 0 for none; on a logarithmic scale the factor of one key press, minus one
- * @property {'linear' | 'log'} [scale]
- * @property {boolean} [integer]
- */
+/** @import { Scale } from './types.js' */
 
 /** @param {number} value @param {number} lo @param {number} hi */
 export const clamp = (value, lo, hi) => Math.min(Math.max(value, lo), hi);

@@ -1,14 +1,11 @@
 /** Creates a segmented control: two or three radio buttons side by side. */
 import { h, live, uniqueId } from './dom.js';
 
+/** @import { SegmentedOptions } from './types.js' */
+
 /**
  * @template {string} T
- * @param {object} options
- * @param {string} options.name accessible name
- * @param {readonly { value: T, label: string }[]} options.choices
- * @param {() => NoInfer<T>} options.value  the choice that is checked, from signals
- * @param {() => boolean} [options.disabled]
- * @param {(value: T) => unknown} options.change  may take its time
+ * @param {SegmentedOptions<T>} options
  */
 export function createSegmented({ name, choices, value: checked, disabled, change }) {
   const group = uniqueId('segmented');

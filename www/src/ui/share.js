@@ -3,7 +3,7 @@ import { FILE_SURFACE } from '../engine/constants.js';
 
 /**
  * @import { Engine, MeshFormat } from '../engine/types.js'
- * @import { Toast } from './toasts.js'
+ * @import { Toast } from './types.js'
  */
 
 /** @param {Engine} engine @param {Toast} toast */

@@ -3,11 +3,7 @@
 import { createDialog } from './dialog.js';
 import { h } from './dom.js';
 
-/**
- * `ctrl` requires Control or Command; `shift` then requires Shift or its absence.
- * @typedef {{ keys: string[], shown: string, label: string, act: () => void, ctrl?: boolean, shift?: boolean }}
- *   Shortcut
- */
+/** @import { Shortcut } from './types.js' */
 
 /** Name of the command key on this platform. */
 export const COMMAND_KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? '⌘' : 'Ctrl';

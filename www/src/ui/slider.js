@@ -7,26 +7,7 @@ import { h, live, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
 import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 
-/** @import { Scale } from './scale.js' */
-
-/**
- * @typedef {object} SliderOptions
- * @property {string} name accessible name
- * @property {Scale} scale
- * @property {number | (() => number)} value  or what reads it from signals, as long as the slider lasts
- * @property {(value: number) => string} describe returns the value in words, with its unit
- * @property {(value: number, live: boolean) => void} change `live` during a drag
- * @property {() => void} reset
- * @property {boolean} [number] false for a slider without a number box
- * @property {number} [factor] factor from the value to the number in the box, 100 for per cent
- */
-/**
- * @typedef {object} Slider
- * @property {HTMLInputElement} range
- * @property {HTMLInputElement | null} box
- * @property {(value: number) => void} set shows a value without calling `change`
- * @property {(scale: Scale) => void} setScale
- */
+/** @import { Scale, Slider, SliderOptions } from './types.js' */
 
 /** @type {Record<string, number>} */
 const KEYS = {

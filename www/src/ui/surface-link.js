@@ -4,9 +4,8 @@
  */
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 
-/** @import { Bounds, Parameter } from '../engine/types.js' */
+/** @import { FormulaSurface } from './types.js' */
 
-/** @typedef {{ formula: string, parameters: Parameter[], bounds: Bounds }} FormulaSurface */
 /**
  * What is carried over. `surface` is null if it comes from points, which no address can hold; `from` is the fragment of
  * the page's own address.

@@ -3,9 +3,10 @@
 import { button } from './button.js';
 import { fill, h, live } from './dom.js';
 
-/** @import { Engine, Notice } from '../engine/types.js' */
-
-/** @typedef {(notice: Notice) => void} Toast */
+/**
+ * @import { Engine, Notice } from '../engine/types.js'
+ * @import { Toast } from './types.js'
+ */
 
 const STAY_MS = 6000;
 

@@ -1,7 +1,11 @@
 // Types of the interface's parts: what elements are created from, and what panels share.
 
 import type { ReadonlySignal } from '@preact/signals-core';
+import type { Bounds, Notice, Parameter } from '../engine/types.js';
+import type { createDialog } from './dialog.js';
+import type { createHistory } from './history.js';
 import type { IconName } from './icons.js';
+import type { createMotion } from './motion.js';
 
 /** A value, or a function of signals that is read anew after every change of them. */
 export type Live<T> = T | (() => T);
@@ -121,4 +125,100 @@ export interface FollowPanel {
   goToLevel: (level: number) => void;
   close: () => void;
   onKey: (listener: (event: KeyboardEvent) => void) => void;
+}
+
+/** What a chart shows. `first` is the number of the first place. */
+export interface Drawn {
+  kind: 'bars' | 'line';
+  rows: { fate: string; name: string; counts: readonly number[] }[];
+  first: number;
+  /** the place that is shown, null for none of these */
+  at: number | null;
+  format: (value: number) => string;
+  /** what stands below its ends, in place of the numbers of the places */
+  ends?: string[];
+  /** where the ideal is, as a share of the width */
+  ideal?: number;
+}
+export type Dialog = ReturnType<typeof createDialog>;
+export type Explanation = { title?: string; text: string; ideal?: string };
+/** The preferred side of a popover, used if there is room. */
+export type Side = 'below' | 'above' | 'left';
+/** A panel with a `head` can be folded. */
+export type Panel = { id: string; title: string; panel: HTMLElement; head?: HTMLElement };
+export type Range = Pick<Parameter, 'name' | 'min' | 'max' | 'step'>;
+/** `bounce`: to the end and back; `loop`: to the end, and again from the beginning. */
+export type Course = 'bounce' | 'loop';
+export type Motion = ReturnType<typeof createMotion>;
+export interface Scale {
+  min: number;
+  max: number;
+  /** the grid of values, 0 for none; on a logarithmic scale the factor of one key press, minus one */
+  step: number;
+  scale?: 'linear' | 'log';
+  integer?: boolean;
+}
+/** `ctrl` requires Control or Command; `shift` then requires Shift or its absence. */
+export type Shortcut = {
+  keys: string[];
+  shown: string;
+  label: string;
+  act: () => void;
+  ctrl?: boolean;
+  shift?: boolean;
+};
+export interface SliderOptions {
+  /** accessible name */
+  name: string;
+  scale: Scale;
+  /** or what reads it from signals, as long as the slider lasts */
+  value: number | (() => number);
+  /** returns the value in words, with its unit */
+  describe: (value: number) => string;
+  /** `live` during a drag */
+  change: (value: number, live: boolean) => void;
+  reset: () => void;
+  /** false for a slider without a number box */
+  number?: boolean;
+  /** factor from the value to the number in the box, 100 for per cent */
+  factor?: number;
+}
+export interface Slider {
+  range: HTMLInputElement;
+  box: HTMLInputElement | null;
+  /** shows a value without calling `change` */
+  set: (value: number) => void;
+  setScale: (scale: Scale) => void;
+}
+export type FormulaSurface = { formula: string; parameters: Parameter[]; bounds: Bounds };
+export type Toast = (notice: Notice) => void;
+export interface ShortcutTargets {
+  history: ReturnType<typeof createHistory>;
+  motion: Motion;
+  print: () => void;
+  /** a key that is pressed before it has loaded acts as soon as it has */
+  timeline: Promise<Record<'toggle' | 'back' | 'forward' | 'first' | 'all', () => void> | null>;
+  /** hides or shows the panels */
+  hide: () => void;
+  /** opens the list of the shortcuts */
+  open: () => void;
+}
+export interface LayoutOptions {
+  shell: HTMLElement;
+  view: HTMLElement;
+  nav: HTMLElement;
+  panels: Panel[];
+  /** pixels at the bottom of the view that something else than panels covers */
+  covered: () => number;
+  inset: (insets: { top: number; right: number; bottom: number; left: number }) => void;
+}
+export interface SegmentedOptions<T extends string> {
+  /** accessible name */
+  name: string;
+  choices: readonly { value: T; label: string }[];
+  /** the choice that is checked, from signals */
+  value: () => NoInfer<T>;
+  disabled?: () => boolean;
+  /** may take its time */
+  change: (value: T) => unknown;
 }

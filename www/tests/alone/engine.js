@@ -14,7 +14,7 @@ import { fileAt } from './files.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../src/engine/types.js'
- * @import { Console } from '../../src/main/console.js'
+ * @import { Console } from '../../src/main/types.js'
  */
 
 /** Size of the picture in pixels. */

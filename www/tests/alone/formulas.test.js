@@ -2,7 +2,7 @@
 import { describe, expect, test } from 'vitest';
 import { eventually, open, pause, until } from './engine.js';
 
-/** @import { Console } from '../../src/main/console.js' */
+/** @import { Console } from '../../src/main/types.js' */
 
 /** Waits until nothing runs and the figures are there, or there is no surface. @param {Console} p */
 async function settled({ engine, debug }) {

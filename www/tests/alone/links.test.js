@@ -2,7 +2,7 @@
 import { describe, expect, test } from 'vitest';
 import { begin, coarse, eventually, link, open, picture, until } from './engine.js';
 
-/** @import { Console } from '../../src/main/console.js' */
+/** @import { Console } from '../../src/main/types.js' */
 
 describe('links', () => {
   test('bring back surface, settings and view', async () => {

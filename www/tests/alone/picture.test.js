@@ -3,7 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { halvesOf, INSIDE_TOLD, isInsideTold, SIDES } from '../engine/pixels.js';
 import { coarse, eventually, expectSurface, hide, link, open, pause, picture, until, wishes } from './engine.js';
 
-/** @import { Console } from '../../src/main/console.js' */
+/** @import { Console } from '../../src/main/types.js' */
 
 const MIDDLE = /** @type {const} */ ([240, 180]);
 

@@ -3,7 +3,7 @@ import { expect, test } from 'vitest';
 import { spherePly } from '../engine/sphere.js';
 import { expectSurface, open, pause, until, workers } from './engine.js';
 
-/** @import { Console } from '../../src/main/console.js' */
+/** @import { Console } from '../../src/main/types.js' */
 
 /** What the engine is doing when a worker dies, and whose work it is. */
 const STATES = {

@@ -12,7 +12,7 @@ import {
 
 /**
  * @import { Vec3 } from '../../src/engine/types.js'
- * @import { View } from '../../src/engine/view/camera.js'
+ * @import { View } from '../../src/engine/view/types.js'
  */
 
 const scene = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 2 };

@@ -4,8 +4,10 @@
  */
 
 /**
- * @import { Bounds, CoreProgress, CoreReport, FieldAnswer, FieldRequest } from '../../src/engine/types.js'
- * @import { MeshAnswer, Settings, SolvedModel, StartAnswer, StopReason } from '../../src/engine/types.js'
+ * @import {
+ *   Bounds, CoreProgress, CoreReport, FieldAnswer, FieldRequest, MeshAnswer, Settings, SolvedModel, StartAnswer,
+ *   StopReason,
+ * } from '../../src/engine/types.js'
  */
 
 /**

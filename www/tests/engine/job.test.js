@@ -4,10 +4,7 @@ import { runJob } from '../../src/engine/sampling/job.js';
 import { Jobs } from '../../src/engine/sampling/jobs.js';
 import { fakeCore } from './fake-core.js';
 
-/**
- * @import { Memory } from '../../src/engine/sampling/job.js'
- * @import { FromWorker, Job, SampleJob } from '../../src/engine/sampling/types.js'
- */
+/** @import { FromWorker, Job, Memory, SampleJob } from '../../src/engine/sampling/types.js' */
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
 const sampleJob = (part = {}) => ({

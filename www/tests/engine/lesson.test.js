@@ -2,7 +2,7 @@ import { describe, expect, test, vi } from 'vitest';
 import { LessonClient, LessonError } from '../../src/engine/lesson/client.js';
 import { follow } from '../../src/engine/lesson/follow.js';
 
-/** @import { FromLesson, LessonProgress, ToLesson } from '../../src/engine/lesson/protocol.js' */
+/** @import { FromLesson, LessonProgress, ToLesson } from '../../src/engine/lesson/types.js' */
 
 const bounds = {
   min: /** @type {[number, number, number]} */ ([-1, -1, -1]),

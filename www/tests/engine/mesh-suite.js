@@ -3,8 +3,8 @@ import { expect, test } from '@playwright/test';
 import { atRest, expectInside, open, picture, pixels, status } from './browser.js';
 
 /**
- * @import { ViewState } from '../../src/engine/types.js'
  * @import { Page } from '@playwright/test'
+ * @import { ViewState } from '../../src/engine/types.js'
  */
 
 /** @param {Page} page @param {Partial<ViewState>} view */

@@ -4,8 +4,8 @@ import { atRest, open, pixels, status } from './browser.js';
 import { halvesOf } from './pixels.js';
 
 /**
- * @import { CuttingPlane } from '../../src/engine/types.js'
  * @import { Page } from '@playwright/test'
+ * @import { CuttingPlane } from '../../src/engine/types.js'
  */
 
 /** Seen from +x with z up: +y is on the right. */

@@ -8,8 +8,7 @@ import { createStore } from '../../src/engine/store.js';
 import { description } from './description.js';
 
 /**
- * @import { FromPoints, Order, Solved } from '../../src/engine/points/protocol.js'
- * @import { PointsLike } from '../../src/engine/points/solve.js'
+ * @import { FromPoints, Order, PointsLike, Solved } from '../../src/engine/points/types.js'
  * @import { ModelInfo } from '../../src/engine/types.js'
  */
 

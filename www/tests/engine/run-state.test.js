@@ -11,8 +11,7 @@ import {
 import { description } from './description.js';
 
 /**
- * @import { Outcome } from '../../src/engine/sampling/types.js'
- * @import { RunEvent, RunState, SampleRequest } from '../../src/engine/sampling/types.js'
+ * @import { Outcome, RunEvent, RunState, SampleRequest } from '../../src/engine/sampling/types.js'
  * @import { Bounds } from '../../src/engine/types.js'
  */
 

@@ -4,10 +4,7 @@
  * @module
  */
 
-/**
- * Why a bundle could not be loaded.
- * @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault
- */
+/** @import { LoadFault } from './types.js' */
 
 /** A module that contains one 128-bit constant. It is valid exactly if the browser supports SIMD. */
 const SIMD_PROBE = new Uint8Array([

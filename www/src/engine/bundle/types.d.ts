@@ -9,3 +9,12 @@ export interface WorkerLike<Sent, Heard> {
   onmessage: Handler<{ data: Heard }> | null;
   onerror: Handler<{ message?: string }> | null;
 }
+
+/** Why a bundle could not be loaded. */
+export type LoadFault = 'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init';
+/** A timer of the browser, or a number of a test's clock. */
+export type Timer = ReturnType<typeof setTimeout> | number;
+export interface Timers {
+  setTimeout: (f: () => void, ms: number) => Timer;
+  clearTimeout: (id: Timer | undefined) => void;
+}

@@ -7,7 +7,7 @@ import { completeSettings } from '../share/state.js';
 import { description, showAll } from '../store.js';
 
 /**
- * @import { Parts } from '../index.js'
+ * @import { Parts } from '../parts.js'
  * @import { EngineCommands } from '../types.js'
  */
 

@@ -8,7 +8,7 @@ import { mergeState, surfaceOf } from '../share/state.js';
 import { description } from '../store.js';
 
 /**
- * @import { Parts } from '../index.js'
+ * @import { Parts } from '../parts.js'
  * @import { EngineCommands, FieldRequest } from '../types.js'
  */
 

@@ -19,7 +19,7 @@ import {
 import { change, description, showAll } from '../store.js';
 
 /**
- * @import { Parts } from '../index.js'
+ * @import { Parts } from '../parts.js'
  * @import { EngineCommands, Shape } from '../types.js'
  */
 

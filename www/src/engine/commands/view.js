@@ -7,7 +7,7 @@ import { validView } from '../share/view.js';
 import { change } from '../store.js';
 
 /**
- * @import { Parts } from '../index.js'
+ * @import { Parts } from '../parts.js'
  * @import { EngineCommands } from '../types.js'
  */
 

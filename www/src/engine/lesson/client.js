@@ -13,9 +13,13 @@
  * @module
  */
 
-/** @import { Fault, FromLesson, LessonProgress, LessonSettings, Questions, Surface, ToLesson } from './protocol.js' */
+/**
+ * @import {
+ *   Fault, FromLesson, LessonClientOptions, LessonProgress, LessonSettings, Questions, Surface, ToLesson,
+ *   WorkerLike,
+ * } from './types.js'
+ */
 
-/** @typedef {import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>} WorkerLike */
 /**
  * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's
  * `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error;
@@ -54,9 +58,7 @@ export class LessonClient {
   #waiting;
 
   /**
-   * @param {object} [options]
-   * @param {() => WorkerLike} [options.spawn]
-   * @param {(progress: LessonProgress) => void} [options.onProgress]  of the present run, some fifty times a second
+   * @param {LessonClientOptions} [options]
    */
   constructor({ spawn = spawnLesson, onProgress = () => {} } = {}) {
     this.#spawn = spawn;

@@ -8,7 +8,7 @@ import { nextBudget } from '../bundle/budget.js';
 
 /**
  * @import { Lesson } from '../../wasm/lesson/lesson.js'
- * @import { Advanced, FromLesson, Particles, ToLesson } from './protocol.js'
+ * @import { Advanced, FromLesson, Particles, ToLesson } from './types.js'
  */
 
 /** Target duration of a slice, so that a question does not wait long. */

@@ -16,15 +16,7 @@
 import { nextBudget } from '../bundle/budget.js';
 import { LessonClient, LessonError, spawnLesson } from './client.js';
 
-/**
- * @import { WorkerLike } from './client.js'
- * @import { LessonProgress, LessonSettings, Surface } from './protocol.js'
- */
-
-/**
- * One of the two: how far it is, and the milliseconds that it has worked.
- * @typedef {{progress: LessonProgress | null, workMs: number}} Lane
- */
+/** @import { Lane, LessonSettings, RaceOptions, Surface } from './types.js' */
 
 /** Target duration of a turn. */
 const TURN_MS = 12;
@@ -54,9 +46,7 @@ export class Race {
   #open;
 
   /**
-   * @param {object} [options]
-   * @param {() => WorkerLike} [options.spawn]
-   * @param {(index: 0 | 1, lane: Lane) => void} [options.onLane]  after every turn
+   * @param {RaceOptions} [options]
    */
   constructor({ spawn = spawnLesson, onLane = () => {} } = {}) {
     this.#onLane = onLane;

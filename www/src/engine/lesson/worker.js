@@ -8,7 +8,7 @@ import wasmUrl from '../../wasm/lesson/lesson_bg.wasm?url';
 import { loadModule, words } from '../bundle/load.js';
 import { follow } from './follow.js';
 
-/** @import { FromLesson, ToLesson } from './protocol.js' */
+/** @import { FromLesson, ToLesson } from './types.js' */
 
 /** @param {FromLesson} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

@@ -5,10 +5,11 @@
  * @module
  */
 
-/** @import { FromPoints, Order, Solved } from './protocol.js' */
+/**
+ * @import { Timer } from '../bundle/types.js'
+ * @import { Order, PointsClientOptions, Refusal, Solved } from './types.js'
+ */
 
-/** @typedef {import('../bundle/types.js').WorkerLike<Order, FromPoints>} WorkerLike */
-/** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
 /**
  * How an order ended. `givenUp`: the page cancelled it.
  * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Ending
@@ -38,10 +39,7 @@ export class PointsClient {
   #end;
 
   /**
-   * @param {object} options
-   * @param {() => WorkerLike} options.spawn
-   * @param {(progress: Extract<FromPoints, {type: 'progress'}>) => void} options.onProgress
-   * @param {{setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} [options.clock]
+   * @param {PointsClientOptions} options
    */
   constructor({
     spawn,
@@ -69,7 +67,7 @@ export class PointsClient {
     this.giveUp();
     return new Promise((resolve) => {
       const worker = this.#spawn();
-      /** @type {any} */
+      /** @type {Timer | undefined} */
       let timer;
       const end = (/** @type {Ending} */ ending) => {
         this.#clock.clearTimeout(timer);

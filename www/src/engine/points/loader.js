@@ -11,18 +11,14 @@ import { defaultState, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
 
 /**
- * @import { Store } from '../store.js'
  * @import { State } from '../types.js'
- * @import { Refusal, WorkerLike } from './client.js'
- * @import { Order } from './protocol.js'
+ * @import { LoaderOptions, Order, Refusal, SampleOptions } from './types.js'
  */
 
 /**
  * The part of the state that determines the surface.
  * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'centres' | 'bounds' | 'plane'>} Shape
  */
-/** @typedef {{grow?: boolean, fit?: boolean}} SampleOptions */
-
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
@@ -52,10 +48,7 @@ export class ModelLoader {
   #orderId;
 
   /**
-   * @param {object} options
-   * @param {Store} options.store
-   * @param {() => WorkerLike} options.spawn
-   * @param {(options: SampleOptions) => void} options.sample  samples the present state
+   * @param {LoaderOptions} options
    */
   constructor({ store, spawn, sample }) {
     this.#store = store;

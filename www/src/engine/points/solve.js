@@ -7,21 +7,7 @@
 import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
 
-/**
- * @import { PointsAnswer, SolvedAnswer } from '../types.js'
- * @import { FromPoints, Order } from './protocol.js'
- */
-
-/**
- * The part of the bundle's class that the loop uses.
- * @typedef {object} PointsLike
- * @property {(id: string, centres: number) => PointsAnswer} model
- * @property {(name: string, bytes: Uint8Array, centres: number) => PointsAnswer} file
- * @property {(budget: number) => PointsAnswer} step
- * @property {() => Uint8Array} field
- * @property {() => SolvedAnswer} info
- * @property {() => Float32Array} centres
- */
+/** @import { FromPoints, Order, PointsLike } from './types.js' */
 
 /** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;

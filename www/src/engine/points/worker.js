@@ -9,7 +9,7 @@ import { loadModule, words } from '../bundle/load.js';
 import { BEAT_MS } from './protocol.js';
 import { solve } from './solve.js';
 
-/** @import { FromPoints, Order } from './protocol.js' */
+/** @import { FromPoints, Order } from './types.js' */
 
 /** @param {FromPoints} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });

@@ -8,17 +8,7 @@ import { Supervisor } from './supervisor.js';
 
 /**
  * @import { MeshFormat } from '../types.js'
- * @import { FromWorker, ToWorker } from './types.js'
- * @import { Clock, Crash, WorkerLike } from './supervisor.js'
- */
-
-/**
- * What the client reports.
- * @typedef {object} ClientEvents
- * @property {(message: FromWorker) => void} onMessage
- * @property {(crash: Crash) => void} onRestart  the old worker is gone and the new one is loading
- * @property {(crash: Crash) => void} onSafeMode  no worker until `revive()`
- * @property {(text: string) => void} onLoadFailed
+ * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
 export class SamplingClient {

@@ -6,8 +6,7 @@
 
 /**
  * @import { Notice } from '../types.js'
- * @import { RunRequest } from './types.js'
- * @import { Crash } from './supervisor.js'
+ * @import { Crash, RunRequest } from './types.js'
  */
 
 /**

@@ -14,24 +14,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  * @import { Core } from '../../wasm/core/core.js'
  * @import { Figures } from '../columns.js'
  * @import { CoreProgress, CoreReport, Seconds } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, FromWorker, Job, Mesh } from './types.js'
- */
-
-/**
- * @typedef {object} Env
- * @property {() => number} nowMs
- * @property {() => Promise<void>} pause  lets the worker handle its messages
- * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
- * @property {() => 'stop' | 'replace' | null} interrupt
- * @property {() => boolean} curvature  whether the page shows the curvature
- * @property {() => boolean} mesh  whether the page draws a mesh
- * @property {() => boolean} room  whether the page has drawn the columns sent so far
- */
-
-/**
- * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
- * has.
- * @typedef {{held: number, meshed: number}} Memory
+ * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh } from './types.js'
  */
 
 /**

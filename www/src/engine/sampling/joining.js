@@ -16,7 +16,7 @@ const FIRST_SLICES = 32;
 const FIRST_ROWS = 4;
 
 /**
- * @typedef {Pick<import('./job.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
+ * @typedef {Pick<import('./types.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
  */
 
 /**

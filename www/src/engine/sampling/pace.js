@@ -7,12 +7,7 @@ import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
  * @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js'
- * @import { Run, RunRequest, SampleRequest } from './types.js'
- */
-
-/**
- * The measurements of a finished run.
- * @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Measured
+ * @import { Measured, Run, RunRequest, SampleRequest } from './types.js'
  */
 
 /** Pause between live requests after which the next one belongs to another drag. */

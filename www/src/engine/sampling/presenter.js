@@ -12,27 +12,12 @@ import { MOST_REMEMBERED } from './protocol.js';
 /**
  * @import { Columns } from '../columns.js'
  * @import { Store } from '../store.js'
- * @import { Bounds, CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, PastMessage, ReportMessage } from './types.js'
- * @import { Run, RunRequest } from './types.js'
- */
-
-/**
- * The part of the viewer that the presenter uses.
- * @typedef {object} Picture
- * @property {(options: {grow: boolean, fit: boolean, bounds: Bounds | null}) => void} begin  a
- *   new surface replaces the old one
- * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns of particles first … last are
- *   new
- * @property {() => void} remembered  the columns have positions of earlier relaxation steps
- * @property {() => void} meshed  the columns have another mesh
- * @property {(from: number, last: number) => void} recolour  colours of particles first … last may have changed
- * @property {() => void} fit
- * @property {(dim: boolean) => void} dim
+ * @import { CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
+ * @import { ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, Run, RunRequest } from './types.js'
  */
 
 export class Presenter {
-  /** @param {{store: Store, columns: Columns, picture: Picture}} page */
+  /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
   constructor({ store, columns, picture }) {
     this.store = store;
     this.columns = columns;

@@ -7,9 +7,8 @@
 import { clampSettings } from '../share/state.js';
 
 /**
- * @import { SampleRequest, RunRequest, Stage, Run, Shown, RunState, RunEvent } from './types.js'
  * @import { Description } from '../types.js'
- * @import { Outcome } from './types.js'
+ * @import { Outcome, Run, RunEvent, RunRequest, RunState, SampleRequest, Shown, Stage } from './types.js'
  */
 
 /**

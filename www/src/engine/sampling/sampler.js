@@ -25,14 +25,10 @@ import {
 } from './run-state.js';
 
 /**
- * @import { Columns } from '../columns.js'
- * @import { Solved } from '../points/protocol.js'
- * @import { Store } from '../store.js'
  * @import { Description, FieldAnswer, FieldOk } from '../types.js'
- * @import { Picture } from './presenter.js'
- * @import { ColumnsMessage, DoneMessage, FromWorker, Job } from './types.js'
- * @import { Run, RunEvent, RunRequest, SampleRequest } from './types.js'
- * @import { Clock, Crash, WorkerLike } from './supervisor.js'
+ * @import {
+ *   ColumnsMessage, Crash, DoneMessage, FromWorker, Job, Run, RunEvent, RunRequest, SampleRequest, SamplerOptions,
+ * } from './types.js'
  */
 
 export class Sampler {
@@ -45,16 +41,7 @@ export class Sampler {
   #pace;
 
   /**
-   * @param {object} options
-   * @param {Store} options.store
-   * @param {Columns} options.columns
-   * @param {Picture} options.picture
-   * @param {() => WorkerLike} options.spawn
-   * @param {() => void} options.onReady  called when the description has arrived for the first time
-   * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
-   * @param {() => SampleRequest} options.whole  returns the full run of the present state
-   * @param {(key: string) => Solved | undefined} [options.solved]  returns the solved model that a field names
-   * @param {Clock} [options.clock]
+   * @param {SamplerOptions} options
    */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
     this.store = store;

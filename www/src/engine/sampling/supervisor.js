@@ -8,12 +8,9 @@
  */
 import { SILENCE_MS } from './protocol.js';
 
-/** @import { FromWorker, ToWorker } from './types.js' */
-
-/** @typedef {import('../bundle/types.js').WorkerLike<ToWorker, FromWorker>} WorkerLike */
 /**
- * @typedef {{cause: 'panic' | 'hang', message: string, stack: string, restarts: number}} Crash
- * @typedef {{now: () => number, setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} Clock
+ * @import { Timer } from '../bundle/types.js'
+ * @import { Clock, Crash, FromWorker, SupervisorOptions, ToWorker, WorkerLike } from './types.js'
  */
 
 /** Time window in which replacements are counted. */
@@ -46,17 +43,11 @@ export class Supervisor {
   /** Time until which the worker may be silent. */
   #deadline;
 
-  /** @type {any} */
+  /** @type {Timer | undefined} */
   #timer;
 
   /**
-   * @param {object} options
-   * @param {() => WorkerLike} options.spawn
-   * @param {(message: FromWorker) => void} options.onMessage
-   * @param {(crash: Crash) => void} options.onRestart  the old worker is gone and the new one is loading
-   * @param {(crash: Crash) => void} options.onSafeMode  no worker until `revive()`
-   * @param {(message: string) => void} options.onLoadError  the worker's script did not load
-   * @param {Clock} [options.clock]
+   * @param {SupervisorOptions} options
    */
   constructor({ spawn, onMessage, onRestart, onSafeMode, onLoadError, clock = BROWSER_CLOCK }) {
     this.#spawn = spawn;
@@ -72,7 +63,7 @@ export class Supervisor {
     this.#busy = false;
     this.#heard = false;
     this.#deadline = 0;
-    this.#timer = null;
+    this.#timer = undefined;
     /** @type {number[]} */
     this.restarts = [];
   }
@@ -140,15 +131,15 @@ export class Supervisor {
     const on = this.worker !== null && (this.#busy || (this.state === 'loading' && this.#heard));
     if (!on) {
       this.#clock.clearTimeout(this.#timer);
-      this.#timer = null;
-    } else if (this.#timer === null) {
+      this.#timer = undefined;
+    } else if (this.#timer === undefined) {
       this.#timer = this.#clock.setTimeout(() => this.#check(false), Math.max(1, this.#deadline - this.#clock.now()));
     }
   }
 
   /** @param {boolean} again */
   #check(again) {
-    this.#timer = null;
+    this.#timer = undefined;
     if (this.#clock.now() < this.#deadline) this.#watch();
     else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
     else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
@@ -156,7 +147,7 @@ export class Supervisor {
 
   #drop() {
     this.#clock.clearTimeout(this.#timer);
-    this.#timer = null;
+    this.#timer = undefined;
     const { worker } = this;
     this.worker = null;
     if (worker) {

@@ -1,6 +1,8 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
-import type { Figures } from '../columns.js';
-import type { Solved } from '../points/protocol.js';
+import type { Timers } from '../bundle/types.js';
+import type { Columns, Figures } from '../columns.js';
+import type { Solved } from '../points/types.js';
+import type { Store } from '../store.js';
 import type {
   Bounds,
   CoreProgress,
@@ -98,7 +100,7 @@ export interface DoneMessage {
   reportFollows: boolean;
 }
 export type ReportMessage = { type: 'report'; id: number; report: Report } & Figures;
-export type LoadFault = import('../bundle/load.js').LoadFault;
+export type LoadFault = import('../bundle/types.js').LoadFault;
 export type FromWorker =
   | { type: 'ready'; description: Description }
   | { type: 'failed'; fault: LoadFault; message: string }
@@ -191,3 +193,76 @@ export type RunEvent =
   | { type: 'lost' }
   | { type: 'crashed'; input: string; again: boolean }
   | { type: 'revived' };
+
+/** What the client reports. */
+export interface ClientEvents {
+  onMessage: (message: FromWorker) => void;
+  /** the old worker is gone and the new one is loading */
+  onRestart: (crash: Crash) => void;
+  /** no worker until `revive()` */
+  onSafeMode: (crash: Crash) => void;
+  onLoadFailed: (text: string) => void;
+}
+export interface Env {
+  nowMs: () => number;
+  /** lets the worker handle its messages */
+  pause: () => Promise<void>;
+  post: (message: FromWorker, transfer?: Transferable[]) => void;
+  interrupt: () => 'stop' | 'replace' | null;
+  /** whether the page shows the curvature */
+  curvature: () => boolean;
+  /** whether the page draws a mesh */
+  mesh: () => boolean;
+  /** whether the page has drawn the columns sent so far */
+  room: () => boolean;
+}
+/**
+ * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
+ * has.
+ */
+export type Memory = { held: number; meshed: number };
+/** The measurements of a finished run. */
+export type Measured = { seconds: Seconds; particles: number; relax_steps: number; size: number };
+/** The part of the viewer that the presenter uses. */
+export interface PictureLike {
+  /** a new surface replaces the old one */
+  begin: (options: { grow: boolean; fit: boolean; bounds: Bounds | null }) => void;
+  /** columns of particles first … last are new */
+  changed: (first: number, last: number, onDrawn: () => void) => void;
+  /** the columns have positions of earlier relaxation steps */
+  remembered: () => void;
+  /** the columns have another mesh */
+  meshed: () => void;
+  /** colours of particles first … last may have changed */
+  recolour: (from: number, last: number) => void;
+  fit: () => void;
+  dim: (dim: boolean) => void;
+}
+export type WorkerLike = import('../bundle/types.js').WorkerLike<ToWorker, FromWorker>;
+export type Crash = { cause: 'panic' | 'hang'; message: string; stack: string; restarts: number };
+export type Clock = Timers & { now: () => number };
+export interface SamplerOptions {
+  store: Store;
+  columns: Columns;
+  picture: PictureLike;
+  spawn: () => WorkerLike;
+  /** called when the description has arrived for the first time */
+  onReady: () => void;
+  onAsk: (predicted: number, request: SampleRequest) => void;
+  /** returns the full run of the present state */
+  whole: () => SampleRequest;
+  /** returns the solved model that a field names */
+  solved?: (key: string) => Solved | undefined;
+  clock?: Clock;
+}
+export interface SupervisorOptions {
+  spawn: () => WorkerLike;
+  onMessage: (message: FromWorker) => void;
+  /** the old worker is gone and the new one is loading */
+  onRestart: (crash: Crash) => void;
+  /** no worker until `revive()` */
+  onSafeMode: (crash: Crash) => void;
+  /** the worker's script did not load */
+  onLoadError: (message: string) => void;
+  clock?: Clock;
+}

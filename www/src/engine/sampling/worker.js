@@ -13,8 +13,7 @@ import { BEAT_MS } from './protocol.js';
 
 /**
  * @import { InitOutput } from '../../wasm/core/core.js'
- * @import { Env } from './job.js'
- * @import { Fault, FromWorker, LoadFault, ToWorker } from './types.js'
+ * @import { Env, Fault, FromWorker, LoadFault, ToWorker } from './types.js'
  */
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */

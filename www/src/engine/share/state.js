@@ -10,8 +10,9 @@ import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
 
 /**
- * @import { Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Settings, State } from '../types.js'
- * @import { SurfaceInfo } from '../types.js'
+ * @import {
+ *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Settings, State, SurfaceInfo,
+ * } from '../types.js'
  */
 
 /** Largest number of parameters in a state. */

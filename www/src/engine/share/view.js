@@ -9,7 +9,10 @@ import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 import { COLOURINGS } from '../view/colouring.js';
 import { integers, isRecord, vec3, within } from './valid.js';
 
-/** @import { CameraState, ColourMode } from '../types.js' */
+/**
+ * @import { CameraState, ColourMode } from '../types.js'
+ * @import { Option } from './types.js'
+ */
 
 /** Largest number of a camera, which the graphics card reads in single precision. */
 const LARGEST_SINGLE = 3e38;
@@ -17,13 +20,6 @@ const LARGEST_SINGLE = 3e38;
 const LAST_LEVEL = 1e6;
 /** Largest index of a particle in a state; no run reaches it. */
 const LAST_PARTICLE = 2 ** 32 - 1;
-
-/**
- * An option. `valid` returns the valid value that is nearest to any input, or undefined. With `exact` a value that had
- * to be changed counts as one that was reset.
- * @template T
- * @typedef {{home: () => T, words: string, valid: (raw: unknown) => T | undefined, exact?: boolean}} Option
- */
 
 /** @param {boolean} home @param {string} words @returns {Option<boolean>} */
 const flag = (home, words) => ({

@@ -7,16 +7,9 @@
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { BackendKind } from '../types.js'
  * @import { Painter } from './painter.js'
- */
-
-/** @typedef {'webgpu' | 'webgl2' | 'canvas2d'} BackendKind */
-/**
- * @typedef {object} Device
- * @property {BackendKind} kind
- * @property {HTMLCanvasElement} canvas
- * @property {Renderer | Painter} renderer
- * @property {() => void} dispose
+ * @import { Device } from './types.js'
  */
 
 /** @type {readonly BackendKind[]} */

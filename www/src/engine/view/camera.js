@@ -9,15 +9,13 @@
  */
 import { dot, vec } from '../vector.js';
 
-/** @import { CameraState, Spot, Vec3 } from '../types.js' */
+/**
+ * @import { CameraState, Spot, Vec3 } from '../types.js'
+ * @import { Insets, View } from './types.js'
+ */
 
 /**
- * @typedef {{left: number, right: number, top: number, bottom: number}} Insets  pixels covered by panels
  * @typedef {{yaw: number, pitch: number}} Angles
- * @typedef {{
- *   clipFromWorld: Float32Array, eye: Vec3, forward: Vec3, right: Vec3, up: Vec3, tanX: number, tanY: number,
- *   shiftX: number, shiftY: number, worldPerPx: number, packed: Float32Array,
- * }} View
  */
 
 /** Angle of view across the shorter side of the free part of the picture. A narrow angle keeps the distortion small. */

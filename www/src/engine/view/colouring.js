@@ -10,7 +10,7 @@ import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
 /**
  * @import { Columns } from '../columns.js'
  * @import { ColourMode, Legend, LegendEntry } from '../types.js'
- * @import { Palette, Theme } from './palettes.js'
+ * @import { Colouring, Palette, Theme } from './types.js'
  */
 
 /** Number of slots of a particle in a uniform run. In an adaptive run it varies. */
@@ -142,19 +142,6 @@ function curvatureRange(columns) {
   const most = sizes[Math.floor(CURVATURE_QUANTILE * (sizes.length - 1))];
   return [-most, most];
 }
-
-/**
- * What a colouring works with.
- * @typedef {{palette: Palette, columns: Columns, range: [number, number] | null}} Context
- */
-/**
- * A way to colour the particles. A colour is packed as `0xAABBGGRR`.
- * @typedef {object} Colouring
- * @property {(columns: Columns) => [number, number] | null} [range]  the values at both ends of a ramp, where they
- *   depend on the particles; null before there is a value
- * @property {(context: Context) => ((i: number) => number) | null} colour  null while what it shows is not known
- * @property {(context: Context) => Omit<Legend, 'unit'> & {unit?: string}} legend
- */
 
 /**
  * A colouring by classes. `classOf` returns the class of a particle, or is null while the classes are not known.

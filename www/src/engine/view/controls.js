@@ -6,7 +6,7 @@
  */
 import { Pointers, placeOn, zoomAt } from './pointers.js';
 
-/** @import { Place, Stage } from './pointers.js' */
+/** @import { Place, Stage } from './types.js' */
 
 /**
  * Change in the logarithm of the distance per wheel pixel. A notch of 100 pixels is 14 %; a pinch unit counts about ten

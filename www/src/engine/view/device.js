@@ -10,7 +10,7 @@
  */
 import { BACKENDS, openDevice } from './backends.js';
 
-/** @import { BackendKind, Device } from './backends.js' */
+/** @import { Device, DeviceOptions } from './types.js' */
 
 /** Time window in which losses of one kind of device are counted. */
 const WINDOW_MS = 60_000;
@@ -35,15 +35,7 @@ export class DeviceKeeper {
   #resting;
 
   /**
-   * @param {object} options
-   * @param {HTMLElement} options.host
-   * @param {(device: Device) => void} options.onOpen  a new device, without particles, is open
-   * @param {(kind: BackendKind, message: string) => void} options.onLost  the device is lost and another is being
-   *   opened
-   * @param {(kind: BackendKind, message: string) => void} options.onFallback  a kind of device was abandoned
-   * @param {BackendKind | null} [options.first]  kind to try first
-   * @param {typeof openDevice} [options.open]
-   * @param {{now: () => number, wait: (ms: number) => Promise<void>}} [options.clock]
+   * @param {DeviceOptions} options
    */
   constructor({ host, onOpen, onLost, onFallback, first = null, open = openDevice, clock }) {
     this.#host = host;

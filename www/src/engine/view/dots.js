@@ -9,7 +9,7 @@
  */
 import { NO_LEVEL } from '../columns.js';
 
-/** @import { View } from './camera.js' */
+/** @import { DotOptions, View } from './types.js' */
 
 /** Radius of the ink, and width of the casing around it, in page pixels. */
 const INK_PX = 1.7;
@@ -23,11 +23,7 @@ const LEAST_INK = 2.4;
 /**
  * @param {Float32Array} points  three numbers each
  * @param {View} view  made for page pixels
- * @param {object} options
- * @param {number} options.px  canvas pixels per page pixel
- * @param {number} options.size  disc scale of the renderer, which the radii compensate
- * @param {number} options.lift  distance by which a dot is moved towards the eye, in front of the discs around it
- * @param {{ink: number, casing: number}} options.palette
+ * @param {DotOptions} options
  */
 export function dotsOf(points, view, { px, size, lift, palette }) {
   const n = points.length / 3;

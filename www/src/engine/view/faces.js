@@ -12,8 +12,7 @@ import { PALETTES } from './palettes.js';
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
  * @import { Columns } from '../columns.js'
  * @import { Mesh } from '../types.js'
- * @import { Theme } from './palettes.js'
- * @import { Look } from './style.js'
+ * @import { Look, Theme } from './types.js'
  */
 
 /** Faces gathered at a time, which take 6 MB. */

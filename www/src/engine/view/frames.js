@@ -4,6 +4,8 @@
  * @module
  */
 
+/** @import { FrameResult } from './types.js' */
+
 /** Delay before a frame that the screen did not accept is drawn again, and the largest number of such attempts. */
 const RETRY_MS = 60;
 const MOST_SKIPS = 20;
@@ -12,12 +14,6 @@ const LONGEST_STEP_S = 1 / 20;
 
 /** Returns the time for all animations, in seconds. */
 export const nowS = () => performance.now() / 1000;
-
-/**
- * What became of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
- * canvas.
- * @typedef {'drawn' | 'skipped' | 'none'} FrameResult
- */
 
 export class FrameLoop {
   #draw;

@@ -11,7 +11,7 @@ import { grown, NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
-/** @import { CuttingPlane } from '../types.js' */
+/** @import { Style, Target } from './types.js' */
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
@@ -27,20 +27,6 @@ const MUTE = 0.5;
 /** What the inside keeps of its light and of its distance from grey, as in shaders/common.wgsl. */
 const INSIDE_LIGHT = 0.4;
 const INSIDE_CHROMA = 0.5;
-
-/**
- * @typedef {object} Style
- * @property {[number, number, number, number]} background  sRGB 0 … 1
- * @property {number} disc_scale
- * @property {[number, number, number]} key_light_view
- * @property {number} dim
- * @property {number} dim_backfaces  share by which discs seen from behind are drawn as an inside, darker and greyer
- * @property {number} [fade_s]
- * @property {number | null} [level]  newest generation level drawn, null for all
- * @property {number} outline  index of the highlighted particle, −1 for none
- * @property {{min: number[], max: number[], colour: number[]} | null} box
- * @property {CuttingPlane | null} [plane]  discs whose centres are beyond it are hidden
- */
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
 const packed = (r, g, b) =>
@@ -74,11 +60,6 @@ function shadeOf(keyward, skyward, edgeOn) {
   const wrapped = Math.max(0, (keyward + 0.25) / 1.25);
   return (0.56 + 0.1 * skyward + 0.52 * wrapped * wrapped) * (1 - 0.3 * edgeOn ** 3);
 }
-
-/**
- * The pixels of a picture and how near each is.
- * @typedef {{out: Uint32Array, depth: Float32Array, width: number, height: number}} Target
- */
 
 /**
  * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.

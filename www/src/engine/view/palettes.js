@@ -10,7 +10,7 @@
 import { vec } from '../vector.js';
 import { oklch, packedFromOklab } from './oklab.js';
 
-/** @typedef {'light' | 'dark'} Theme */
+/** @import { Palette, Theme } from './types.js' */
 
 /** Number of colours in the level cycle. */
 export const CYCLE = 12;
@@ -154,8 +154,6 @@ function palette(theme) {
     box: packedFromOklab(oklch(light ? 0.62 : 0.55, 0.01, 260)),
   };
 }
-
-/** @typedef {ReturnType<typeof palette>} Palette */
 
 /** @type {Record<Theme, Palette>} */
 export const PALETTES = { light: palette('light'), dark: palette('dark') };

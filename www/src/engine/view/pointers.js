@@ -6,21 +6,7 @@
  * @module
  */
 
-/** @import { Camera, View } from './camera.js' */
-
-/** @typedef {{x: number, y: number}} Place  in CSS pixels of the host */
-/**
- * The objects on which the pointers act.
- * @typedef {object} Stage
- * @property {HTMLElement} host
- * @property {Camera} camera
- * @property {() => View} currentView
- * @property {() => void} moved
- * @property {() => void} fit
- * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer hovers over or tapped this place
- * @property {() => Place | null} centre  where the target of the camera is
- * @property {(pressed: boolean) => void} leave  the pointer left, or was `pressed`
- */
+/** @import { Place, Stage } from './types.js' */
 
 /** Rotation of a drag across the whole shorter side. */
 const TURN_PER_SIDE_RAD = Math.PI * 0.9;

@@ -4,7 +4,7 @@
  * @module
  */
 
-/** @import { BackendKind } from './backends.js' */
+/** @import { BackendKind } from '../types.js' */
 
 /** Largest pixel ratio. Finer pixels are not visible but cost drawing time. */
 const LARGEST_PIXEL_RATIO = 2;

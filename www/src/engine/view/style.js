@@ -7,8 +7,8 @@ import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
 
 /**
- * @import { Bounds, CuttingPlane, ViewState } from '../types.js'
- * @import { Insets } from './camera.js'
+ * @import { ViewState } from '../types.js'
+ * @import { Look } from './types.js'
  */
 
 /** Duration in which a new particle fades in. */
@@ -17,22 +17,6 @@ export const FADE_S = 0.12;
 const EDGE_PX = 1;
 /** Share by which what is seen from behind is drawn as an inside: darker and greyer. */
 const DIM_BACKFACES = 1;
-
-/**
- * What of the view the picture itself shows, and what else it shows.
- * @typedef {Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'>
- *   & Setting} Look
- */
-/**
- * @typedef {object} Setting
- * @property {'light' | 'dark'} theme
- * @property {Bounds | null} box  the clip box, or null if it is not drawn
- * @property {CuttingPlane | null} plane  what it hides is neither drawn nor picked
- * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
- * @property {number | null} upto  number of particles drawn, null for all
- * @property {number} highlight  index of the particle with an outline, −1 for none
- * @property {Insets} insets
- */
 
 /** Returns what the picture shows of the view. @param {ViewState} view */
 export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {

@@ -10,10 +10,8 @@ import { PALETTES } from './palettes.js';
 
 /**
  * @import { Columns } from '../columns.js'
- * @import { Device } from './backends.js'
- * @import { View } from './camera.js'
  * @import { Reveal } from './reveal.js'
- * @import { Look } from './style.js'
+ * @import { Device, Look, View } from './types.js'
  */
 
 /**

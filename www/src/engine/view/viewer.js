@@ -19,24 +19,8 @@ import { FADE_S, firstLook, shownLevel, shownStep, styleOf } from './style.js';
 import { ParticleUpload } from './upload.js';
 
 /**
- * @import { Columns } from '../columns.js'
- * @import { Bounds, CameraState, Legend, Place, Ray, Vec3, ViewState } from '../types.js'
- * @import { BackendKind, Device } from './backends.js'
- * @import { View } from './camera.js'
- * @import { FrameResult } from './frames.js'
- * @import { Look } from './style.js'
- */
-
-/**
- * The events of the viewer.
- * @typedef {object} ViewerEvents
- * @property {(device: Device) => void} onDevice
- * @property {(kind: string, message: string) => void} onLost
- * @property {(kind: string, message: string) => void} onFallback
- * @property {(legend: Legend) => void} onLegend
- * @property {(camera: CameraState) => void} onCamera
- * @property {() => void} onFrame  a picture was drawn
- * @property {(reveal: import('../types.js').Reveal | null) => void} onReveal
+ * @import { Bounds, Place, Ray, Vec3 } from '../types.js'
+ * @import { Device, FrameResult, Look, View, ViewerEvents, ViewerOptions } from './types.js'
  */
 
 /** Picking tolerance around small discs, in page pixels. */
@@ -58,11 +42,7 @@ export class Viewer {
   #sight;
 
   /**
-   * @param {object} options
-   * @param {HTMLElement} options.host
-   * @param {Columns} options.columns
-   * @param {ViewState} options.look
-   * @param {BackendKind | null} options.first  the back end to try first
+   * @param {ViewerOptions} options
    * @param {ViewerEvents} events
    */
   constructor({ host, columns, look, first }, events) {

@@ -11,7 +11,7 @@ import { createRange, facts } from '../parts.js';
 
 /**
  * @import { Lab } from '../lab.js'
- * @import { Context } from './index.js'
+ * @import { Context } from '../types.js'
  */
 
 /**

@@ -4,7 +4,7 @@ import { formatCount, formatSignificant } from '../../ui/format.js';
 
 /**
  * @import { Lab } from '../lab.js'
- * @import { Context } from './index.js'
+ * @import { Context } from '../types.js'
  */
 
 /** Steps of Witkin and Heckbert's system for 10,633 particles on an ellipsoid, as Table 1 of the paper has it. */

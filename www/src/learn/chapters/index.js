@@ -6,15 +6,7 @@ import { rest, seams } from './rest.js';
 import { opening, rings } from './rings.js';
 import { sizes } from './sizes.js';
 
-/**
- * @import { Lab } from '../lab.js'
- * @import { Stops } from '../predict.js'
- */
-
-/**
- * What a figure is given: the runs, and which predictions are out.
- * @typedef {{ lab: Promise<Lab>, stops: Stops }} Context
- */
+/** @import { Context } from '../types.js' */
 
 /** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
 export const FIGURES = {

@@ -13,8 +13,7 @@ import { createRange } from '../parts.js';
 
 /**
  * @import { Opened } from '../../figures/types.js'
- * @import { LabRun } from '../types.js'
- * @import { Context } from './index.js'
+ * @import { Context, LabRun } from '../types.js'
  */
 
 /** The fates that are explained in any case. */

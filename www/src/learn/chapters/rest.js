@@ -9,9 +9,7 @@ import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
 /**
  * @import { Lab } from '../lab.js'
- * @import { LabRun } from '../types.js'
- * @import { Mark } from '../types.js'
- * @import { Context } from './index.js'
+ * @import { Context, LabRun, Mark } from '../types.js'
  */
 
 const STEP_MS = 400;

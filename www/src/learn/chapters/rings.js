@@ -7,7 +7,7 @@ import { byLevel, Orbit, Picture } from '../picture.js';
 
 /**
  * @import { LessonParticles } from '../../engine/types.js'
- * @import { Context } from './index.js'
+ * @import { Context } from '../types.js'
  */
 
 /** Time in which the whole front grows. */

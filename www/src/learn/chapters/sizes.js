@@ -6,14 +6,7 @@ import { PARTICLES } from '../lab.js';
 import { createScale, createSelect } from '../parts.js';
 import { byValue, Orbit, Picture } from '../picture.js';
 
-/**
- * @import { LessonSettings } from '../../engine/lesson/protocol.js'
- * @import { Context } from './index.js'
- */
-
-/**
- * @typedef {LessonSettings['law']} Law
- */
+/** @import { Context, Law } from '../types.js' */
 
 /** @param {Context} context */
 export async function sizes({ lab, stops }) {

@@ -9,20 +9,10 @@ import { Decoration, EditorView, keymap, MatchDecorator, ViewPlugin, WidgetType 
 import { h } from '../dom.js';
 
 /**
- * @import { Description, FieldFault } from '../../engine/types.js'
- * @import { Editor } from './formula.js'
  * @import { StateEffectType } from '@codemirror/state'
  * @import { DecorationSet, ViewUpdate } from '@codemirror/view'
- */
-
-/** @typedef {Description['functions']} Functions */
-/**
- * @typedef {object} CodeEditorOptions
- * @property {string} text
- * @property {{ anchor: number, head: number }} selection
- * @property {Functions} functions
- * @property {() => string[]} names returns the names of the formula's parameters
- * @property {(text: string) => void} change
+ * @import { FieldFault } from '../../engine/types.js'
+ * @import { CodeEditorOptions, Editor, Functions } from './types.js'
  */
 
 /** @type {StateEffectType<{ fault: FieldFault | null, message: string }>} */

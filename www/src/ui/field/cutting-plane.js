@@ -10,8 +10,8 @@ import { createSlider } from '../slider.js';
 import { AXES, anglesOf, axisOf, axisVector, centreOf, directionOf, extentOf, towardEye } from '../space.js';
 
 /**
- * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'
  * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'
  */
 
 /**

@@ -4,7 +4,7 @@ import { carriesFiles, filesOf } from './files.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Toast } from '../toasts.js'
+ * @import { Toast } from '../types.js'
  */
 
 /**

@@ -1,15 +1,9 @@
 /** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
 
-/** @import { Description, FieldFault } from '../../engine/types.js' */
-
 /**
- * @typedef {object} FaultView
- * @property {'hint' | 'fault'} tone
- * @property {string} message
- * @property {{ before: string, marked: string, after: string } | null} excerpt
- * @property {Repair[]} repairs
+ * @import { Description, FieldFault } from '../../engine/types.js'
+ * @import { FaultView, Repair } from './types.js'
  */
-/** @typedef {{ label: string, declare?: string, replace?: { start: number, end: number, text: string } }} Repair */
 
 /** Number of characters of context around an error. */
 const CONTEXT = 22;

@@ -8,21 +8,8 @@ import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
 
 /**
- * @import { Description, Engine, FieldFault } from '../../engine/types.js'
- * @import { FaultView, Repair } from './fault.js'
- */
-
-/**
- * The interface of both editors. Offsets are UTF-16 code units.
- * @typedef {object} Editor
- * @property {HTMLElement} element
- * @property {() => string} text
- * @property {(text: string) => void} setText
- * @property {(start: number, end: number, text: string) => void} replace
- * @property {(fault: FieldFault | null, message: string) => void} setFault
- * @property {() => { anchor: number, head: number }} selection
- * @property {() => void} focus
- * @property {boolean} marks whether the editor itself marks the error
+ * @import { Description, Engine } from '../../engine/types.js'
+ * @import { Editor, FaultView, Repair } from './types.js'
  */
 
 /**

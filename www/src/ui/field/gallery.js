@@ -11,21 +11,14 @@ import { icon } from '../icons.js';
 import { filesOf } from './files.js';
 
 /**
+ * @import { Signal } from '@preact/signals-core'
  * @import { Description, Engine } from '../../engine/types.js'
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Entry, Finding } from './types.js'
  */
 
 const PICTURE_PX = 160;
 /** Name of the group of models and files. */
 const POINTS = 'Points';
-
-/**
- * What the tiles depend on.
- * @typedef {object} Finding
- * @property {ReadonlySignal<readonly string[]>} words  that the search looks for
- * @property {ReadonlySignal<string | null>} chosen  the present surface
- */
-/** @typedef {{ id: string, name: string, story: string, formula?: string, credit?: string }} Entry */
 
 /**
  * @param {Engine} engine

@@ -10,8 +10,8 @@ import { createSlider } from '../slider.js';
 import { factsOf, fittedOf } from './facts.js';
 
 /**
- * @import { Description, Engine, ModelInfo, Shape } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Description, Engine, ModelInfo, Shape } from '../../engine/types.js'
  */
 
 /**

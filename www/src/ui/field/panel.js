@@ -12,7 +12,7 @@ import { storyOf } from './story.js';
 
 /**
  * @import { Description, Engine } from '../../engine/types.js'
- * @import { Motion } from '../motion.js'
+ * @import { Motion } from '../types.js'
  */
 
 /**

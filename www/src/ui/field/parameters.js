@@ -8,9 +8,9 @@ import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 
 /**
- * @import { Engine, Parameter } from '../../engine/types.js'
- * @import { Motion } from '../motion.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine, Parameter } from '../../engine/types.js'
+ * @import { Motion } from '../types.js'
  */
 
 /** Speeds at which a parameter is played, as multiples of the usual one. */
@@ -49,9 +49,7 @@ function resetAll(engine) {
 /**
  * @param {Engine} engine
  * @param {Parameter} parameter
- * @param {object} parts
- * @param {ReadonlySignal<Record<string, number>>} parts.values
- * @param {Motion} parts.motion
+ * @param {{ values: ReadonlySignal<Record<string, number>>, motion: Motion }} parts
  */
 function createRow(engine, { name, label, value, min, max, step }, { values, motion }) {
   const title = label && label !== name ? label : `Parameter ${name}`;

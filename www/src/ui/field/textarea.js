@@ -1,7 +1,7 @@
 /** The formula in a native text area, which is available before the full editor has loaded and where it cannot load. */
 import { h } from '../dom.js';
 
-/** @import { Editor } from './formula.js' */
+/** @import { Editor } from './types.js' */
 
 /**
  * @param {{ text: string, change: (text: string) => void, focused: () => void }} options

@@ -15,23 +15,11 @@ import { Relaxation } from './rest.js';
 import { alikeIn, settingsOf, surfaceKey } from './run.js';
 
 /**
- * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
- * @import { FollowedRun } from './run.js'
  * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
+ * @import { FollowedRun, Opened, Status } from './types.js'
  */
 
-/**
- * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a
- * step to another one.
- * @typedef {import('../../figures/types.js').Opened & { picture: { index: number, distance: number } | null }}
- *   Opened
- */
-/**
- * @typedef {{ kind: 'running', particles: number }
- *   | { kind: 'ready' }
- *   | { kind: 'too_many', text: string, radius: number }
- *   | { kind: 'failed', text: string }} Status
- */
 /**
  * A particle that is to be opened, and the event to begin with.
  * @typedef {{ particle: number, at: number | 'last', picture: Opened['picture'] }} Wish

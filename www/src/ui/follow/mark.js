@@ -9,13 +9,7 @@ import { tangentsOf } from '../../figures/geometry.js';
  * @import { Engine } from '../../engine/types.js'
  * @import { Child } from '../../figures/types.js'
  * @import { Follower } from './follower.js'
- */
-
-/**
- * The part of the picture's pen that is used here.
- * @typedef {object} Pen
- * @property {(places: readonly ArrayLike<number>[], kind: string) => boolean} polygon
- * @property {(at: { x: number, y: number }, text: string, kind: string) => void} text
+ * @import { Pen } from './types.js'
  */
 
 /** Corners of a disc and of the circle. */

@@ -22,9 +22,10 @@ import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
 
 /**
+ * @import { ReadonlySignal } from '@preact/signals-core'
  * @import { Engine } from '../../engine/types.js'
  * @import { FollowPanel, Track } from '../types.js'
- * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { FollowOptions } from './types.js'
  */
 
 /** Distance in radii up to which two particles are at one place, but for rounding. */
@@ -32,9 +33,7 @@ const SAME_PLACE = 0.005;
 
 /**
  * @param {HTMLElement} shell @param {Engine} engine
- * @param {object} page
- * @param {(text: string) => void} page.say  tells what a link names and is not there
- * @param {(mark: ReturnType<typeof childrenMark>) => void} page.mount  puts a mark on the picture
+ * @param {FollowOptions} page
  * @returns {Promise<FollowPanel>}
  */
 export async function mountFollow(shell, engine, { say, mount }) {
@@ -169,11 +168,7 @@ function drawFront(element, { opened, at, run, stale }, engine) {
 }
 
 /**
- * @param {object} parts
- * @param {HTMLElement} parts.title
- * @param {Follower} parts.follower
- * @param {Track} parts.particles
- * @param {() => void} parts.close
+ * @param {{ title: HTMLElement, follower: Follower, particles: Track, close: () => void }} parts
  */
 function createHead({ title, follower, particles, close }) {
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'left' | 'right'} */ name) => {

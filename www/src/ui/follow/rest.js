@@ -17,7 +17,8 @@ import { settingOf, settingsOf } from './run.js';
  * @import { LessonChapter, LessonClient } from '../../engine/types.js'
  * @import { Rest } from '../../figures/types.js'
  * @import { Children } from '../types.js'
- * @import { Follower, Opened } from './follower.js'
+ * @import { Follower } from './follower.js'
+ * @import { Opened } from './types.js'
  */
 
 /**

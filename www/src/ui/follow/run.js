@@ -8,21 +8,9 @@ import { triple } from '../../engine/vector.js';
 import { RESIDUAL } from '../../figures/particle.js';
 import { distanceSq } from './find.js';
 
-/** @import { Engine, LessonParticles, LessonSettings, Vec3 } from '../../engine/types.js' */
-
 /**
- * A run and the surface that it belongs to.
- * @typedef {object} FollowedRun
- * @property {string} surface  see {@link surfaceKey}
- * @property {string} words  the surface in words
- * @property {number} pictureRadius
- * @property {number} own  the radius of the picture, which the run has unless that would be too many; 1 with particles
- *   of many sizes
- * @property {number} radius  the radius; with particles of many sizes the factor by which they are larger than those of
- *   the law
- * @property {boolean} adaptive  whether the particles have different radii
- * @property {LessonParticles} end  all its particles
- * @property {number} alike  how many of its first particles are those of the picture
+ * @import { Engine, LessonParticles, LessonSettings, Vec3 } from '../../engine/types.js'
+ * @import { FollowedRun } from './types.js'
  */
 
 /**

@@ -13,7 +13,8 @@ import { createRestViews } from './rest.js';
 /**
  * @import { Child, Moment } from '../../figures/types.js'
  * @import { Children } from '../types.js'
- * @import { Follower, Opened } from './follower.js'
+ * @import { Follower } from './follower.js'
+ * @import { Opened } from './types.js'
  */
 
 /** @param {Follower} follower */

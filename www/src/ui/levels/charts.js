@@ -17,15 +17,10 @@ import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver,
 /**
  * @import { Columns } from '../../engine/columns.js'
  * @import { Engine, Report } from '../../engine/types.js'
- * @import { Drawn } from '../chart.js'
  * @import { Player } from './player.js'
- * @import { LevelTable } from './table.js'
+ * @import { Chart, LevelTable } from './types.js'
  */
 
-/**
- * `value`: of the place that is shown, or of all; `label`: the chart in words; `missing`: why nothing is known.
- * @typedef {Drawn & {title: string, value: string, label: string, missing?: string}} Chart
- */
 /**
  * Distances of the particles that are shown to their nearest, over 2r, and which they are in words.
  * @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread

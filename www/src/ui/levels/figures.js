@@ -1,7 +1,7 @@
 /** The figures of the charts: fates of each level, energy and largest move of each relaxation step. */
 import { FATE } from '../../engine/columns.js';
 
-/** @import { LevelTable } from './table.js' */
+/** @import { LevelTable } from './types.js' */
 
 const FATES = 8;
 

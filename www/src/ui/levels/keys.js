@@ -1,11 +1,6 @@
 /** What a key means on the timeline. */
 
-/** @import { Grain } from '../../engine/types.js' */
-
-/**
- * A move: `by` one place of a grain, or to its first or last place. The grain `chosen` is that of the timeline.
- * @typedef {{ grain: 'chosen' | Grain, to: -1 | 1 | 'first' | 'last' }} Move
- */
+/** @import { Move } from './types.js' */
 
 /** Keys that move along the chosen grain; a presenter's clicker sends the pages. @type {Record<string, Move['to']>} */
 const MOVES = { PageUp: -1, PageDown: 1, Home: 'first', End: 'last' };

@@ -151,5 +151,3 @@ function watch(engine, act) {
     });
   });
 }
-
-/** @typedef {ReturnType<typeof createLevels>} Levels */

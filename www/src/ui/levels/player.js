@@ -5,11 +5,10 @@
 import { computed, effect, signal } from '@preact/signals-core';
 
 /**
+ * @import { ReadonlySignal, Signal } from '@preact/signals-core'
  * @import { Engine, Grain } from '../../engine/types.js'
  * @import { FollowPanel, Track } from '../types.js'
- * @import { Move } from './keys.js'
- * @import { Levels } from './levels.js'
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
+ * @import { Levels, Move } from './types.js'
  */
 
 export class Player {

@@ -2,21 +2,12 @@
 import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
-/** @import { Columns } from '../../engine/columns.js' */
+/**
+ * @import { Columns } from '../../engine/columns.js'
+ * @import { LevelTable } from './types.js'
+ */
 
 /** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
-/**
- * The table has one row per level. `fates` has eight counts per level: the fates of the children that the previous
- * level proposed.
- * @typedef {object} LevelTable
- * @property {number} count  particles in all
- * @property {number} last  number of the last level
- * @property {Uint32Array} fresh  particles of each level
- * @property {Uint32Array} total  particles of all levels up to each one
- * @property {Uint32Array} seeds  particles of each level without a parent
- * @property {Uint32Array} fates
- * @property {boolean} adaptive
- */
 
 const FATES = 8;
 /** Largest number of slots in a 32-bit number, at three bits per slot. */

@@ -16,15 +16,9 @@ import { describeLevel } from './table.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Bars, FollowPanel } from '../types.js'
- * @import { ButtonProps } from '../types.js'
- * @import { Move } from './keys.js'
- * @import { Levels } from './levels.js'
- * @import { Signal } from '@preact/signals-core'
+ * @import { Bars, ButtonProps } from '../types.js'
+ * @import { Levels, Move, TimelineOptions, Told } from './types.js'
  */
-
-/** @typedef {{ title: string, text: string }} Told */
-/** @typedef {ReturnType<typeof createTimeline>} Timeline */
 
 /** Speeds of the playback; 1 is ten levels, two particles or an event a second. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
@@ -37,10 +31,7 @@ const GRAINS = /** @type {const} */ ([
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
- * @param {object} page
- * @param {Signal<Told | null>} page.told  the level in words, null while all are shown
- * @param {() => Promise<FollowPanel | null>} page.loadFollow  loads the panel that follows a particle
- * @param {(text: string) => void} page.say  tells what a link names and is not there
+ * @param {TimelineOptions} page
  */
 export function createTimeline(body, engine, { told, loadFollow, say }) {
   const levels = createLevels(engine);

@@ -1,19 +1,9 @@
 /** Draws the legend and a caption on a picture of the surface. */
 import { formatCount, formatSignificant, plural } from '../format.js';
 
-/** @import { Engine, Legend } from '../../engine/types.js' */
-
-/** @typedef {OffscreenCanvasRenderingContext2D | CanvasRenderingContext2D} Context */
 /**
- * What goes with the surface.
- * @typedef {object} Parts
- * @property {Legend | null} legend
- * @property {string[]} caption  lines
- * @property {{ ink: string, quiet: string }} colours
- */
-/**
- * Where the parts are drawn, and how large.
- * @typedef {{ context: Context, em: number, left: number, parts: Parts }} Sheet
+ * @import { Engine, Legend } from '../../engine/types.js'
+ * @import { Context, Parts, Sheet } from './types.js'
  */
 
 /** Height of the letters as a share of the shorter side of the picture, and its least in pixels. */

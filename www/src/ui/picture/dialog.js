@@ -11,11 +11,8 @@ import { FILM_SIZES, sizesOf, sizeWords } from './sizes.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Motion } from '../motion.js'
- * @import { Toast } from '../toasts.js'
- * @import { Parts } from './compose.js'
- * @import { Subject, Wish } from './film.js'
- * @import { Size } from './sizes.js'
+ * @import { Motion, Toast } from '../types.js'
+ * @import { Shared, Size, Subject, Wish } from './types.js'
  */
 
 /** @typedef {{ id: string, label: string, size: Size }} SizeEntry */
@@ -49,16 +46,6 @@ export function createPictureDialog(engine, page) {
   dialog.element.classList.add('picture-dialog');
   return dialog;
 }
-
-/**
- * What both sections need.
- * @typedef {object} Shared
- * @property {Engine} engine
- * @property {{ motion: Motion, toast: Toast }} page
- * @property {() => Parts} parts
- * @property {HTMLInputElement} transparent
- * @property {() => void} close
- */
 
 /** @param {string} text @param {boolean} checked */
 function check(text, checked) {

@@ -7,24 +7,7 @@ import { compose } from './compose.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
- * @import { Course, Range } from '../motion.js'
- * @import { Context, Parts } from './compose.js'
- */
-
-/**
- * What is recorded.
- * @typedef {object} Wish
- * @property {Engine} engine
- * @property {{ width: number, height: number }} size
- * @property {() => Parts} parts  legend and caption of the present moment
- * @property {Subject} subject
- * @property {AbortSignal} signal  ends the recording; a film keeps what it has
- * @property {(share: number | null, seconds: number) => void} tell  is told of the progress: of the whole, if that is
- *   known, and in seconds
- */
-/**
- * What moves: the turntable, a parameter, or what the user does.
- * @typedef {{ kind: 'turn' } | { kind: 'parameter', range: Range, course: Course } | { kind: 'free' }} Subject
+ * @import { Context, Subject, Wish } from './types.js'
  */
 
 /** Pictures per second of a sequence; the least time between two of a film. */

@@ -1,6 +1,6 @@
 /** The sizes that a picture can be saved in. */
 
-/** @typedef {{ width: number, height: number }} Size */
+/** @import { Size } from './types.js' */
 
 /** Side of the square picture, in pixels. */
 const SQUARE_PX = 2048;

@@ -1,6 +1,6 @@
 /** Functions on the bins of a histogram. */
 
-/** @typedef {{ min: number, max: number, bins: number[] }} Bins */
+/** @import { Bins } from './types.js' */
 
 /**
  * Merges bins into at most `rows` wider ones with the same counts, and removes empty bins at both ends.

@@ -6,10 +6,10 @@ import { formatCount, formatFixed } from '../format.js';
 import { coarsen, overDiameters, trim } from './bins.js';
 
 /**
- * @import { Engine, Report } from '../../engine/types.js'
- * @import { Drawn } from '../chart.js'
- * @import { Bins } from './bins.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine, Report } from '../../engine/types.js'
+ * @import { Drawn } from '../types.js'
+ * @import { Bins } from './types.js'
  */
 
 const TABLE_ROWS = 12;

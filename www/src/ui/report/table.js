@@ -7,17 +7,16 @@ import { listOf } from './places.js';
 import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
 
 /**
- * @import { Report, ReportRow } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Report, ReportRow } from '../../engine/types.js'
+ * @import { TableOptions } from './types.js'
  */
 
 /**
  * Creates one table for all groups, so that the figures are aligned. Units are part of the labels.
  * @param {ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
- * @param {object} parts
- * @param {ReadonlySignal<number>} parts.counted  particles of a run without a report yet, or 0
- * @param {(row: ReportRow) => void} parts.show  shows the next place that a figure is about
+ * @param {TableOptions} parts
  */
 export function createTable(report, rows, parts) {
   const groups = [...groupRows(rows)];

@@ -4,8 +4,8 @@ import { h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
 
 /**
- * @import { Engine, Timing } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine, Timing } from '../../engine/types.js'
  */
 
 const PHASES = /** @type {const} */ ([

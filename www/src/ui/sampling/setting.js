@@ -9,8 +9,8 @@ import { createSlider } from '../slider.js';
 import { isSegmented, isShown } from './settings.js';
 
 /**
- * @import { Engine, SettingInfo } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine, SettingInfo } from '../../engine/types.js'
  */
 
 /**

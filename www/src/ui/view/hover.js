@@ -5,7 +5,10 @@ import { h, live, query } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../format.js';
 import { clamp } from '../scale.js';
 
-/** @import { Engine, Hover } from '../../engine/types.js' */
+/**
+ * @import { Engine, Hover } from '../../engine/types.js'
+ * @import { Edges } from './types.js'
+ */
 
 const OFFSET_PX = 16;
 
@@ -60,8 +63,6 @@ export function mountHover(host, engine, { view, follow }) {
     event.stopPropagation();
   }
 }
-
-/** @typedef {{ left: number, right: number, top: number, bottom: number }} Edges */
 
 /** @param {HTMLElement} view @returns {Edges} the part of the view beside the toolbar */
 function freeOf(view) {

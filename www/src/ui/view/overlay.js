@@ -8,8 +8,8 @@ import { captionOf, loadingOf, revealOf } from './caption.js';
 import { meshWords, NO_MESH } from './mesh-words.js';
 
 /**
- * @import { Engine } from '../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Engine } from '../../engine/types.js'
  */
 
 const HINT_MS = 9000;

@@ -12,10 +12,9 @@ import { createSlider } from '../slider.js';
 
 /**
  * @import { Engine, MeshFormat, ViewState } from '../../engine/types.js'
- * @import { ButtonProps } from '../types.js'
  * @import { IconName } from '../icons.js'
- * @import { Motion } from '../motion.js'
- * @import { Toast } from '../toasts.js'
+ * @import { ButtonProps, Motion } from '../types.js'
+ * @import { ToolbarOptions } from './types.js'
  */
 
 const ZOOM = 1.25;
@@ -30,12 +29,7 @@ const MESH_FORMATS = [
 
 /**
  * @param {Engine} engine
- * @param {object} page
- * @param {() => void} page.hide
- * @param {() => void} page.shortcuts
- * @param {() => void} page.picture  opens the dialog that takes the picture away
- * @param {Motion} page.motion
- * @param {Toast} page.toast
+ * @param {ToolbarOptions} page
  */
 export function createToolbar(engine, { hide, shortcuts, picture, motion, toast }) {
   const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');

@@ -8,9 +8,7 @@ import { outerEdge, outward } from './edges.js';
 
 /**
  * @import { Bounds, Engine } from '../../../engine/types.js'
- * @import { Pen } from './draw.js'
- * @import { Edge } from './edges.js'
- * @import { Mark } from './layer.js'
+ * @import { Edge, Mark, Pen } from '../types.js'
  */
 
 /** Smallest distance of ticks, length of a tick, and distances of its figure and of the axis's name from the axis. */

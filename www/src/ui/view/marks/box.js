@@ -7,9 +7,9 @@ import { outerEdge, outward } from './edges.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { Bounds, Engine } from '../../../engine/types.js'
- * @import { Mark } from './layer.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
+ * @import { Bounds, Engine } from '../../../engine/types.js'
+ * @import { Mark } from '../types.js'
  */
 
 /** Step of the arrow keys as a share of the side. */

@@ -1,17 +1,8 @@
 /** Draws lines, rings and figures at places of the surface, in SVG elements that are reused from picture to picture. */
 
-/** @import { Engine } from '../../../engine/types.js' */
-
-/** @typedef {{x: number, y: number}} Point  in pixels of the picture */
 /**
- * @typedef {object} Pen
- * @property {() => void} begin
- * @property {() => void} end  hides what was not drawn again
- * @property {(places: readonly ArrayLike<number>[], kind: string) => boolean} polygon  an outline through places; false
- *   if one of them is behind the eye
- * @property {(from: Point, to: Point, kind: string) => void} line
- * @property {(at: Point, radiusPx: number, kind: string) => void} ring
- * @property {(at: Point, text: string, kind: string, anchor?: 'start' | 'middle' | 'end') => void} text
+ * @import { Engine } from '../../../engine/types.js'
+ * @import { Pen } from '../types.js'
  */
 
 const SVG = 'http://www.w3.org/2000/svg';

@@ -4,13 +4,7 @@ import { axisVector, centreOf, cornerOf } from '../../space.js';
 
 /**
  * @import { Bounds, Engine } from '../../../engine/types.js'
- * @import { Point } from './draw.js'
- */
-
-/**
- * An edge of the box in the picture, from its lower to its upper end, with those ends in space and the picture of the
- * box's centre.
- * @typedef {{ from: Point, to: Point, ends: [number[], number[]], centre: Point }} Edge
+ * @import { Edge, Point } from '../types.js'
  */
 
 /**

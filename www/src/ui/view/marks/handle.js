@@ -4,18 +4,9 @@
  */
 import { h } from '../../dom.js';
 
-/** @import { Engine, Ray } from '../../../engine/types.js' */
-
 /**
- * @typedef {object} HandleOptions
- * @property {string} name  accessible name
- * @property {string} kind  class of the knob
- * @property {(ray: Ray) => void} grab  a drag begins
- * @property {(ray: Ray, fine: boolean) => void} drag  the pointer has moved; `fine` with Shift
- * @property {() => void} drop  the drag has ended
- * @property {() => void} cancel  Escape was pressed during the drag
- * @property {((presses: number, fine: boolean) => void) | null} press  arrow keys: 1 for right and up, −1 for left and
- *   down, ten times as many for page keys; null if a control elsewhere does the same by keyboard
+ * @import { Engine, Ray } from '../../../engine/types.js'
+ * @import { HandleOptions } from '../types.js'
  */
 
 /** @type {Record<string, number>} */

@@ -8,15 +8,7 @@ import { drawn } from './draw.js';
 
 /**
  * @import { Engine } from '../../../engine/types.js'
- * @import { Pen } from './draw.js'
- */
-
-/**
- * A kind of mark.
- * @typedef {object} Mark
- * @property {() => boolean} shown  whether there is something to draw; read in an effect
- * @property {(pen: Pen) => void} draw  called after every picture while it is shown
- * @property {HTMLElement[]} [handles]  elements that the mark places itself
+ * @import { Mark } from '../types.js'
  */
 
 /**

@@ -8,7 +8,7 @@ import { separation } from '../../space.js';
 
 /**
  * @import { Engine } from '../../../engine/types.js'
- * @import { Mark } from './layer.js'
+ * @import { Mark } from '../types.js'
  */
 
 /** Smallest radius of a ring around a particle, and the half size of the cross. */

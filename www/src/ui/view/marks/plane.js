@@ -8,9 +8,9 @@ import { boxOf } from './box.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { Bounds, CuttingPlane, Engine, Ray, Vec3 } from '../../../engine/types.js'
  * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Mark } from './layer.js'
+ * @import { Bounds, CuttingPlane, Engine, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Mark } from '../types.js'
  */
 
 /** Length of the arrow in pixels. */

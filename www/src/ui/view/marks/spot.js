@@ -2,7 +2,7 @@
 
 /**
  * @import { Engine } from '../../../engine/types.js'
- * @import { Mark } from './layer.js'
+ * @import { Mark } from '../types.js'
  */
 
 const LEAST_RING_PX = 7;

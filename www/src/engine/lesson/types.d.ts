@@ -1,0 +1,79 @@
+// Messages between the page and the worker of the lesson, and what its clients are given. The worker follows one run at
+// a time; every question is answered under its number.
+import type { Bounds, LessonEvent, LessonField, LessonIterate, LessonLife, LessonPush } from '../core-types.js';
+
+export type WorkerLike = import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>;
+export type LessonSettings = import('../core-types.js').LessonSettings;
+export type LessonProgress = import('../core-types.js').LessonProgress;
+export type LessonChapter = import('../core-types.js').LessonChapter;
+export type Fault = import('../core-types.js').Fault;
+export type Vec3 = [number, number, number];
+/** What to sample: a formula, or the solved system of a model from points. */
+export type Surface = LessonField | { system: Uint8Array; bounds: Bounds };
+/**
+ * The particles at the moment that was sought. Vectors have three floats each; `parents` has 0xffffffff for a seed,
+ * `done` 1 for a particle whose children are placed.
+ */
+export interface Particles {
+  /** number of events that have happened */
+  at: number;
+  positions: Float32Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  levels: Uint32Array;
+  parents: Uint32Array;
+  fronts: Uint32Array;
+  slots: Uint32Array;
+  done: Uint8Array;
+}
+/** How far a run has come, and the milliseconds that its worker has worked for it since it was asked. */
+export type Advanced = { progress: LessonProgress; workMs: number };
+/** A plane through a point: `right` and `up` are perpendicular unit vectors. */
+export type Plane = { centre: Vec3; right: Vec3; up: Vec3; half: number; cells: number };
+/** What may be asked of a run, and the answers. `events` and `chapters` are what there is so far. */
+export interface Questions {
+  /** from number `first` on */
+  chapters: { ask: { first: number }; answer: LessonChapter[] };
+  events: { ask: { first: number; count: number }; answer: LessonEvent[] };
+  /** the particles before that event; at the end for a larger number */
+  seek: { ask: { event: number }; answer: Particles };
+  life: { ask: { particle: number }; answer: LessonLife | null };
+  /** of a relaxation on a particle, at the moment that was sought */
+  pushes: { ask: { particle: number }; answer: LessonPush[] };
+  /** the curve f = 0 in the plane: segments as x₀, y₀, x₁, y₁ around the centre */
+  section: { ask: Plane; answer: Float32Array };
+  /** Newton's method in space from a point */
+  newton: { ask: { start: Vec3; reach: number }; answer: LessonIterate[] };
+  /** goes on with a run that was begun and held */
+  advance: { ask: { units: number }; answer: Advanced };
+  /** of the particles at the moment that was sought */
+  digest: { ask: object; answer: string };
+}
+/** `holds`: the run only begins, and goes on by `advance`. */
+export type ToLesson =
+  | { type: 'start'; id: number; surface: Surface; settings: Partial<LessonSettings>; holds: boolean }
+  | { type: 'stop' }
+  | { [K in keyof Questions]: { type: 'ask'; id: number; about: K; ask: Questions[K]['ask'] } }[keyof Questions];
+/**
+ * `ended`: the run came to its end, or was stopped or held; `refused`: it could not begin; `failed`: the bundle did not
+ * load.
+ */
+export type FromLesson =
+  | { type: 'progress'; id: number; progress: LessonProgress }
+  | { type: 'ended'; id: number; progress: LessonProgress }
+  | { type: 'refused'; id: number; error: Fault }
+  | { type: 'answer'; id: number; answer: unknown }
+  | { type: 'crashed'; message: string; stack: string }
+  | { type: 'failed'; message: string };
+/** One of the two: how far it is, and the milliseconds that it has worked. */
+export type Lane = { progress: LessonProgress | null; workMs: number };
+export interface LessonClientOptions {
+  spawn?: () => WorkerLike;
+  /** of the present run, some fifty times a second */
+  onProgress?: (progress: LessonProgress) => void;
+}
+export interface RaceOptions {
+  spawn?: () => WorkerLike;
+  /** after every turn */
+  onLane?: (index: 0 | 1, lane: Lane) => void;
+}

@@ -1,0 +1,41 @@
+// The parts of the engine, as its own files know them.
+import type { Columns } from './columns.js';
+import type { Framing } from './framing.js';
+import type { SampleOptions } from './points/types.js';
+import type { Runs } from './runs.js';
+import type { PictureLike } from './sampling/types.js';
+import type { Store } from './store.js';
+import type { BackendKind, Settings, State } from './types.js';
+import type { Viewer } from './view/viewer.js';
+
+/** The parts of the engine, on which its commands act. */
+export interface Parts {
+  store: Store;
+  columns: Columns;
+  picture: Picture;
+  runs: Runs;
+  framing: Framing;
+  /** takes over a whole valid state and samples it */
+  adopt: (state: State) => void;
+}
+export interface Picture {
+  viewer: Viewer;
+  /** reports the particle under a point of the host, or null for none */
+  hover: (index: number | null, x: number, y: number, tapped?: boolean) => void;
+  close: () => void;
+}
+export type RunOptions = SampleOptions & { settings?: Settings };
+export interface PictureOptions {
+  host: HTMLElement;
+  store: Store;
+  columns: Columns;
+  /** the back end to try first */
+  first: BackendKind | null;
+}
+export interface RunsOptions {
+  store: Store;
+  columns: Columns;
+  picture: PictureLike;
+  /** called when the core has loaded for the first time */
+  onReady: () => void;
+}

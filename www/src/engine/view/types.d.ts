@@ -1,0 +1,139 @@
+// Types of the picture: its devices, its camera, its colours and what the pointer does to it.
+import type { Renderer } from '../../wasm/render-webgpu/render.js';
+import type { Columns } from '../columns.js';
+import type { BackendKind, Bounds, CameraState, CuttingPlane, Legend, Reveal, Vec3, ViewState } from '../types.js';
+import type { openDevice } from './backends.js';
+import type { Camera } from './camera.js';
+import type { Painter } from './painter.js';
+import type { palette } from './palettes.js';
+
+export interface Device {
+  kind: BackendKind;
+  canvas: HTMLCanvasElement;
+  renderer: Renderer | Painter;
+  dispose: () => void;
+}
+/** pixels covered by panels */
+export type Insets = { left: number; right: number; top: number; bottom: number };
+export type View = {
+  clipFromWorld: Float32Array;
+  eye: Vec3;
+  forward: Vec3;
+  right: Vec3;
+  up: Vec3;
+  tanX: number;
+  tanY: number;
+  shiftX: number;
+  shiftY: number;
+  worldPerPx: number;
+  packed: Float32Array;
+};
+/** A way to colour the particles. A colour is packed as `0xAABBGGRR`. */
+export interface Colouring {
+  /** the values at both ends of a ramp, where they depend on the particles; null before there is a value */
+  range?: (columns: Columns) => [number, number] | null;
+  /** null while what it shows is not known */
+  colour: (context: Context) => ((i: number) => number) | null;
+  legend: (context: Context) => Omit<Legend, 'unit'> & { unit?: string };
+}
+/**
+ * What became of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
+ * canvas.
+ */
+export type FrameResult = 'drawn' | 'skipped' | 'none';
+export interface Style {
+  /** sRGB 0 … 1 */
+  background: [number, number, number, number];
+  disc_scale: number;
+  key_light_view: [number, number, number];
+  dim: number;
+  /** share by which discs seen from behind are drawn as an inside, darker and greyer */
+  dim_backfaces: number;
+  fade_s?: number;
+  /** newest generation level drawn, null for all */
+  level?: number | null;
+  /** index of the highlighted particle, −1 for none */
+  outline: number;
+  box: { min: number[]; max: number[]; colour: number[] } | null;
+  /** discs whose centres are beyond it are hidden */
+  plane?: CuttingPlane | null;
+}
+/** The pixels of a picture and how near each is. */
+export type Target = { out: Uint32Array; depth: Float32Array; width: number; height: number };
+export type Theme = 'light' | 'dark';
+export type Palette = ReturnType<typeof palette>;
+/** in CSS pixels of the host */
+export type Place = { x: number; y: number };
+/** The objects on which the pointers act. */
+export interface Stage {
+  host: HTMLElement;
+  camera: Camera;
+  currentView: () => View;
+  moved: () => void;
+  fit: () => void;
+  /** the pointer hovers over or tapped this place */
+  point: (x: number, y: number, tapped: boolean) => void;
+  /** where the target of the camera is */
+  centre: () => Place | null;
+  /** the pointer left, or was `pressed` */
+  leave: (pressed: boolean) => void;
+}
+/** What of the view the picture itself shows, and what else it shows. */
+export type Look = Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'> &
+  Setting;
+export interface Setting {
+  theme: 'light' | 'dark';
+  /** the clip box, or null if it is not drawn */
+  box: Bounds | null;
+  /** what it hides is neither drawn nor picked */
+  plane: CuttingPlane | null;
+  /** the points of a model, three numbers each, drawn as dots */
+  points: Float32Array | null;
+  /** number of particles drawn, null for all */
+  upto: number | null;
+  /** index of the particle with an outline, −1 for none */
+  highlight: number;
+  insets: Insets;
+}
+/** The events of the viewer. */
+export interface ViewerEvents {
+  onDevice: (device: Device) => void;
+  onLost: (kind: string, message: string) => void;
+  onFallback: (kind: string, message: string) => void;
+  onLegend: (legend: Legend) => void;
+  onCamera: (camera: CameraState) => void;
+  /** a picture was drawn */
+  onFrame: () => void;
+  onReveal: (reveal: Reveal | null) => void;
+}
+/** What a colouring works with. */
+export type Context = { palette: Palette; columns: Columns; range: [number, number] | null };
+export interface DeviceOptions {
+  host: HTMLElement;
+  /** a new device, without particles, is open */
+  onOpen: (device: Device) => void;
+  /** the device is lost and another is being opened */
+  onLost: (kind: BackendKind, message: string) => void;
+  /** a kind of device was abandoned */
+  onFallback: (kind: BackendKind, message: string) => void;
+  /** kind to try first */
+  first?: BackendKind | null;
+  open?: typeof openDevice;
+  clock?: { now: () => number; wait: (ms: number) => Promise<void> };
+}
+export interface DotOptions {
+  /** canvas pixels per page pixel */
+  px: number;
+  /** disc scale of the renderer, which the radii compensate */
+  size: number;
+  /** distance by which a dot is moved towards the eye, in front of the discs around it */
+  lift: number;
+  palette: { ink: number; casing: number };
+}
+export interface ViewerOptions {
+  host: HTMLElement;
+  columns: Columns;
+  look: ViewState;
+  /** the back end to try first */
+  first: BackendKind | null;
+}

@@ -1,0 +1,37 @@
+// Types of the pictures and films that are saved.
+import type { Engine, Legend } from '../../engine/types.js';
+import type { Course, Motion, Range, Toast } from '../types.js';
+
+export type Context = OffscreenCanvasRenderingContext2D | CanvasRenderingContext2D;
+/** What goes with the surface. */
+export interface Parts {
+  legend: Legend | null;
+  /** lines */
+  caption: string[];
+  colours: { ink: string; quiet: string };
+}
+/** Where the parts are drawn, and how large. */
+export type Sheet = { context: Context; em: number; left: number; parts: Parts };
+/** What both sections need. */
+export interface Shared {
+  engine: Engine;
+  page: { motion: Motion; toast: Toast };
+  parts: () => Parts;
+  transparent: HTMLInputElement;
+  close: () => void;
+}
+/** What is recorded. */
+export interface Wish {
+  engine: Engine;
+  size: { width: number; height: number };
+  /** legend and caption of the present moment */
+  parts: () => Parts;
+  subject: Subject;
+  /** ends the recording; a film keeps what it has */
+  signal: AbortSignal;
+  /** is told of the progress: of the whole, if that is known, and in seconds */
+  tell: (share: number | null, seconds: number) => void;
+}
+/** What moves: the turntable, a parameter, or what the user does. */
+export type Subject = { kind: 'turn' } | { kind: 'parameter'; range: Range; course: Course } | { kind: 'free' };
+export type Size = { width: number; height: number };
