@@ -24,7 +24,7 @@ const COUNTS: [u32; 2] = [4_000, 20_000];
 /// Runs of which the mean counts: the system counts time in ticks of a few milliseconds.
 const RUNS: u32 = 3;
 
-/// What stands above the tables.
+/// Text above the tables.
 const HEAD: &str = "\
 The front with ten relaxation steps and the refined method, with the same number of particles wanted: the gallery's surfaces and the
 models from points, one after the other. This page is written by `cargo bench --bench methods > docs/methods.md`. The quality

@@ -1,4 +1,4 @@
-//! What a command of the page is answered: `{"ok": true, …}` with the fields of the value, or
+//! Answers to commands of the page: `{"ok": true, …}` with the fields of the value, or
 //! `{"ok": false, "error": …}`.
 
 use serde::{Serialize, Serializer};
@@ -11,7 +11,7 @@ pub enum Answer<T, E> {
     Accepted {
         /// Tells the two answers apart.
         ok: Literal<true>,
-        /// What came of it: a structure, whose fields stand beside `ok`.
+        /// Result of the command: a structure, whose fields stand beside `ok`.
         #[serde(flatten)]
         value: T,
     },
@@ -19,7 +19,7 @@ pub enum Answer<T, E> {
     Refused {
         /// Tells the two answers apart.
         ok: Literal<false>,
-        /// What is wrong.
+        /// The error.
         error: E,
     },
 }

@@ -1,4 +1,4 @@
-//! What a list of triangles adds up to, found from the list alone.
+//! Components, borders and Euler number of a list of triangles, counted from the list alone.
 
 use crate::slices::{self, pause, ranges};
 use core::ops::Range;

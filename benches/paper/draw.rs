@@ -15,7 +15,7 @@ const SHOWN: f32 = 0.93;
 /// The ground: discs this much wider, and so far below, in radii. Together they leave no gap between neighbours.
 const GROUND: [f32; 2] = [1.6, 0.3];
 
-/// What a picture shows, and from where.
+/// Contents and camera of a picture.
 pub(crate) struct View {
     /// Middle of the picture.
     pub(crate) target: Vec3,

@@ -1,4 +1,4 @@
-//! What the paper prints: Tables 1 and 2.
+//! Tables 1 and 2 as the paper prints them.
 
 use marching_particles::sampler::Sampling;
 

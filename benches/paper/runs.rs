@@ -68,7 +68,7 @@ impl Set {
     }
 }
 
-/// What came out. Times are seconds of processor time.
+/// Result of a run. Times are seconds of processor time.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
     pub(crate) set: Set,

@@ -20,11 +20,11 @@ const MATERIALS: &str =
 /// Generation levels with a colour of their own; then the colours begin again, as on the page.
 const CYCLE: u32 = 12;
 
-/// A part of the buffer.
+/// A column of the binary buffer, with its accessor.
 struct BufferColumn {
     name: &'static str,
     target: u32,
-    /// How the numbers are read: members of an accessor.
+    /// Members of the accessor, which say how the numbers are read.
     accessor: String,
     bytes: Vec<u8>,
 }

@@ -37,7 +37,7 @@ impl MeshFormat {
 ///
 /// # Errors
 ///
-/// Those of `out`; and where a format's own counters, of 32 bits, are too small.
+/// The errors of `out`, and an error if the 32-bit counters of the format are too small.
 ///
 /// # Panics
 ///

@@ -39,7 +39,7 @@ impl Format {
     }
 }
 
-/// What the values of a column are, by the name of the type in PLY.
+/// Type of the values of a column, by its name in PLY.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -62,7 +62,7 @@ pub enum ColumnKind {
 pub struct Column {
     /// Name in the file.
     pub name: &'static str,
-    /// What its values are.
+    /// Type of the values.
     pub kind: ColumnKind,
     /// Whether it is known only once the particles are measured.
     pub measured: bool,
@@ -169,7 +169,7 @@ pub const COLUMNS: &[Column] = &[
 ///
 /// # Errors
 ///
-/// Those of `out`.
+/// The errors of `out`.
 pub fn write(
     format: Format,
     particles: &Particles,

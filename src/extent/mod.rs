@@ -1,4 +1,4 @@
-//! How far a surface reaches: the box that fits it.
+//! The extent of a surface: the box that fits it.
 //!
 //! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether it
 //! goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
@@ -39,14 +39,14 @@ const MOST_CELLS: usize = 32_768;
 const SHORT: usize = 64;
 const LEAST_CELLS: usize = 2_048;
 
-/// How far a surface reaches.
+/// Whether a surface is bounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
     /// All of it within ±10⁴ lies in the box.
     Bounded,
-    /// It goes on beyond the box.
+    /// The surface goes on beyond the box.
     Endless,
     /// There is none within ±10⁴.
     Nowhere,
@@ -60,7 +60,7 @@ pub enum Reach {
 pub struct Extent {
     /// Around all bounded components; of what goes on for ever a part.
     pub bounds: Bounds,
-    /// How far the surface reaches.
+    /// Whether the surface is bounded.
     pub reach: Reach,
 }
 

@@ -34,14 +34,14 @@ const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
 /// Cells in a batch, after which the scan may be left.
 const BATCH: usize = 32;
 
-/// How a scan ended.
+/// Outcome of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ScanOutcome {
     /// There is no surface in the cube.
     Empty,
     /// The surface in the cube lies in the hull.
     Inside,
-    /// It passes through the faces of the cube: f changes its sign there. The hull is that of its bends, if these are few.
+    /// The surface passes through the faces of the cube: f changes its sign there. The hull is that of its bends, if these are few.
     Crossing,
     /// The bounds do not tell.
     Undecided,
@@ -116,7 +116,7 @@ fn eighths(cells: &[OpenCell]) -> Vec<Place> {
     cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
 }
 
-/// How the scan ends, if a level with these cells is the last one.
+/// The outcome of the scan, if a level with these cells is the last one.
 async fn outcome(
     field: &mut dyn Bounded,
     level: &ScanLevel,

@@ -37,7 +37,7 @@ impl<F: FnMut(DVec3) -> f64 + Send> FnField<F> {
 }
 
 impl<F, G> FnField<F, G> {
-    /// The same field, whose gradient at a point is `gradient` of it.
+    /// Returns the field with `gradient` as its gradient function.
     pub fn with_gradient<H: FnMut(DVec3) -> DVec3 + Send>(self, gradient: H) -> FnField<F, H> {
         FnField { value: self.value, gradient: Some(gradient), origin: self.origin }
     }

@@ -18,7 +18,7 @@ use std::rc::Rc;
 /// With a stack there are no rings: a chapter is this many particles.
 const STACK_CHAPTER: u32 = 100;
 
-/// What a chapter is.
+/// Kind of a chapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonChapterKind"))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -51,7 +51,7 @@ pub enum ChapterKind {
     },
 }
 
-/// What a run is given and never changes.
+/// Input of a run, which never changes.
 pub(super) struct Setup {
     pub(super) settings: LessonSettings,
     /// Points of the surface at which fronts may begin, in the order in which they are tried.
@@ -60,7 +60,7 @@ pub(super) struct Setup {
     pub(super) diameter: f64,
 }
 
-/// How far a run has come, beside its particles.
+/// Position of a run among its chapters, and the state that its next steps depend on, without the particles.
 #[derive(Clone, Debug)]
 pub(super) struct Cursor {
     /// The next candidate for a seed.
@@ -75,7 +75,7 @@ pub(super) struct Cursor {
     is_filled: bool,
     /// Consecutive iterations of rest.
     pub(super) quiet: u32,
-    /// What decides deaths and the directions of fissions.
+    /// Generator that decides deaths and the directions of fissions.
     pub(super) random: Pcg32,
 }
 
@@ -89,7 +89,7 @@ impl Cursor {
     }
 }
 
-/// All of a run between two chapters that is small: what a snapshot holds beside the particles.
+/// State of a run between two chapters without the particles, which a snapshot holds beside it.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub(super) cursor: Cursor,
@@ -125,11 +125,11 @@ pub(super) struct Course {
     pub(super) cursor: Cursor,
     /// The chapter under way.
     kind: Option<ChapterKind>,
-    /// Units left in it.
+    /// Units left in the chapter under way.
     pub(super) left: u32,
     /// Children of the level that are predicted and not projected, the next one first.
     pub(super) predicted: VecDeque<Predicted>,
-    /// What moves each particle in an iteration of a particle system.
+    /// Force and energy of each particle in an iteration of a particle system.
     pub(super) dynamics: Vec<Dynamics>,
     /// Particles that die at the end of the iteration, by index.
     pub(super) dying: Vec<u32>,
@@ -160,7 +160,7 @@ impl Course {
         }
     }
 
-    /// The same run at another moment.
+    /// Returns the run at another moment.
     pub(super) fn elsewhere(&self, moment: Moment, particles: Vec<Particle>) -> Self {
         Self::at(&self.setup, self.run.surface.clone(), moment, particles)
     }
@@ -265,7 +265,7 @@ impl Course {
         is_over
     }
 
-    /// One unit of a generation level.
+    /// Does one unit of a generation level.
     fn place(&mut self) {
         match self.setup.settings.placing {
             Placing::OneByOne => self.run.treat_next(),

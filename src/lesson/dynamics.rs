@@ -11,21 +11,21 @@ pub(super) const MAX_MOVE: f64 = 0.35;
 pub(super) struct Dynamics {
     /// Sum of the repulsion.
     pub(super) force: DVec3,
-    /// How compressed it is: D_i of Witkin and Heckbert, or Σ (overlap / mean radius)².
+    /// Energy, a measure of compression: D_i of Witkin and Heckbert, or Σ (overlap / mean radius)².
     pub(super) energy: f64,
     /// Σ |r_ij|² E_ij, which tells how D_i changes with σ_i.
     pub(super) moment: f64,
-    /// Whether it is near equilibrium.
+    /// Whether the particle is near equilibrium.
     pub(super) is_at_rest: bool,
-    /// Distance that it has moved, in radii.
+    /// Distance that the particle has moved, in radii.
     pub(super) moved: f64,
 }
 
-/// A place to which a particle moves.
+/// Move of a particle in an iteration.
 pub(super) struct Displacement {
-    /// What has driven it.
+    /// Force on the particle.
     pub(super) force: DVec3,
     pub(super) target: DVec3,
-    /// The particle there; none if it cannot go: at the border of the box, where the field ends, at a fold.
+    /// The particle after the move; none if it cannot move: at the border of the box, where the field ends, at a fold.
     pub(super) arrived: Option<Particle>,
 }

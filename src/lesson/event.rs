@@ -23,7 +23,7 @@ pub enum Event {
     Seed {
         /// Index of the seed.
         particle: u32,
-        /// Its columns.
+        /// Columns of the particle.
         data: Particle,
     },
     /// A generation level begins: these particles wait to be treated.
@@ -111,7 +111,7 @@ pub enum Event {
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// Where the child was compared: as predicted, or where it landed.
+        /// Position at which the child was compared: the predicted one, or that of the landing.
         position: Vector,
         /// The nearest particle; none if none is near, or if it is a child that still has to be projected.
         against: Option<u32>,
@@ -135,9 +135,9 @@ pub enum Event {
     },
     /// The child becomes a particle, marked as not done ("add the child to the particle set").
     Added {
-        /// Its index.
+        /// Index of the particle.
         particle: u32,
-        /// Its columns.
+        /// Columns of the particle.
         data: Particle,
     },
     /// The fate of a slot.
@@ -182,7 +182,7 @@ pub enum Event {
         /// Repulsion radius there.
         radius: f64,
     },
-    /// It is pushed away from its parent, until the two do not overlap (Figs 7b and 7e).
+    /// An adaptive child is pushed away from its parent, until the two do not overlap (Figs 7b and 7e).
     Push {
         /// The particle that places the child.
         parent: u32,
@@ -193,7 +193,7 @@ pub enum Event {
         /// Repulsion radius there.
         radius: f64,
     },
-    /// It is pushed along the circle, until it overlaps the others least (Fig. 7f).
+    /// An adaptive child is pushed along the circle, until it overlaps the others least (Fig. 7f).
     PushOnCircle {
         /// The particle that places the child.
         parent: u32,
@@ -241,7 +241,7 @@ pub enum Event {
         particle: u32,
         /// Sum of the repulsion, in the tangent plane; the step size times it is the move.
         force: Vector,
-        /// Where the move leads, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface.
+        /// Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface.
         target: Vector,
         /// The place on the surface.
         position: Vector,
@@ -278,7 +278,7 @@ pub enum Event {
         child: u32,
         /// Columns of both.
         data: Box<[Particle; 2]>,
-        /// What the particle felt.
+        /// Energy of the particle.
         energy: f64,
     },
     /// A particle dies. Those behind it move up by one.

@@ -1,6 +1,6 @@
 //! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with, with a log of every event.
 //!
-//! It stands on [`paper`](crate::paper), which it adds to: the same front level by level (`levels`), the filling of the gaps that
+//! The engine stands on [`paper`](crate::paper) and adds to it: the same front level by level (`levels`), the filling of the gaps that
 //! fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the general scheme of §3 in `system`, what each makes
 //! of it in `witkin_heckbert` and `forces`. [`LessonSettings`] chooses among them.
 //!
@@ -91,7 +91,7 @@ pub struct Chapter {
     pub is_over: bool,
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct LessonProgress {
@@ -113,15 +113,15 @@ pub struct LessonProgress {
     pub is_done: bool,
 }
 
-/// When a particle was added, was treated and was done: numbers of events.
+/// The events at which a particle was added, was treated and was done, by their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonLife"))]
 pub struct Life {
-    /// It was added.
+    /// The event at which the particle was added.
     pub born: Option<u32>,
-    /// It was taken from the queue.
+    /// The event at which the particle was taken from the queue.
     pub taken: Option<u32>,
-    /// It was marked as done.
+    /// The event at which the particle was marked as done.
     pub done: Option<u32>,
 }
 
@@ -191,7 +191,7 @@ impl Lesson {
     ///
     /// # Errors
     ///
-    /// As [`Lesson::new`].
+    /// The errors of [`Lesson::new`].
     pub fn going_on(
         field: Box<dyn Field>,
         bounds: &Bounds,
@@ -230,7 +230,7 @@ impl Lesson {
         self.progress()
     }
 
-    /// How far the run has come.
+    /// The progress of the run.
     #[must_use]
     pub fn progress(&self) -> LessonProgress {
         LessonProgress {
@@ -255,7 +255,7 @@ impl Lesson {
         &self.chapters
     }
 
-    /// When a particle was added, treated and done, as far as the run has come; `None` if there is none of this number.
+    /// The events at which a particle was added, treated and done, as far as the run has come; `None` if there is no particle of this number.
     #[must_use]
     pub fn life(&self, particle: u32) -> Option<Life> {
         self.lives.get(particle as usize).copied()

@@ -71,7 +71,7 @@ impl Lesson {
     }
 }
 
-/// Where f vanishes between two nodes, if it changes its sign.
+/// The zero of f between two nodes, if f changes its sign.
 fn crossing((a, fa): ([f64; 2], f64), (b, fb): ([f64; 2], f64)) -> Option<[f64; 2]> {
     if !(fa.is_finite() && fb.is_finite()) || (fa <= 0.0) == (fb <= 0.0) {
         return None;

@@ -1,4 +1,4 @@
-//! What a run of the lesson is asked for: the method, the rules of the paper, and what goes beyond it.
+//! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond it.
 
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
@@ -26,7 +26,7 @@ pub struct LessonField {
     pub bounds: Bounds,
 }
 
-/// Which method covers the surface.
+/// Method that covers the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMethod"))]
 #[serde(rename_all = "snake_case")]
@@ -39,19 +39,19 @@ pub enum LessonMethod {
     Forces,
 }
 
-/// When a child is compared with the particles that exist.
+/// Order of the projection of children and their comparison with the particles that exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPlacing"))]
 #[serde(rename_all = "snake_case")]
 pub enum Placing {
-    /// One particle after the other: its children are projected, then compared, as in Algorithm 2.
+    /// Particle by particle: the children of a particle are projected, then compared, as in Algorithm 2.
     OneByOne,
     /// A whole generation level together, as in the fast front. A child is compared where the curvature around its parent
     /// predicts it; only free ones are projected, and then compared again.
     LevelByLevel,
 }
 
-/// When the fronts of a surface with several components begin.
+/// Order in which the fronts of a surface with several components begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSeeding"))]
 #[serde(rename_all = "snake_case")]
@@ -67,7 +67,7 @@ pub enum Seeding {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
 pub struct LessonSettings {
-    /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
+    /// Method that covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
     /// `residual`, `max_iterations` and `max_particles`.
     pub method: LessonMethod,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
@@ -75,7 +75,7 @@ pub struct LessonSettings {
     pub sampling: Sampling,
     /// Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates.
     pub radius: f64,
-    /// How the radius of an adaptive particle follows from the curvature.
+    /// Law for the radius of an adaptive particle, given the curvature.
     #[cfg_attr(test, ts(type = "'chord_error' | 'max_curvature' | 'sum_of_curvatures'"))]
     pub law: LawKind,
     /// The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
@@ -93,19 +93,19 @@ pub struct LessonSettings {
     pub seeds: Vec<[f64; 3]>,
     /// Chooses the first seed where none is given.
     pub seed: u32,
-    /// How the fronts of several seeds begin.
+    /// Order in which the fronts of several seeds begin.
     pub seeding: Seeding,
-    /// How a child comes to the surface.
+    /// Method that moves a child onto the surface.
     pub projection: Projection,
-    /// Where that begins.
+    /// Start of the search on the circle.
     pub start: SearchStart,
-    /// Which particle is treated next.
+    /// Order in which waiting particles are treated.
     pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,
     /// A child is identified with a particle within this distance, in 2r.
     pub match_tolerance: f64,
-    /// One particle after the other, or level by level.
+    /// Order of projection and comparison: particle by particle, or level by level.
     pub placing: Placing,
     /// Whether gaps between fronts are filled.
     #[cfg_attr(test, ts(type = "'fill' | 'leave'"))]

@@ -11,7 +11,7 @@
 //! end while
 //! ```
 //!
-//! What moves a particle and when it divides or dies is in `witkin_heckbert` and `forces`. An iteration is a chapter.
+//! `witkin_heckbert` and `forces` have the rules of the two systems for moves, divisions and deaths. An iteration is a chapter.
 //!
 //! # Differs from the paper
 //!
@@ -109,7 +109,7 @@ impl Course {
         }
     }
 
-    /// One unit of an iteration.
+    /// Does one unit of an iteration.
     pub(super) fn iterate(&mut self) {
         // Children that are born in this iteration have their turn in the next one.
         let living = self.dynamics.len();

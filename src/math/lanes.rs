@@ -20,7 +20,7 @@ impl Default for Lanes {
 }
 
 impl Lanes {
-    /// The same value in every lane.
+    /// Returns lanes that all have the same value.
     #[inline]
     #[must_use]
     pub const fn splat(value: f32) -> Self {

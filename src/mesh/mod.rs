@@ -7,7 +7,7 @@
 //! * [`build`]: from points with normals to triangles.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by a journal; subdivision.
 //!
-//! What such a list adds up to, [`topology`](crate::topology) counts.
+//! [`topology`](crate::topology) counts the components, borders and Euler number of such a list.
 
 pub mod build;
 pub mod half_edge;

@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonNearby"))]
 pub struct Nearby {
-    /// Its index.
+    /// Index of the particle.
     pub particle: u32,
-    /// Distance to it.
+    /// Distance to the particle.
     pub distance: f64,
 }
 

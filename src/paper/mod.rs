@@ -82,7 +82,7 @@ pub struct PaperRun<O> {
     forces: Vec<DVec3>,
     /// Longest move in the step under way, in radii.
     pub(crate) largest_move: f64,
-    /// Who is told what happens.
+    /// The observer of the run.
     pub(crate) seen: O,
 }
 

@@ -1,4 +1,4 @@
-//! Who looks on: what the algorithm tells while it runs.
+//! Observers of a run, with a method for each event of the algorithm.
 
 use super::buckets::Nearby;
 use super::particle::{Particle, TangentFrame};
@@ -18,15 +18,15 @@ pub struct ChildSlot {
 /// A child beside the nearest particle of its sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Comparison {
-    /// Where the child is compared.
+    /// Position at which the child is compared.
     pub position: DVec3,
     /// The nearest particle; none if none is near, or if it is a child that has no number yet.
     pub against: Option<u32>,
     /// Distance to the nearest; none if nothing is near.
     pub distance: Option<f64>,
-    /// The child corresponds to what is within this distance.
+    /// Match radius: the child corresponds to a particle within this distance.
     pub limit: f64,
-    /// Whether it does.
+    /// Whether the child corresponds to the nearest particle.
     pub corresponds: bool,
 }
 
@@ -35,20 +35,20 @@ pub struct Comparison {
 pub struct Move {
     /// Sum of the repulsion, in the tangent plane.
     pub force: DVec3,
-    /// Where it leads.
+    /// Target of the move, in the tangent plane.
     pub target: DVec3,
     /// Whether the particle stays, because there is no surface near the target.
     pub is_kept: bool,
 }
 
-/// What happens in a run, in its order. `()` does not listen.
+/// Observer of a run: a method is called for each event, in the order of the events. `()` ignores them all.
 #[allow(unused_variables, reason = "an observer need not listen to all")]
 pub trait Observer {
     /// A front begins at a seed.
     fn seed(&mut self, particle: u32, data: &Particle) {}
     /// A particle that waits is taken.
     fn taken(&mut self, particle: u32) {}
-    /// Its children are placed in this frame; `form` is the second fundamental form there, if it was asked for.
+    /// The children of a particle are placed in this frame; `form` is the second fundamental form there, if the rules ask for it.
     fn frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {}
     /// A child begins in a direction, at an angle of the circle there.
     fn proposed(&mut self, child: ChildSlot, direction: DVec3, theta_rad: f64, place: DVec3) {}
@@ -70,11 +70,11 @@ pub trait Observer {
     fn space(&mut self, parent: u32, between: Option<[(u32, f64); 2]>) {}
     /// An adaptive child starts on the circle of its parent, in the direction of the point I of Fig. 7c.
     fn started(&mut self, child: ChildSlot, tangent: Option<DVec3>, position: DVec3, radius: f64) {}
-    /// It is pushed away from its parent.
+    /// An adaptive child is pushed away from its parent.
     fn pushed(&mut self, child: ChildSlot, position: DVec3, radius: f64) {}
-    /// It is pushed along the circle.
+    /// An adaptive child is pushed along the circle.
     fn turned(&mut self, child: ChildSlot, position: DVec3, radius: f64, overlap: f64) {}
-    /// The angles φ and τ are compared.
+    /// The angles φ and τ of an adaptive child are compared.
     fn room(&mut self, child: ChildSlot, phi_rad: f64, tau_rad: f64, fits: bool) {}
     /// A relaxation step begins, with this energy per particle.
     fn step_begins(&mut self, step: u32, size: f64, energy: f64) {}

@@ -1,4 +1,4 @@
-//! How a child comes to the surface, paper §4.3: on a circle around its parent.
+//! The projection of a child onto the surface, paper §4.3: along a circle around its parent.
 
 use super::PaperRun;
 use super::observer::{ChildSlot, Observer};
@@ -29,7 +29,7 @@ const MAX_BRACKET: u32 = 40;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).
 ///
-/// Its points are p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre out and takes |N| = |V| = 2r.
+/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre out and takes |N| = |V| = 2r.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circle {
     /// The parent's place, p.
@@ -188,7 +188,7 @@ impl<O: Observer> PaperRun<O> {
         landing
     }
 
-    /// Where a child landed, if it may be a particle there; otherwise its fate is decided.
+    /// The position and normal of a child that has landed, if it may be a particle there; otherwise its fate is decided.
     pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
         let fate = match landing {
             Landing::NotConverged => SlotFate::NotConverged,
@@ -204,8 +204,8 @@ impl<O: Observer> PaperRun<O> {
         None
     }
 
-    /// Where a particle that is moved to `target` comes back to the surface; `None` at the border of the box, where the field ends, or
-    /// around a fold.
+    /// The position and normal of a particle that is moved to `target` and brought back to the surface; `None` at the border of the box,
+    /// where the field ends, or around a fold.
     pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
         let residual = self.rules.residual * own.radius;
         match self.surface.land_by_newton(target, reach, residual, &mut |_| {}) {

@@ -15,7 +15,7 @@ pub struct Push {
     /// The particle that pushes.
     #[serde(flatten)]
     pub near: Nearby,
-    /// Its repulsion, along the offset between the two.
+    /// Repulsion by that particle, along the offset between the two.
     pub force: [f64; 3],
     /// Energy of the pair.
     pub energy: f64,

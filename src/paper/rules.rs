@@ -1,11 +1,11 @@
-//! What a reader of the paper may choose: the points that its text leaves open or discusses.
+//! The choices that the paper discusses or leaves open.
 
 use super::surface::ImplicitSurface;
 use crate::differential::Curvature;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// How a child is moved onto the surface (§4.3).
+/// The method that moves a child onto the surface (§4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
 #[serde(rename_all = "snake_case")]
@@ -16,25 +16,25 @@ pub enum Projection {
     Newton,
 }
 
-/// Where the search on the circle begins.
+/// The start of the search on the circle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
 #[serde(rename_all = "snake_case")]
 pub enum SearchStart {
     /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
     Tangent,
-    /// Where the normal curvature of the parent puts the surface, sin θ₀ = −κ_V r.
+    /// At the angle where the parent's normal curvature predicts the surface, sin θ₀ = −κ_V r.
     Curvature,
 }
 
-/// Which of the particles that are not done is treated next (§4.4).
+/// The order in which the particles that are not done are treated (§4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
 #[serde(rename_all = "snake_case")]
 pub enum QueueOrder {
-    /// The one that has waited longest: this gives the rings of Fig. 11.
+    /// The particle that has waited longest is next: this gives the rings of Fig. 11.
     Queue,
-    /// The one that came last, as the word "stack" in the text says.
+    /// The particle that came last is next, as the word "stack" in the text says.
     Stack,
 }
 
@@ -43,22 +43,22 @@ pub enum QueueOrder {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
 #[serde(rename_all = "snake_case")]
 pub enum Matched {
-    /// It leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
+    /// The particle leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
     Leave,
-    /// It stays, and so do the new children. No two particles are then closer than the match radius.
+    /// The particle stays, and so do the new children. No two particles are then closer than the match radius.
     Stay,
 }
 
-/// The repulsion radii of the particles.
+/// The rule for the repulsion radii of the particles.
 #[derive(Clone, Copy, Debug)]
 pub enum RadiusRule {
-    /// This radius everywhere (§4).
+    /// The radius is this one everywhere (§4).
     Same(f64),
-    /// A radius that follows the curvature (§5.2), between two limits, "in order to avoid very small or very large particles".
+    /// The radius follows the curvature (§5.2), between two limits, "in order to avoid very small or very large particles".
     ByCurvature {
         /// The radius, from the principal curvatures of the level set and `scale`.
         law: fn(&Curvature<f64, DVec3>, f64) -> f64,
-        /// What the law scales the curvature with "in order to be used as a distance measurement".
+        /// Factor of the law, which scales the curvature "in order to be used as a distance measurement".
         scale: f64,
         /// The smallest radius.
         least: f64,
@@ -107,11 +107,11 @@ pub fn sum_of_curvatures(curvature: &Curvature<f64, DVec3>, scale: f64) -> f64 {
 pub struct Rules {
     /// The radii of the particles.
     pub sizes: RadiusRule,
-    /// How a child comes to the surface.
+    /// The method that moves a child onto the surface.
     pub projection: Projection,
-    /// Where that begins.
+    /// The start of the search on the circle.
     pub start: SearchStart,
-    /// Which particle is treated next.
+    /// The order in which waiting particles are treated.
     pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,

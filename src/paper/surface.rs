@@ -31,7 +31,7 @@ pub struct FieldSample {
 }
 
 impl FieldSample {
-    /// Whether the point counts as one of the surface, with a normal.
+    /// Whether the point counts as a point of the surface that has a normal.
     pub(super) fn is_zero(&self, residual: f64) -> bool {
         self.slope > 0.0 && self.slope.is_finite() && self.value.abs() <= residual * self.slope
     }
@@ -52,19 +52,19 @@ pub struct Trial {
     pub bracket_rad: Option<[f64; 2]>,
 }
 
-/// Where a search ended.
+/// Result of a search for the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Landing {
-    /// On the surface.
+    /// The search has met the surface.
     On {
-        /// The place.
+        /// Point of the surface.
         position: DVec3,
         /// Unit normal there.
         normal: DVec3,
     },
-    /// Nowhere: no zero was found.
+    /// The search has met no point of the surface.
     NotConverged,
-    /// Where the field has no value.
+    /// The search has come to a place where the field has no value.
     Undefined,
 }
 

@@ -105,7 +105,7 @@ impl JobError {
 pub struct PointsFault {
     /// Kind of error as a word in snake case.
     pub kind: &'static str,
-    /// One sentence for the user, in plain text.
+    /// The error as a sentence for the user, in plain text.
     pub message: String,
     /// Number, from 1, of the line of a text file that is in error.
     pub line: Option<u64>,
@@ -146,13 +146,13 @@ const SPREADING: JobPart = part(JobStage::Thinning, "Choosing centres", 0.75, 0.
 const SOLVING: JobPart = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
 const DONE: JobPart = part(JobStage::Done, "Done", 1.0, 0.0);
 
-/// What a job tells while it runs.
-struct Told {
+/// Status of a job, which its work updates while it runs.
+struct JobStatus {
     progress: Cell<PointsProgress>,
     centres: OnceCell<Vec<DVec3>>,
 }
 
-impl Told {
+impl JobStatus {
     fn new(first: &JobPart) -> Rc<Self> {
         Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
     }
@@ -174,7 +174,7 @@ impl JobPart {
 /// A file or a built-in model on its way to a field.
 pub struct Job {
     state: JobState,
-    told: Rc<Told>,
+    status: Rc<JobStatus>,
 }
 
 enum JobState {
@@ -194,9 +194,9 @@ impl Job {
         check_number(centres)?;
         let reader = Reader::new(name, bytes)?;
         let info = ModelInfo { name: name.to_owned(), ..ModelInfo::default() };
-        let told = Told::new(&READING);
-        let work = Box::pin(of_file(reader, centres as usize, info, told.clone()));
-        Ok(Self { state: JobState::Working(work), told })
+        let status = JobStatus::new(&READING);
+        let work = Box::pin(of_file(reader, centres as usize, info, status.clone()));
+        Ok(Self { state: JobState::Working(work), status })
     }
 
     /// Job for a built-in model. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated, or all of them if
@@ -210,10 +210,10 @@ impl Job {
         let unknown = || JobError::UnknownModel { id: id.to_owned() };
         let info = models::info(model::find(id).ok_or_else(unknown)?);
         let cloud = models::cloud(id).ok_or_else(unknown)?;
-        let told = Told::new(&SPREADING);
+        let status = JobStatus::new(&SPREADING);
         let given = cloud.position.clone();
-        let work = Box::pin(of_cloud(cloud, given, centres as usize, info, told.clone()));
-        Ok(Self { state: JobState::Working(work), told })
+        let work = Box::pin(of_cloud(cloud, given, centres as usize, info, status.clone()));
+        Ok(Self { state: JobState::Working(work), status })
     }
 
     /// Current progress.
@@ -221,7 +221,7 @@ impl Job {
     pub fn progress(&self) -> PointsProgress {
         match self.state {
             JobState::Done(_) => DONE.at(0.0),
-            JobState::Working(_) | JobState::Failed(_) => self.told.progress.get(),
+            JobState::Working(_) | JobState::Failed(_) => self.status.progress.get(),
         }
     }
 
@@ -232,7 +232,7 @@ impl Job {
     ///
     /// # Errors
     ///
-    /// What is wrong with the file, the points or the system. Every later call returns the same error.
+    /// The error of the file, the points or the system. Every later call returns the same error.
     pub fn step(&mut self, budget: u32) -> Result<PointsProgress, JobError> {
         if let JobState::Working(work) = &mut self.state
             && let Some(result) = slices::advance(work.as_mut(), budget)
@@ -257,7 +257,7 @@ impl Job {
     /// Points that are interpolated, once they are chosen.
     #[must_use]
     pub fn centres(&self) -> &[DVec3] {
-        self.told.centres.get().map_or(&[], Vec::as_slice)
+        self.status.centres.get().map_or(&[], Vec::as_slice)
     }
 }
 
@@ -270,22 +270,22 @@ async fn of_file(
     reader: Reader,
     wanted: usize,
     mut info: ModelInfo,
-    told: Rc<Told>,
+    status: Rc<JobStatus>,
 ) -> Result<Fit, JobError> {
-    let mesh = reader.read(told.begin(&READING)).await?;
+    let mesh = reader.read(status.begin(&READING)).await?;
     info.points = mesh.position.len() as u32;
-    let (cloud, warnings) = mesh.into_cloud(told.begin(&FACING)).await?;
+    let (cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
     info.warnings = warnings;
-    let mut cloud = merge(cloud, told.begin(&MERGING)).await?;
+    let mut cloud = merge(cloud, status.begin(&MERGING)).await?;
     check_spread(&cloud.position)?;
     info.warnings.extend(bring_near(&mut cloud.position));
     let given = cloud.position.clone();
-    told.begin(&THINNING)(0.0);
+    status.begin(&THINNING)(0.0);
     let mut cloud = thin(cloud).await?;
     if cloud.normal.is_empty() {
-        info.warnings.extend(estimate(&mut cloud, told.begin(&ESTIMATING)).await?);
+        info.warnings.extend(estimate(&mut cloud, status.begin(&ESTIMATING)).await?);
     }
-    of_cloud(cloud, given, wanted, info, told).await
+    of_cloud(cloud, given, wanted, info, status).await
 }
 
 /// From points with normals to a field. The distances from the surface are measured at the points `given`.
@@ -294,15 +294,15 @@ async fn of_cloud(
     given: Vec<DVec3>,
     wanted: usize,
     info: ModelInfo,
-    told: Rc<Told>,
+    status: Rc<JobStatus>,
 ) -> Result<Fit, JobError> {
     if wanted < cloud.len() {
-        cloud = cloud.only(&spread(&cloud.position, wanted, told.begin(&SPREADING)).await);
+        cloud = cloud.only(&spread(&cloud.position, wanted, status.begin(&SPREADING)).await);
     }
-    told.centres.get_or_init(|| cloud.position.clone());
+    status.centres.get_or_init(|| cloud.position.clone());
     // Those of a file are counted before equal ones are joined.
     let points = info.points;
-    let mut fit = interpolate(&cloud, &given, info, told.begin(&SOLVING)).await?;
+    let mut fit = interpolate(&cloud, &given, info, status.begin(&SOLVING)).await?;
     fit.info.points = fit.info.points.max(points);
     Ok(fit)
 }

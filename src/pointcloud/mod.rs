@@ -43,7 +43,7 @@ pub struct Cloud {
     pub position: Vec<DVec3>,
     /// Unit normals, one for each position, or none at all if they are still to be estimated.
     pub normal: Vec<DVec3>,
-    /// Where the normals come from.
+    /// Source of the normals.
     pub source: NormalSource,
 }
 

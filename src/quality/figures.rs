@@ -6,7 +6,7 @@ use serde::Serialize;
 /// A figure that is not defined, or not yet measured.
 const NONE: f64 = f64::NAN;
 
-/// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
+/// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
 /// side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -21,7 +21,7 @@ pub struct Figures {
     pub not_finite: usize,
     /// Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures.
     pub boundary_excluded: usize,
-    /// How near the points and their normals are to the surface and its normals.
+    /// Errors of the points and of their normals.
     #[serde(flatten)]
     pub accuracy: Accuracy,
     /// Distances of the points from their nearest ones.
@@ -63,7 +63,7 @@ impl Default for Figures {
     }
 }
 
-/// How near the points and their normals are to the surface and its normals.
+/// Errors of the points and of their normals, measured against the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Accuracy {

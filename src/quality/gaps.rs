@@ -42,7 +42,7 @@ pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
     spacing
 }
 
-/// Where the surface is: by the field, in the box that was sampled.
+/// Search for triangles that lead across a gap of the surface.
 pub(super) struct Gaps<'a> {
     pub(super) points: &'a MeasuredPoints,
     pub(super) spacing: &'a [f32],
@@ -112,11 +112,11 @@ impl Gaps<'_> {
 
 /// An edge that may lead across a gap.
 struct LongEdge {
-    /// The triangle, counted from the first of its slice.
+    /// Index of the triangle in its slice.
     triangle: usize,
-    /// Its middle, lifted to the circle through its ends.
+    /// The middle of the edge, lifted to the circle through the two ends.
     middle: Vec3,
-    /// The mean of the unit normals at its ends, a unit vector.
+    /// The mean of the unit normals at the two ends, a unit vector.
     up: Vec3,
     length: f32,
 }

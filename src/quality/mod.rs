@@ -70,7 +70,7 @@ const SLICE: usize = 256;
 /// Size of a triangle, in d_hex, from which on it lies in a hole.
 const SPREAD: f64 = 2.0;
 
-/// The figures of a set of particles, and a value of each kind for every particle, in the order given.
+/// The figures of a set of particles, and columns with values for each particle, in the order given.
 #[derive(Clone, Debug, Default)]
 pub struct Measurements {
     /// The figures.
@@ -91,9 +91,9 @@ pub struct Measurements {
     pub component: Vec<u32>,
     /// Histogram of `nearest` / d_hex.
     pub histogram: Histogram,
-    /// Where the spacing is worst.
+    /// The crowded pairs and the wide holes.
     pub places: Places,
-    /// Where the triangles of natural neighbours leave the surface open; none where they close it.
+    /// The opening that the triangles of natural neighbours leave in the surface; none if they close it.
     pub(crate) opening: Option<Opening>,
 }
 
@@ -104,7 +104,7 @@ pub(crate) struct Opening {
     pub(crate) edges: usize,
     /// Points in no triangle.
     pub(crate) points: usize,
-    /// One of the places.
+    /// Position of one of these edges or points.
     pub(crate) position: Vec3,
 }
 
@@ -179,7 +179,7 @@ pub(crate) async fn in_slices(
 
 /// Returns the triangles of the particles as triples of indices, counter-clockwise seen from outside.
 ///
-/// They are the triangles of natural neighbours that at least two of their three corners agree on. Conflicts about
+/// A triangle of natural neighbours is returned if at least two of its three corners agree on it. Conflicts about
 /// nearly cocircular points are resolved, so that every directed edge belongs to at most one triangle. Input and cost
 /// are those of [`measure`], of which this is a part.
 #[must_use]
@@ -191,7 +191,7 @@ pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> V
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
 
-/// What is measured of points without duplicates.
+/// The measurements of the distinct points, in tree order.
 #[derive(Default)]
 struct DistinctFigures {
     figures: Figures,
@@ -328,7 +328,7 @@ async fn measure_triangles(
     (component, opening)
 }
 
-/// Where the triangles are open between points that are `inner`.
+/// The opening that the triangles leave between points that are `inner`, if there is one.
 fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[Vec3]) -> Option<Opening> {
     let mut is_bare = inner.to_vec();
     mesh.iter().flatten().for_each(|&i| is_bare[i as usize] = false);

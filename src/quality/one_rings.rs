@@ -25,7 +25,7 @@ const PROVEN: u32 = 1 << 31;
 /// The one-rings of all points in tree order, one after the other.
 #[derive(Debug)]
 pub(super) struct OneRings {
-    /// Where each ring begins in `neighbour`, and the end of the last.
+    /// Index in `neighbour` at which each ring begins, and the end of the last ring.
     start: Vec<u32>,
     neighbour: Vec<u32>,
     /// Whether the Voronoi cell of each point is closed and proven complete.

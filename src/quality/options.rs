@@ -7,7 +7,7 @@ pub enum Sizes<'a> {
     /// There are no wanted radii, and those figures are NaN.
     #[default]
     None,
-    /// One radius for each particle. If the slice is too short, particles without a radius are left out.
+    /// The wanted radius of each particle. If the slice is too short, particles without a radius are left out.
     Given(&'a [f32]),
     /// Half the mean length of the particle's own edges. The figures are then small if the sizes change smoothly.
     Local,
@@ -20,7 +20,7 @@ pub enum Sizes<'a> {
     },
 }
 
-/// What is known about the surface, and how many random samples are drawn.
+/// Options of a measurement: known properties of the surface, and the number of random samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.

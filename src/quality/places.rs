@@ -1,4 +1,4 @@
-//! Where the spacing is worst: crowded pairs and wide holes.
+//! The places with the worst spacing: crowded pairs and wide holes.
 
 use crate::math::{key_of, sort_by_key};
 use crate::slices::pause;

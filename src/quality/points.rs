@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 /// Points at which the field is evaluated together, in one slice of work.
 const BATCH: usize = 64;
 
-/// The points and what the figures are made from. All columns are in tree order.
+/// The points to be measured, with their normals, residuals and one-rings. All columns are in tree order.
 pub(super) struct MeasuredPoints {
     pub(super) tree: Tree,
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.

@@ -1,8 +1,8 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
-//! They measure what the points show, and leave out what is in doubt. [`crate::mesh::build`] joins points to one manifold and fills such
-//! places in. The sampler refines on those, and what measures particles must not depend on what made them: so the two find triangles
-//! each in its own way.
+//! Triangles that are in doubt are left out. [`crate::mesh::build`] is another triangulator, which fills such places in to make one
+//! manifold. The sampler refines on that manifold, and what measures particles must not depend on what made them: therefore this room
+//! has a triangulator of its own.
 
 use super::figures::Angles;
 use super::moments::{Moments, share};

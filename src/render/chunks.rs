@@ -1,4 +1,4 @@
-//! How records are divided among buffers, so that none is larger than any device takes.
+//! Division of records among buffers, so that no buffer is larger than any device takes.
 
 use core::ops::Range;
 

@@ -13,17 +13,17 @@ macro_rules! fields {
     ($type:ty: $($field:ident),+ $(,)?) => { &[$((stringify!($field), offset_of!($type, $field))),+] };
 }
 
-/// What all pipelines of a picture share.
+/// Uniform block that all pipelines of a picture share.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Frame {
-    /// Where the picture is seen from.
+    /// The camera.
     pub camera: Camera,
     /// Light and background.
     pub light: Light,
     /// Progress of the particles that are appearing, and the range of levels shown.
     pub appearance: Appearance,
-    /// How particles and faces look.
+    /// Sizes and shading of discs and faces.
     pub look: Look,
     /// The clip box, drawn where a picture has one.
     pub clip_box: ClipBox,
@@ -31,7 +31,7 @@ pub struct Frame {
     pub plane: [f32; 4],
 }
 
-/// Where the picture is seen from, and its size.
+/// The camera, and the size of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Camera {
@@ -67,7 +67,7 @@ pub struct Light {
     pub background: [f32; 4],
 }
 
-/// How new particles appear, and which generation levels are shown.
+/// Fade-in of new particles, and the generation levels that are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Appearance {
@@ -81,7 +81,7 @@ pub struct Appearance {
     pub mute: f32,
 }
 
-/// How particles and faces look.
+/// Sizes and shading of discs and faces.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Look {

@@ -65,7 +65,7 @@ pub struct FaceRecord {
 pub struct FaceTint {
     /// sRGB red, green, blue and opacity of 8 bits each.
     pub colours: [u32; 3],
-    /// The same for the marks.
+    /// Colours of the marks: sRGB red, green, blue and opacity of 8 bits each.
     pub marks: [u32; 3],
 }
 

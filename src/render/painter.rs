@@ -24,9 +24,9 @@ pub(super) struct Painter {
 #[derive(Clone)]
 struct Buffers {
     depth: wgpu::Texture,
-    /// What is resolved, where a pixel has several samples.
+    /// The multisampled colour texture, if a pixel has several samples.
     samples: Option<wgpu::Texture>,
-    /// What it is resolved to, where that is copied to the target.
+    /// The texture that the samples are resolved to, if it is copied to the target.
     resolved: Option<wgpu::Texture>,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Faces<'a> {
     pub(super) is_ghost: bool,
 }
 
-/// Where a picture is drawn.
+/// Texture view that a picture is drawn on.
 pub(super) struct Canvas<'a> {
     pub(super) view: &'a wgpu::TextureView,
     /// The texture to which samples are copied once they are resolved; without one they are resolved to the view.

@@ -26,7 +26,7 @@ pub(super) struct Pipelines {
     pub(super) rims: [wgpu::RenderPipeline; 2],
     /// Draws faces, with depth test and depth writes.
     pub(super) faces: wgpu::RenderPipeline,
-    /// The same for faces that a plane may cut, whose edge at the plane is antialiased by the samples of a pixel.
+    /// Draws faces that a plane may cut, with depth test and depth writes. The samples of a pixel antialias the edge at the plane.
     pub(super) cut_faces: wgpu::RenderPipeline,
     /// Draws faces as a ghost beneath discs, with depth test and depth writes.
     pub(super) ghost: wgpu::RenderPipeline,
@@ -48,7 +48,7 @@ pub(super) struct TargetKind {
 /// Blending of colours that are premultiplied by their opacity.
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// What distinguishes one pipeline from another.
+/// The properties in which the pipelines differ.
 struct PipelineSpec<'a> {
     label: &'a str,
     shader: &'a wgpu::ShaderModule,

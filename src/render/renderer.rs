@@ -59,7 +59,7 @@ impl Columns<'_> {
     }
 }
 
-/// What a renderer holds of the surface.
+/// The particles and faces that a renderer draws.
 struct Content {
     particles: Store,
     /// Number of particles that are drawn.
@@ -68,7 +68,7 @@ struct Content {
     /// Number of faces that are drawn, and of particles that they stand for.
     face_count: u32,
     face_particles: u32,
-    /// What is packed before it is uploaded.
+    /// Buffer in which records are packed before they are uploaded.
     scratch: Vec<Record>,
     face_scratch: Vec<FaceRecord>,
 }

@@ -6,7 +6,7 @@ use core::ops::Range;
 /// Initial capacity of the first chunk.
 const FIRST: u32 = 1 << 12;
 
-/// What the two buffers of a chunk hold: the geometry of each record and, apart from it, its colours, which change more often.
+/// A buffer of a chunk: of the geometry of each record or, apart from it, of its colours, which change more often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Records,

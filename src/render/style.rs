@@ -10,7 +10,7 @@ use super::view::View;
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
     pub background: [f32; 4],
-    /// How particles are drawn.
+    /// Shape in which particles are drawn.
     pub drawing: Drawing,
     /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
     /// make the order visible.
@@ -38,15 +38,15 @@ pub struct Style {
     pub pixel_ratio: f32,
 }
 
-/// How particles are drawn.
+/// Shape in which particles are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Drawing {
-    /// As discs.
+    /// Particles are drawn as discs.
     #[default]
     Discs,
-    /// As discs above a ghost of the surface: the faces between them, in a faint grey.
+    /// Particles are drawn as discs above a ghost of the surface: the faces between them, in a faint grey.
     Ghost,
-    /// As the faces between them, as far as there are any.
+    /// The faces between the particles are drawn, and discs for newer particles, which no face joins yet.
     Faces {
         /// Whether each face has one normal and one colour.
         flat: bool,

@@ -1,4 +1,4 @@
-//! What is measured of the particles of a run, in slices of work.
+//! Measurement of the particles of a run, in slices of work.
 
 use crate::field::Field;
 use crate::math::Bounds;
@@ -17,7 +17,7 @@ const MAX_KEPT: usize = 400_000;
 #[derive(Default)]
 pub(super) struct Measuring {
     /// The particles after the front, until they are measured.
-    pub(super) front: Option<Arc<Kept>>,
+    pub(super) front: Option<Arc<ParticleCopy>>,
     pub(super) front_figures: Option<Figures>,
     pub(super) work: Option<Work<Measured>>,
     /// The figures and columns of the last measurement; empty before the first.
@@ -28,7 +28,7 @@ impl Measuring {
     /// Keeps the first `count` particles as those of the front, if none are kept.
     pub(super) fn keep_front(&mut self, particles: &Particles, count: usize) {
         if self.front.is_none() && count <= MAX_KEPT {
-            self.front = Some(Arc::new(Kept::of(particles)));
+            self.front = Some(Arc::new(ParticleCopy::of(particles)));
         }
     }
 
@@ -38,19 +38,19 @@ impl Measuring {
     }
 
     /// The particles of the front that are still to be measured.
-    pub(super) fn open_front(&self) -> Option<Arc<Kept>> {
+    pub(super) fn open_front(&self) -> Option<Arc<ParticleCopy>> {
         self.front.clone().filter(|_| self.front_figures.is_none())
     }
 }
 
-/// What is kept of particles for a later look at them.
-pub(super) struct Kept {
+/// Copy of the columns of particles that a later measurement needs.
+pub(super) struct ParticleCopy {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
     radius: Vec<f32>,
 }
 
-impl Kept {
+impl ParticleCopy {
     pub(super) fn of(particles: &Particles) -> Self {
         let Particles { position, normal, radius, .. } = particles;
         Self { position: position.clone(), normal: normal.clone(), radius: radius.clone() }
@@ -72,7 +72,7 @@ impl Kept {
     }
 }
 
-/// What a measurement gives.
+/// Results of a measurement.
 pub(super) struct Measured {
     pub(super) front: Option<Figures>,
     pub(super) now: quality::Measurements,
@@ -80,16 +80,16 @@ pub(super) struct Measured {
     pub(super) facing: usize,
 }
 
-/// What is measured, apart from the field.
-pub(super) struct Subject {
-    pub(super) front: Option<Arc<Kept>>,
-    pub(super) now: Kept,
+/// Input of a measurement, apart from the field.
+pub(super) struct MeasuringInput {
+    pub(super) front: Option<Arc<ParticleCopy>>,
+    pub(super) now: ParticleCopy,
     pub(super) bounds: Bounds,
     pub(super) sampling: Sampling,
 }
 
 // These functions are not generic, so that the measurement is compiled once and not with every type of field.
-impl Subject {
+impl MeasuringInput {
     /// Measures all at once.
     pub(super) fn measure(self, field: &mut dyn Field) -> Measured {
         slices::complete(self.in_slices(field))
@@ -112,7 +112,7 @@ impl Subject {
 }
 
 /// Number of particles nearer than 2r to one that faces the other way.
-async fn facing_another_sheet(particles: &Kept) -> usize {
+async fn facing_another_sheet(particles: &ParticleCopy) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
     /// Particles looked at in one slice of work.

@@ -14,7 +14,7 @@ use std::io;
 /// Rows of a file that are written in one slice of work, at up to a microsecond each.
 const ROWS: usize = 1_000;
 
-/// What a mesh adds up to.
+/// Counts of a mesh: triangles, components and borders.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshAnswer {
@@ -142,7 +142,7 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// Where a format's own counters, of 32 bits, are too small.
+    /// An error if the 32-bit counters of the format are too small.
     pub fn mesh_file(&mut self, format: MeshFormat, budget: u32) -> io::Result<Option<Vec<u8>>> {
         let begun = self.meshing.file.take().filter(|file| file.format == format);
         let File { next, mut bytes, .. } = begun.unwrap_or(File::new(format));

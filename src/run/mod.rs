@@ -43,14 +43,14 @@ pub enum Error {
     /// No particle could be placed.
     #[error("{message}")]
     Nothing {
-        /// What the run met.
+        /// Why the run ended.
         reason: StopReason,
-        /// That, and what to do, in a sentence.
+        /// The reason and the remedy, in a sentence.
         message: String,
     },
 }
 
-/// What is known of a run at its start.
+/// Report on the start of a run: the radius, estimates and warnings.
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Start {
@@ -93,9 +93,9 @@ pub struct Run<F> {
     sampler: Sampler,
     /// Whether field and box are those of the last start.
     is_surveyed: bool,
-    /// Runs of more particles are refused.
+    /// Limit on the number of particles: a run that expects more is refused.
     most_particles: usize,
-    /// What was known at the start.
+    /// The report on the start.
     start: Start,
     last: Option<Progress>,
     measuring: Measuring,
@@ -105,7 +105,7 @@ pub struct Run<F> {
 impl<F: Field> Run<F> {
     /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the surface.
     ///
-    /// It surveys the box, with some 40,000 evaluations, and fixes the radius. A fitted box is found by bounds of the field where it
+    /// The start surveys the box, with some 40,000 evaluations, and fixes the radius. A fitted box is found by bounds of the field where it
     /// has any, and by the signs of f on grids where it has none.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// Those of [`Run::start`].
+    /// The errors of [`Run::start`].
     pub fn start_with(mut field: F, settings_in: impl Fn(&Bounds) -> Settings) -> Result<Self, Error> {
         /// Rounds in which a fitted box and the room for the largest particles in it follow each other.
         const ROUNDS: u32 = 4;
@@ -184,7 +184,7 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// Those of [`Run::start`].
+    /// The errors of [`Run::start`].
     pub fn restart(&mut self, settings: &Settings) -> Result<Start, Error> {
         if let Some(bounds) = settings.bounds.filter(|bounds| *bounds != self.bounds) {
             self.set_bounds(bounds, None);
@@ -278,7 +278,7 @@ impl<F: Field> Run<F> {
         self.reach
     }
 
-    /// What was known at the start.
+    /// The report on the start of the run.
     #[must_use]
     pub fn start_report(&self) -> &Start {
         &self.start

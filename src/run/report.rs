@@ -1,6 +1,6 @@
 //! The report of a run: what the sampler counted and what was measured of the particles, before and after the relaxation.
 
-use super::measuring::{Kept, Measured, Subject};
+use super::measuring::{Measured, MeasuringInput, ParticleCopy};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
@@ -11,7 +11,7 @@ use crate::slices;
 use glam::Vec3;
 use serde::Serialize;
 
-/// Everything worth knowing about a run.
+/// Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Report {
@@ -20,7 +20,7 @@ pub struct Report {
     /// Repulsion radii.
     #[serde(flatten)]
     pub sizes: Radii,
-    /// How the particles came to be.
+    /// Statistics of the placement.
     #[serde(flatten)]
     pub growth: Growth,
     /// Components of the surface, and how sure it is that all were found.
@@ -31,7 +31,7 @@ pub struct Report {
     pub measures: Measures,
     /// Particles with a child that fell outside of the box.
     pub border: usize,
-    /// Why there are such particles.
+    /// Why particles lie at the border of the box.
     pub cut: Option<Cut>,
     /// Why the run ended.
     pub stop_reason: Option<StopReason>,
@@ -66,7 +66,7 @@ pub struct Radii {
     pub radius_max: f64,
 }
 
-/// How the particles of a run came to be.
+/// Statistics of the placement of the particles: levels, fronts, fates, evaluations and energy.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Growth {
@@ -99,7 +99,7 @@ pub struct Proof {
     /// Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
     /// component of a particle or named in `sampled`.
     pub search: Search,
-    /// Which of the witnessed components hold particles.
+    /// The witnessed components that hold particles, and those that do not.
     pub sampled: Sampled,
     /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
     /// attempted.
@@ -118,15 +118,15 @@ pub struct Measures {
     pub quality_before: Option<Figures>,
     /// Nearest-neighbour distances.
     pub nearest_histogram: Histogram,
-    /// Where the spacing is worst now.
+    /// The crowded pairs and wide holes of the present particles.
     pub places: Places,
 }
 
 impl<F: Field> Run<F> {
-    fn subject(&self) -> Subject {
-        Subject {
+    fn measuring_input(&self) -> MeasuringInput {
+        MeasuringInput {
             front: self.measuring.open_front(),
-            now: Kept::of(self.particles()),
+            now: ParticleCopy::of(self.particles()),
             bounds: self.local_bounds(),
             sampling: self.sampler.settings().sampling,
         }
@@ -135,7 +135,7 @@ impl<F: Field> Run<F> {
     /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended.
     pub fn report(&mut self) -> Report {
         self.measuring.stop();
-        let measured = self.subject().measure(&mut self.field);
+        let measured = self.measuring_input().measure(&mut self.field);
         self.take(measured)
     }
 
@@ -146,7 +146,7 @@ impl<F: Field> Run<F> {
         F: Clone + 'static,
     {
         if self.measuring.work.is_none() {
-            self.measuring.work = Some(self.subject().work(Box::new(self.field.clone())));
+            self.measuring.work = Some(self.measuring_input().work(Box::new(self.field.clone())));
         }
         let measured = slices::advance(self.measuring.work.as_mut()?.as_mut(), budget)?;
         self.measuring.work = None;

@@ -73,13 +73,13 @@ impl Sample {
         &self.particles
     }
 
-    /// What was counted and measured, and what the user should know.
+    /// The report on the run.
     #[must_use]
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// What was measured of each particle: columns as long as those of [`Sample::particles`].
+    /// The measurements of each particle, in columns as long as those of [`Sample::particles`].
     #[must_use]
     pub fn measured(&self) -> &quality::Measurements {
         &self.measured
@@ -102,7 +102,7 @@ impl Sample {
     ///
     /// # Errors
     ///
-    /// Those of `out`.
+    /// The errors of `out`.
     pub fn write(&self, format: Format, out: &mut dyn Write) -> io::Result<()> {
         export::write(format, &self.particles, &self.measured, out)
     }
@@ -111,7 +111,7 @@ impl Sample {
     ///
     /// # Errors
     ///
-    /// Those of `out`; and where a format's own counters, of 32 bits, are too small.
+    /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub fn write_mesh(&self, format: MeshFormat, out: &mut dyn Write) -> io::Result<()> {
         export::write_mesh(format, &self.particles, &self.measured, &self.mesh().triangles, out)
     }

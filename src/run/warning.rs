@@ -1,4 +1,4 @@
-//! What a user should know about a run: a typed list, whose `Display` is a sentence for each.
+//! Warnings about a run: a typed list, whose `Display` is a sentence for each.
 
 use super::{Run, check};
 use crate::field::Field;
@@ -14,9 +14,9 @@ const CLOSE_COUNT: usize = 8;
 /// Places of components without a particle that are named in words; the report has all.
 const NAMED: usize = 4;
 
-/// What a user should know about a run. `Display` says it in one or two sentences, with what to do.
+/// A warning about a run. `Display` gives it in one or two sentences, with what to do.
 ///
-/// Places are coordinates of the field. `length` is the radius of the run, to a thousandth of which they are told.
+/// Positions are in the coordinates of the field. `length` is the radius of the run; `Display` rounds positions to a thousandth of it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -31,14 +31,14 @@ pub enum Warning {
     Touches,
     /// Another equation of the same surface is sampled.
     SampledAs {
-        /// That equation.
+        /// The equation that is sampled.
         equation: String,
     },
     /// The gradient that the field gives is not that of its values.
     Gradient {
-        /// Where they differ.
+        /// Position at which the two differ.
         position: [f64; 3],
-        /// A length to a thousandth of which the place is told.
+        /// Length to a thousandth of which the position is rounded.
         length: f64,
     },
     /// A wanted number of particles was missed by more than the 3 % that are promised.
@@ -87,7 +87,7 @@ pub enum Warning {
         edges: usize,
         /// Number of particles in no triangle.
         points: usize,
-        /// One of the places.
+        /// Position of one of these edges or particles.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
@@ -104,7 +104,7 @@ pub enum Warning {
 }
 
 impl Serialize for Warning {
-    /// As the sentence.
+    /// Writes the warning as its sentence.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }

@@ -32,7 +32,7 @@ pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 /// Attempts at meeting a wanted count.
 const MAX_ATTEMPTS: u32 = 4;
 
-/// One attempt at covering the surface.
+/// An attempt at covering the surface.
 #[derive(Clone, Default)]
 pub(super) struct Attempt {
     /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal radius would cover the surface.
@@ -43,7 +43,7 @@ pub(super) struct Attempt {
     area: f64,
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
     packing: f64,
-    /// How the front is to be refined; none where it stands.
+    /// Plan and state of the refinement of the front; none if the front is not refined.
     pub(super) refining: Option<Refining>,
     /// Whether this attempt only measures the packing.
     is_pilot: bool,
@@ -51,18 +51,18 @@ pub(super) struct Attempt {
     completed: u32,
 }
 
-/// How the front of an attempt is to be refined.
+/// Plan of the refinement of a front, and the failures so far.
 #[derive(Clone)]
 pub(super) struct Refining {
     /// Times that the radius of the front is halved, after which it is that of the attempt.
     pub(super) halvings: u32,
     /// The radius field of the refined particles, where sizes differ: the front has one size.
     pub(super) sizing: Option<Sizing>,
-    /// Where the surface bends most.
+    /// Point of the surface with the largest curvature.
     pub(super) bend: Vec3,
     /// Number of refinements that could not go on.
     pub(super) failures: u32,
-    /// Why the last of them could not.
+    /// Error of the last refinement that could not go on.
     pub(super) failure: Option<Refusal>,
 }
 
@@ -136,7 +136,7 @@ impl Attempt {
         None
     }
 
-    /// What a refinement of this attempt's front aims at.
+    /// The target of the refinement of this attempt's front; none if the front is not refined.
     pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
         let Refining { halvings, sizing, .. } = self.refining.as_ref()?;
         let count = match (settings.size_mode, sizing) {
@@ -208,7 +208,7 @@ impl Attempt {
         }
     }
 
-    /// What counts as being on the surface.
+    /// Tolerance for the particles of the front.
     pub(super) fn tolerance(&self, survey: &Survey) -> Tolerance {
         tolerance(self.front_radius() as f32, survey.residual_limits(), survey.gradient_scale)
     }

@@ -1,4 +1,4 @@
-//! What a run that has ended tells its user.
+//! Messages for the user of a run that has ended.
 
 use super::{Sampler, StopReason};
 use crate::math::shortest_text;

@@ -74,11 +74,11 @@ pub struct Sampler {
     tools: Tools,
     output: Output,
     counts: Counts,
-    /// Most bytes that a run may need, if they are limited.
+    /// Limit on the memory of a run, in bytes; none if the memory is not limited.
     memory_limit: Option<usize>,
 }
 
-/// What places and moves the particles, with the memory that serves from one run to the next.
+/// The fronts and the relaxation, with their buffers, which are reused from one run to the next.
 #[derive(Clone, Default)]
 struct Tools {
     memory: ProbeMemory,
@@ -89,7 +89,7 @@ struct Tools {
     neighbours: PackedNeighbours,
 }
 
-/// What a run has made so far.
+/// Results of a run so far.
 #[derive(Clone, Default)]
 struct Output {
     particles: Particles,
@@ -161,7 +161,7 @@ impl Sampler {
         self.survey.least_gap(self.settings.sampling == Sampling::Adaptive)
     }
 
-    /// Which of the components hold particles.
+    /// The components that hold particles, and the witnessed ones that do not.
     #[must_use]
     pub fn sampled(&self) -> Sampled {
         self.components.sampled(self.doubts().is_empty())
@@ -212,7 +212,7 @@ impl Sampler {
     ///
     /// # Errors
     ///
-    /// Those of [`Sampler::start`].
+    /// The errors of [`Sampler::start`].
     pub fn start_again(
         &mut self,
         field: &mut dyn Field,

@@ -3,12 +3,12 @@
 use super::refine::Components;
 use serde::Serialize;
 
-/// What the sampler is doing.
+/// Phase of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Nothing started.
+    /// No run was started.
     #[default]
     Idle,
     /// Looking for a first point on every component that the survey has met.
@@ -31,7 +31,7 @@ pub enum Phase {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum StopReason {
-    /// Everything done.
+    /// All phases were completed.
     Complete,
     /// Stopped by the caller; what was there stays.
     Cancelled,

@@ -6,7 +6,7 @@ use crate::field::Field;
 use crate::math::Sym3;
 use glam::Vec3;
 
-/// What outlasts a [`Probe`]: the memory of a batch, and the count of all evaluations.
+/// State that outlasts a [`Probe`]: the buffers of a batch, and the count of all evaluations.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ProbeMemory {
     pub(super) points: Vec<Vec3>,

@@ -1,4 +1,4 @@
-//! What a run tells its caller: the answer to the start, the state after a step, and the counts.
+//! Reports of a run to its caller: the answer to the start, the state after a step, and the counts.
 
 use super::{Sampler, StopReason};
 use crate::particles::Particles;
@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Cost of a relaxation step per particle, as a share of what it costs to place the particle.
 const RELAXATION_STEP_COST: f64 = 0.25;
 
-/// What [`Sampler::start`] found out.
+/// Result of [`Sampler::start`]: the radius, and estimates for the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Forecast {
     /// Repulsion radius of the run.

@@ -30,7 +30,7 @@ const ARC_SAMPLES: usize = 32;
 
 /// The circle C(p, 2r) in the plane of the parent's normal and one tangent direction.
 ///
-/// Its points are p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the centre added.
+/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the centre added.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChildCircle {
     /// Parent position p.
@@ -337,7 +337,7 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     [cos * c - sin * s, sin * c + cos * s]
 }
 
-/// How near the surface particles have to be. The paper stops "when the child has converged" (§4.3) and gives no number.
+/// Limits for the residual |f|/|∇f| of a particle. The paper stops "when the child has converged" (§4.3) and gives no number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ResidualLimits {
     /// The distance that single precision resolves on this field.

@@ -1,4 +1,4 @@
-//! What a caller may choose, with the paper's values as defaults.
+//! Settings of a run, with the paper's values as defaults.
 
 use crate::math::{Bounds, shortest_text};
 use core::fmt;
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
-    /// One radius everywhere (paper §4).
+    /// All particles have one radius (paper §4).
     #[default]
     Uniform,
     /// The radius follows the curvature (paper §5).
     Adaptive,
 }
 
-/// How the particles' size is given.
+/// The quantity by which the size of the particles is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeMode {
@@ -26,7 +26,7 @@ pub enum SizeMode {
     Count,
 }
 
-/// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
+/// Law for the radius of an adaptive particle, given the principal curvatures κ₁ and κ₂.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
@@ -38,7 +38,7 @@ pub enum LawKind {
     SumOfCurvatures,
 }
 
-/// How the particles are brought onto the surface and into order.
+/// Method by which the particles are placed and evened out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -48,13 +48,13 @@ pub enum Method {
     Refined,
 }
 
-/// What becomes of gaps between fronts that are wide enough for a particle.
+/// Treatment of gaps between fronts that are wide enough for a particle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GapPolicy {
     /// A particle is placed in the middle.
     Fill,
-    /// They stay, as in the paper.
+    /// The gaps stay, as in the paper.
     Leave,
 }
 
@@ -75,15 +75,15 @@ pub struct Settings {
     /// text: there a box is given with the field.
     #[serde(skip)]
     pub bounds: Option<Bounds>,
-    /// One size everywhere, or sizes that follow the curvature.
+    /// Uniform or adaptive sampling.
     pub sampling: Sampling,
-    /// How the size is given.
+    /// The quantity by which the size of the particles is given.
     pub size_mode: SizeMode,
     /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 % (§6).
     pub radius_share: f64,
     /// Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.
     pub count: u32,
-    /// How the radius follows from the principal curvatures.
+    /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,
     /// Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal. With the default the ellipsoid of
     /// the gallery takes about 16,000 particles, the sphere 13,000.
@@ -98,12 +98,12 @@ pub struct Settings {
     pub grading: f64,
     /// Relaxation steps after the generation. The paper takes ten.
     pub relax_steps: u32,
-    /// How the particles are brought onto the surface and into order.
+    /// Method by which the particles are placed and evened out.
     pub method: Method,
     /// A child joins an existing particle within this distance, in units of 2r. The paper names no tolerance; 0.7 gives the most
     /// particles with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
-    /// What becomes of gaps where fronts meet.
+    /// Treatment of gaps where fronts meet.
     pub gaps: GapPolicy,
     /// Chooses the point on the surface where the front begins.
     pub seed: u64,

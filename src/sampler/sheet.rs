@@ -109,7 +109,7 @@ fn is_doubtful(pair: PointPair, spacing: f32) -> bool {
     lift * lift > (MAX_LIFT * spacing) * (MAX_LIFT * spacing) * (share * share * share).max(1.0)
 }
 
-/// How two points that face the same way are told to be on one sheet or on two.
+/// Rule that decides whether two points that face the same way are on one sheet or on two.
 ///
 /// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That misses sheets nearer to each
 /// other than such a lift. Where the survey has seen sheets as near as that, every pair is doubtful whose lift can be told from 0,
@@ -184,7 +184,7 @@ impl SheetRule {
 /// Whether two points of the surface, the first at `position`, seem to lie on one sheet. One evaluation of the field between
 /// them decides.
 ///
-/// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of this
+/// The evaluation is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of this
 /// middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
 /// two sheets the middle is half the lift away from both.
 fn is_one_sheet(probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {

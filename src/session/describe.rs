@@ -1,4 +1,4 @@
-//! What there is to choose and to read, described so that an interface can be generated from it: a new surface, setting
+//! Description of surfaces, settings and figures, from which an interface can be generated: a new surface, setting
 //! or figure needs no new code anywhere else.
 
 use super::setting::{self, Setting};
@@ -26,7 +26,7 @@ pub struct Description {
     pub settings: Vec<Setting>,
     /// Rows of the report.
     pub report: &'static [ReportRow],
-    /// What can become of a child.
+    /// The fates of a child.
     pub fates: &'static [Fate],
     /// Functions of the formula language.
     pub functions: &'static [FunctionInfo],
@@ -34,7 +34,7 @@ pub struct Description {
     pub colours: &'static [Colour],
     /// Columns of PLY and CSV files.
     pub columns: &'static [Column],
-    /// What a new parameter is, but for its name.
+    /// Template of a new parameter, without its name.
     pub new_parameter: Parameter,
     /// Largest and smallest values that the core accepts.
     pub limits: Limits,
@@ -96,16 +96,16 @@ pub struct SurfaceEntry {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ReportRow {
-    /// Path into the report. What is null there has no place in the run.
+    /// Path of the figure in the report. A figure that is null there does not apply to the run.
     pub key: &'static str,
     /// Path of the upper end, if the row is a range that begins at `key`.
     pub to: Option<&'static str>,
-    /// Path of the figure that stands in its place where that one is there: what a lattice of one size is the measure of says
-    /// nothing of particles of many.
+    /// Path of the figure that replaces this one where the report has it: a figure that is relative to the lattice of one size does not
+    /// apply to particles of many sizes.
     pub unless: Option<&'static str>,
     /// Name for a person.
     pub label: &'static str,
-    /// Group it is shown in.
+    /// Group in which the row is shown.
     pub group: &'static str,
     /// Unit; `%` shows the value times 100.
     pub unit: &'static str,
@@ -113,7 +113,7 @@ pub struct ReportRow {
     pub digits: u8,
     /// The ideal value, in words.
     pub ideal: &'static str,
-    /// Which way is better.
+    /// Direction in which the figure gets better.
     pub better: Option<&'static str>,
     /// Definition and meaning.
     pub help: &'static str,
@@ -121,7 +121,7 @@ pub struct ReportRow {
     pub places: Option<&'static str>,
 }
 
-/// What can become of a child.
+/// A fate of a child.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fate {
@@ -129,7 +129,7 @@ pub struct Fate {
     pub name: &'static str,
     /// Name for a person.
     pub label: &'static str,
-    /// One line of explanation.
+    /// Explanation in one line.
     pub help: &'static str,
 }
 
@@ -141,13 +141,13 @@ pub struct Colour {
     pub id: ColourMode,
     /// Name for a person.
     pub label: &'static str,
-    /// One line of explanation.
+    /// Explanation in one line.
     pub help: &'static str,
     /// Unit of the legend.
     pub unit: &'static str,
 }
 
-/// What the particles are coloured by.
+/// The quantity that colours the particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -172,11 +172,11 @@ pub enum ColourMode {
     Component,
     /// Direction of the normal.
     Normal,
-    /// One colour.
+    /// No quantity: all particles have one colour.
     Plain,
 }
 
-/// Describes everything there is.
+/// Returns the whole description.
 #[must_use]
 pub fn describe() -> Description {
     Description {

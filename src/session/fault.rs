@@ -5,7 +5,7 @@ use crate::field::formula::{FormulaError, FormulaErrorKind, Mended};
 use core::fmt;
 use serde::Serialize;
 
-/// What a refused command was about.
+/// Kind of the error with which a command is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -14,7 +14,7 @@ pub enum FaultKind {
     Request,
     /// A setting is out of its range, or the memory does not hold the run.
     Settings,
-    /// A run would have more particles than are followed, see [`Fault::excess`].
+    /// A run would have more particles than the limit allows, see [`Fault::excess`].
     TooMany,
     /// No surface of that name.
     UnknownSurface,
@@ -31,13 +31,13 @@ pub enum FaultKind {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fault {
-    /// What it is about.
+    /// Kind of the error.
     pub kind: FaultKind,
-    /// One sentence for a person; plain text.
+    /// The error as a sentence for the user, in plain text.
     pub message: String,
-    /// Where the mistake begins in the formula, in UTF-16 code units, as the selection of a text field counts.
+    /// Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field counts.
     pub start: usize,
-    /// Where it ends.
+    /// End of the mistake in the formula, in UTF-16 code units.
     pub end: usize,
     /// Text that would mend the span, if there is a good guess.
     pub suggestion: Option<String>,
@@ -45,24 +45,24 @@ pub struct Fault {
     pub mended: Option<Box<Mended>>,
     /// Unknown names that could become sliders.
     pub names: Vec<String>,
-    /// By how much there would be too many particles, if that is what it is about.
+    /// The excess of particles, if the error is [`FaultKind::TooMany`].
     pub excess: Option<Excess>,
 }
 
-/// By how much a run would have more particles than are followed.
+/// Excess of the expected particles of a run over the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Excess {
     /// Particles to expect.
     pub expected: u32,
-    /// The most that are followed.
+    /// Largest number of particles that a run may have.
     pub limit: u32,
-    /// By what all radii have to be multiplied.
+    /// Factor by which all radii have to be multiplied to stay within the limit.
     pub factor: f64,
 }
 
 impl Fault {
-    /// What is wrong with anything but a formula.
+    /// An error that is not about a formula.
     #[must_use]
     pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
         let message = message.to_string();
@@ -78,7 +78,7 @@ impl Fault {
         }
     }
 
-    /// What is wrong with the formula `text`.
+    /// An error in the formula `text`.
     #[must_use]
     pub fn in_formula(error: FormulaError, text: &str) -> Self {
         let span = error.utf16_span(text);

@@ -7,27 +7,27 @@ use crate::sampler::Settings;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Which box the surface of a formula is sampled in.
+/// Choice of the box in which the surface of a formula is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoxMode {
-    /// One that fits it, where none is given. A surface of the gallery keeps its own.
+    /// A box that fits the surface, where none is given. A surface of the gallery keeps its own.
     #[default]
     Fit,
-    /// The one that is given, or that of the surface with which the formula began.
+    /// The box that is given, or that of the surface with which the formula began.
     Fixed,
 }
 
-/// What is known of the box.
+/// State of the search for the box.
 #[derive(Default)]
 pub(super) struct Fitting {
-    /// Which box is wanted.
+    /// The choice of the user.
     pub(super) box_mode: BoxMode,
     /// Whether the box was given with the field.
     pub(super) is_given: bool,
     /// The search, while it is under way.
     search: Option<BoxFit>,
-    /// What the search has found for the present field.
+    /// Result of the search for the present field.
     found: Option<Extent>,
     /// Whether the box is that of the next run.
     pub(super) is_settled: bool,
@@ -36,7 +36,7 @@ pub(super) struct Fitting {
 }
 
 impl Fitting {
-    /// Forgets all but which box is wanted.
+    /// Forgets all but the choice of the user.
     pub(super) fn discard(&mut self) {
         *self = Self { box_mode: self.box_mode, ..Self::default() };
     }
@@ -48,7 +48,7 @@ impl Fitting {
 }
 
 impl Session {
-    /// Chooses which box the surface of a formula is sampled in.
+    /// Chooses the box in which the surface of a formula is sampled.
     pub fn choose_box(&mut self, box_mode: BoxMode) {
         self.fitting.box_mode = box_mode;
     }

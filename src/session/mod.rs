@@ -1,5 +1,5 @@
-//! One user's work: a field that is changed by requests, and runs on it. Commands go in, changes and reports come out; there is no
-//! clock, no GPU and no platform in here.
+//! The session of a user: a field that is changed by requests, and runs on it. Commands go in, changes and reports come out; there is
+//! no clock, no GPU and no platform in here.
 
 mod describe;
 mod fault;
@@ -24,7 +24,7 @@ use fitting::Fitting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a caller asks of the field; everything is optional.
+/// Request for a field. All members are optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(default)]
@@ -41,7 +41,7 @@ pub struct FieldRequest {
     pub bounds: Option<Bounds>,
 }
 
-/// What a field is made of.
+/// Kind of a field, by its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -56,7 +56,7 @@ pub enum FieldKind {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FieldAnswer {
-    /// What it is made of.
+    /// Kind of the field.
     pub kind: FieldKind,
     /// The model, if it is made of points.
     pub model: Option<ModelInfo>,
@@ -70,7 +70,7 @@ pub struct FieldAnswer {
     pub auto: Vec<String>,
     /// Clip box; before [`Session::fit`] or a start it may be that of the formula before.
     pub bounds: Bounds,
-    /// How far the surface reaches, if the box was fitted to it.
+    /// Whether the surface is bounded, if the box was fitted to it.
     pub reach: Option<Reach>,
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,

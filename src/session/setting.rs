@@ -14,11 +14,11 @@ pub struct Setting {
     pub name: &'static str,
     /// Name for a person.
     pub label: &'static str,
-    /// One line of explanation.
+    /// Explanation in one line.
     pub help: &'static str,
-    /// Group it is shown in.
+    /// Group in which the setting is shown.
     pub group: Group,
-    /// What its values are.
+    /// Type of the values.
     pub kind: Kind,
     /// Default value.
     pub default: Value,
@@ -31,7 +31,7 @@ pub struct Setting {
     pub accepted_max: f64,
     /// Step of a slider; on a logarithmic scale a factor minus one. 0 for a choice.
     pub step: f64,
-    /// How values are spread over a slider.
+    /// Scale of a slider.
     pub scale: Scale,
     /// Unit; `%` stands for a share of the diagonal of the box, which is shown times 100.
     pub unit: &'static str,
@@ -82,24 +82,24 @@ impl Setting {
         }
     }
 
-    /// Its value among some settings.
+    /// The value of this setting in `settings`.
     #[must_use]
     pub fn value(&self, settings: &Settings) -> Value {
         (self.read)(settings)
     }
 }
 
-/// Where a setting is shown.
+/// Group of settings that are shown together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub enum Group {
-    /// With what everyone uses.
+    /// Settings that everyone uses.
     Sampling,
-    /// With what few need.
+    /// Settings that few users need.
     Advanced,
 }
 
-/// What the values of a setting are.
+/// Type of the values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -112,7 +112,7 @@ pub enum Kind {
     Choice,
 }
 
-/// How values are spread over a slider.
+/// Scale of a slider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -137,7 +137,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What kind of setting it is a value of.
+    /// Type of the setting that has such a value.
     #[must_use]
     pub fn kind(self) -> Kind {
         match self {
@@ -176,7 +176,7 @@ impl From<u32> for Value {
     }
 }
 
-/// One value of a choice.
+/// A value of a setting that is a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Choice {
@@ -186,15 +186,15 @@ pub struct Choice {
     pub label: &'static str,
 }
 
-/// What has to hold of another setting.
+/// Condition on another setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Condition {
     /// Name of the other setting.
     pub name: &'static str,
-    /// One of its choices.
+    /// A choice of the other setting.
     pub value: &'static str,
-    /// Whether it has that value then, or another one.
+    /// Whether the other setting must have that choice, or must not have it.
     pub equal: bool,
 }
 

@@ -29,7 +29,7 @@ const EMPTY: u64 = u64::MAX;
 #[derive(Clone, Copy)]
 struct Brick {
     key: u64,
-    /// One bit for each of the eight cells: whether it has a block.
+    /// A bit for each of the eight cells, which says whether the cell has a block.
     occupied: u32,
     /// First block of each of the eight cells.
     head: [u32; 8],
@@ -62,7 +62,7 @@ pub struct Neighbour {
     pub offset: Vec3,
 }
 
-/// What a query looks for: points within a radius of a centre.
+/// A query for the points within a radius of a centre.
 #[derive(Clone, Copy)]
 struct RadiusQuery {
     centre: Vec3,

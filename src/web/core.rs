@@ -47,7 +47,7 @@ impl Core {
         Self { session: Session::new() }
     }
 
-    /// Everything there is to choose and to read: `Description`.
+    /// The description of all settings, surfaces and figures: `Description`.
     #[wasm_bindgen(unchecked_return_type = "Description")]
     pub fn describe(&self) -> JsValue {
         to_js(&describe())

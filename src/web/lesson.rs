@@ -122,7 +122,7 @@ impl Lesson {
         self.run.as_mut().map_or(0, |run| run.seek(event))
     }
 
-    /// When a particle was added, treated and done: `LessonLife`; null if there is none.
+    /// The events at which a particle was added, treated and done: `LessonLife`; null if there is no such particle.
     #[wasm_bindgen(unchecked_return_type = "LessonLife | null")]
     pub fn life(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))

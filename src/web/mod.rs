@@ -1,4 +1,4 @@
-//! What JavaScript sees: newtypes that copy, nothing else.
+//! The bindings for JavaScript: newtypes that copy, nothing else.
 //!
 //! One source makes five bundles, each with a feature of its own: `core`, the sampler; `points`, what makes fields from files;
 //! `lesson`, the paper's algorithms event by event, each of these in a worker of its own; `webgpu` and `webgl`, the renderer,

@@ -59,7 +59,7 @@ impl Points {
         self.job.as_ref().and_then(Job::fit).map(|fit| fit.data.to_bytes()).unwrap_or_default()
     }
 
-    /// What there is to know of the field: an `Answer` with `SolvedModel`.
+    /// The report on the model: an `Answer` with `SolvedModel`.
     #[wasm_bindgen(unchecked_return_type = "Answer<SolvedModel, PointsFault>")]
     pub fn info(&self) -> JsValue {
         let fit = self.job.as_ref().and_then(Job::fit).ok_or_else(|| nothing("there is no field yet"));

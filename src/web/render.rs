@@ -98,7 +98,7 @@ impl Renderer {
         self.inner.borrow().backend().to_owned()
     }
 
-    /// What the driver calls the graphics adapter; may be empty, since browsers hide it.
+    /// Name of the graphics adapter as the driver gives it; may be empty, since browsers hide it.
     pub fn adapter(&self) -> String {
         self.inner.borrow().adapter().to_owned()
     }
@@ -214,7 +214,7 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// As `write_faces`.
+    /// The errors of `write_faces`.
     pub fn tint_faces(&self, first: u32, colours: &Uint32Array, marks: &Uint32Array) -> Result<(), JsError> {
         check_corners(first, colours.length(), marks)?;
         let mut scratch = self.scratch.borrow_mut();

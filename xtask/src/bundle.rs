@@ -19,7 +19,7 @@ use crate::project::Project;
 use crate::step;
 use crate::wasm_target::WasmTarget;
 
-/// What a bundle is built for.
+/// Purpose for which a bundle is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// The site, its tests and benches.
@@ -50,7 +50,7 @@ impl Purpose {
 pub(crate) enum Bundle {
     /// The sampler, which runs in a worker.
     Core,
-    /// What makes fields from files of points, which runs in a worker of its own when it is asked for.
+    /// The solver that makes fields from files of points. It runs in a worker of its own when it is asked for.
     Points,
     /// The paper's algorithms event by event, which run in a worker of their own when the lesson is asked for.
     Lesson,

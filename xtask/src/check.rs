@@ -60,11 +60,11 @@ const ALL: [Part; 11] = [
     Part::Engines,
 ];
 
-/// What makes and checks the bundles of the page. These parts run beside those that compile natively, because the last crate of
+/// Parts that make and check the bundles of the page. These parts run beside those that compile natively, because the last crate of
 /// every build takes one processor only.
 const BUNDLES: [Part; 2] = [Part::Parity, Part::Page];
 
-/// What drives a browser, which takes all processors and waits for time to pass: it runs last and alone.
+/// Parts that drive a browser, which takes all processors and waits for time to pass: they run last and alone.
 const BROWSERS: [Part; 2] = [Part::Browser, Part::Engines];
 
 /// Without WebAssembly and a browser.

@@ -20,7 +20,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(400);
 /// Loaded into the server: it ends when its input does, that is when this process is gone, however it went.
 const END_WITH_INPUT: &str = "data:text/javascript,process.stdin.on('end',()=>process.exit()).resume()";
 
-/// What to serve, and where.
+/// Options of the development server.
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Open the page in the default browser.

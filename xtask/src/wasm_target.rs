@@ -24,7 +24,7 @@ pub(crate) struct WasmTarget {
     rustc: Option<PathBuf>,
     /// Whether the standard library is compiled from source.
     from_source: bool,
-    /// What identifies the compiler's output: `rustc -vV`.
+    /// Identification of the compiler: the output of `rustc -vV`.
     pub(crate) version: String,
 }
 

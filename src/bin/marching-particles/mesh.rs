@@ -1,9 +1,9 @@
-//! What is told of the triangles of `--mesh`.
+//! Counts of the mesh of `--mesh`, for the output.
 
 use marching_particles::MeshAnswer;
 use serde::Serialize;
 
-/// What the output tells of a mesh.
+/// Counts of a mesh, as the output gives them.
 #[derive(Debug, Serialize)]
 pub(crate) struct Mesh {
     pub(crate) triangles: usize,

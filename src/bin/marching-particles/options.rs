@@ -22,7 +22,7 @@ const BOX_MODE: &str = "box_mode";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
-/// How a surface is sampled, as it was asked for: lengths are not shares of the box's diagonal before there is a box.
+/// Settings of a run as the options give them: lengths become shares of the box's diagonal only once there is a box.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplingOptions {
     values: Map<String, Json>,
@@ -136,7 +136,7 @@ fn option(setting: &Setting) -> Arg {
     }
 }
 
-/// What the option does, with its default.
+/// Help text of the option of a setting, with its default.
 fn help(setting: &Setting) -> String {
     let help = setting.help.trim_end_matches('.');
     let default = match setting.default {

@@ -30,7 +30,7 @@ const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 /// The surface that was asked for.
 struct Chosen {
     field: Box<dyn Field>,
-    /// Its name, if it has one.
+    /// Name of the surface, if it has one.
     name: Option<String>,
     formula: String,
     parameters: BTreeMap<String, f64>,
@@ -121,7 +121,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What to say of a run that meets the limit on particles.
+/// Warning about a run that meets the limit on particles.
 fn over_limit(predicted_count: u64, settings: &Settings) -> String {
     // The prediction may be a little too low.
     let count = predicted_count.max(u64::from(settings.max_particles) + 1);

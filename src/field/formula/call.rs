@@ -1,6 +1,6 @@
 //! Calls of functions, with brackets or without: `sin(x)`, `ln 2x`, `sin^2 x cos y`.
 //!
-//! Those without are read where there is one reading, and refused with brackets suggested where there are two. The function is
+//! A call without brackets is read where it has one reading, and refused with brackets suggested where it has two. The function is
 //! applied to the power that follows and, after numbers and constants, to what stands directly beside them: `sin 2πx^2` is
 //! sin(2πx²). Then a sign, a bracket that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean
 //! either.

@@ -37,7 +37,7 @@ impl Compiled {
     ///
     /// # Errors
     ///
-    /// Those of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex) beyond [`MAX_OPERATIONS`].
+    /// The errors of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex) beyond [`MAX_OPERATIONS`].
     pub(super) fn new(equation: &Equation, parameters: &[Parameter]) -> Result<Self, FormulaError> {
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let mut graph = Graph::default();

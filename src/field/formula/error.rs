@@ -51,7 +51,7 @@ pub enum FormulaErrorKind {
 pub struct FormulaError {
     /// The class of the error.
     pub kind: FormulaErrorKind,
-    /// One sentence for the user, in plain text.
+    /// The error as a sentence for the user, in plain text.
     pub message: String,
     /// Byte range of the formula that the error concerns. It is empty where something is missing.
     pub span: Range<usize>,

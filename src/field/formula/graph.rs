@@ -50,7 +50,7 @@ impl Node {
         }
     }
 
-    /// The same operation on operands replaced through `map`.
+    /// Returns the operation with every operand replaced through `map`.
     pub(super) fn mapped(self, map: impl Fn(Id) -> Id) -> Self {
         match self {
             Self::Constant(_) | Self::Parameter(_) | Self::Coordinate(_) => self,

@@ -2,7 +2,7 @@
 
 use super::token::{Bar, Token};
 
-/// What a command stands for.
+/// The meaning of a LaTeX command.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum LatexCommand {
     /// Nothing: a space, or how large a thing is set.
@@ -74,7 +74,7 @@ const NAMES: &[(&str, &str)] = &[
     ("Omega", "Ω"),
 ];
 
-/// What the command `word`, without its backslash, stands for.
+/// The meaning of the LaTeX command `word`, given without its backslash; none if the command is unknown.
 pub(super) fn command(word: &str) -> Option<LatexCommand> {
     let token = match word {
         "," | ";" | ":" | "!" | " " | "quad" | "qquad" | "displaystyle" | "textstyle" | "big" | "Big"

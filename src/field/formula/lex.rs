@@ -78,7 +78,7 @@ fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit() || c == '_'
 }
 
-/// What names look like, as a regular expression of JavaScript: a letter, then letters, digits and `_`.
+/// The syntax of names as a regular expression of JavaScript: a letter, then letters, digits and `_`.
 pub(super) fn name_pattern() -> String {
     let letters: String = LETTERS.iter().map(|(first, last)| format!("{first}-{last}")).collect();
     format!("^[{letters}][{letters}0-9_]*$")

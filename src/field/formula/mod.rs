@@ -161,7 +161,7 @@ impl Formula {
         Ok(Self::as_written(text, &[])?.without_powers())
     }
 
-    /// The same field with another value of a parameter. What [`Formula::parse`] finds has the value 1.
+    /// Returns the formula with another value of a parameter. Parameters that [`Formula::parse`] finds have the value 1.
     ///
     /// # Errors
     ///
@@ -383,7 +383,7 @@ fn automatic_names(
     Ok(list)
 }
 
-/// What was probably meant by `name`, with the message that asks so.
+/// The correction of a misspelt `name`, with the message that suggests it.
 fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)> {
     // `x2` usually means a square and `cosx` a cosine; few parameters are called so.
     if let Some((axis, digit)) = name.split_at_checked(1)

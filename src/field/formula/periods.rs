@@ -9,16 +9,16 @@ const MOST_PERIODS: u32 = 12;
 /// Largest relative error of such a ratio, by rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// How a value changes along one axis.
+/// The dependence of a value on one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Along {
-    /// It does not; its value where it is a number.
+    /// The value does not depend on the coordinate. It is given where it is a number.
     Constant(Option<f64>),
-    /// By this factor of the coordinate, and something that does not change.
+    /// The value is linear in the coordinate, with this factor.
     Linear(f64),
-    /// It comes again after this length.
+    /// The value is periodic, with this period.
     Periodic(f64),
-    /// Otherwise.
+    /// The value depends on the coordinate in another way, or in one that is not known.
     Other,
 }
 
@@ -122,7 +122,7 @@ fn product(a: Along, b: Along) -> Along {
     }
 }
 
-/// What is made of two values by a function of both.
+/// The dependence of a function of two values, from the dependence of each value.
 fn joined(a: Along, b: Along) -> Along {
     match (a, b) {
         (Along::Constant(_), Along::Constant(_)) => Along::Constant(None),

@@ -1,4 +1,4 @@
-//! Which register holds which value: a register is free after the last use of its value.
+//! Allocation of registers to values: a register is free after the last use of its value.
 
 /// The last use of a value that is a result of the program.
 const NEVER: usize = usize::MAX;

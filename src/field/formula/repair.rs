@@ -1,4 +1,4 @@
-//! One correction for every mistake of a kind.
+//! The correction of all mistakes of one kind at once.
 
 use super::error::{FormulaError, Mended};
 use super::{MAX_FORMULA_BYTES, syntax};

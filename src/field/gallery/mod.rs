@@ -53,7 +53,7 @@ pub struct Surface {
     pub intricate: bool,
     /// Two sentences about the surface.
     pub story: &'static str,
-    /// Where it comes from: a text to read on.
+    /// Reference to a text about the surface.
     pub source: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub struct Surface {
 pub struct SurfaceGroup {
     /// Name for the user.
     pub name: &'static str,
-    /// Its surfaces, the simplest first.
+    /// The surfaces of the group, the simplest first.
     pub surfaces: &'static [Surface],
 }
 

@@ -65,7 +65,7 @@ impl RbfData {
     ///
     /// # Errors
     ///
-    /// What is wrong with the data.
+    /// The first [`DataError`] that is found.
     pub fn check(&self) -> Result<(), DataError> {
         let (centres, alpha, beta) = (self.centres.len(), self.alpha.len(), self.beta.len());
         if centres != alpha || centres != beta {

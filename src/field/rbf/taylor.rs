@@ -50,7 +50,7 @@ pub(super) struct Taylor {
     group: Vec<CentreGroup>,
 }
 
-/// One number for each of the centres that are expanded together.
+/// A number for each of the centres that are expanded together.
 type CentreGroup = [f64; TOGETHER];
 /// Length of that buffer: as many entries as a byte can index.
 const PLACES: usize = 256;

@@ -45,7 +45,7 @@ impl BallPoints {
     }
 }
 
-/// A number for each point of a ball.
+/// A column with a number for each point of a ball.
 type PerPoint = [f32; MOST];
 
 /// Four numbers of a row.

@@ -12,9 +12,9 @@ const AT_BOX: f64 = 1.5;
 /// Rounds in which holes are filled and, where that fails, made larger by a vertex.
 const ROUNDS: u32 = 12;
 
-/// What is taken for a hole, and what for a border of the surface.
+/// Rule that tells a hole of the mesh from a border of the surface.
 pub(super) struct Borders<'a> {
-    /// Most edges of a hole.
+    /// Largest number of edges of a hole.
     pub(super) largest_hole: usize,
     /// The box that cuts the surface.
     pub(super) bounds: Option<&'a Bounds>,

@@ -33,10 +33,10 @@ use stars::Stars;
 /// Points that are looked at in one slice of work, where that takes some 10 ns each.
 const SLICE: usize = 2048;
 
-/// How points are joined.
+/// Options of the triangulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions<'a> {
-    /// Most edges of a hole that is filled. A longer loop is taken for a border of the surface.
+    /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface.
     pub largest_hole: usize,
     /// The box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be
     /// filled.
@@ -70,8 +70,8 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// What is known of `triangles` over so many points, an oriented manifold that somebody has made who knows where it ends; in
-    /// slices of work.
+    /// The triangulation that consists of `triangles` over `point_count` points, in slices of work. They must be an oriented manifold whose
+    /// borders are borders of the surface.
     pub(crate) async fn known(triangles: Vec<[u32; 3]>, point_count: usize) -> Self {
         let topology = Topology::in_slices(&triangles, point_count).await;
         let mut is_met = vec![false; point_count];

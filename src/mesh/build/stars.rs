@@ -36,7 +36,7 @@ pub(super) struct Stars {
     pub(super) twins: Vec<u32>,
 }
 
-/// What is used again from leaf to leaf.
+/// Buffers that are reused from leaf to leaf.
 #[derive(Default)]
 struct StarBuffers {
     surroundings: BallPoints,
@@ -127,7 +127,7 @@ impl Stars {
         self.is_open.len()
     }
 
-    /// Where the entries of `i` are.
+    /// Indices of the entries of point `i`.
     pub(super) fn range(&self, i: usize) -> Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
     }

@@ -14,9 +14,9 @@ pub enum BuildError {
     /// Two triangles run along the same edge in the same direction: more than two meet there, or their orientations disagree.
     #[error("more than one triangle runs from vertex {from} to vertex {to}")]
     Edge {
-        /// Where the edge begins.
+        /// Vertex at which the edge begins.
         from: u32,
-        /// Where it ends.
+        /// Vertex at which the edge ends.
         to: u32,
     },
     /// The triangles at a vertex form more than one fan.

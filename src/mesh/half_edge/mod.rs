@@ -39,12 +39,12 @@ pub struct HalfEdges {
     outgoing: Vec<u32>,
     free_faces: Vec<u32>,
     free_vertices: Vec<u32>,
-    /// What was changed since the journal was begun, newest last.
+    /// The changes since the journal was begun, newest last.
     journal: Vec<Change>,
     is_recording: bool,
 }
 
-/// One change, with what it takes to take it back.
+/// A change of the mesh, with the values that undo it.
 #[derive(Clone, Copy, Debug)]
 enum Change {
     /// The half-edge began at this vertex.
@@ -230,7 +230,7 @@ impl HalfEdges {
     ///
     /// # Errors
     ///
-    /// What is wrong, and where, in words.
+    /// A sentence that names the invariant that does not hold, and the place.
     pub fn check(&self) -> Result<(), String> {
         let slots = self.origin.len() as u32;
         let mut faces_at = vec![0_usize; self.outgoing.len()];

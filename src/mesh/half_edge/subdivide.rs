@@ -61,7 +61,7 @@ impl Subdivision {
         }
     }
 
-    /// What comes next.
+    /// The stage of the subdivision.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage

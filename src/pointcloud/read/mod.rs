@@ -44,7 +44,7 @@ pub enum ReadError {
     /// The file has none of the known formats.
     #[error("this is {found}, and what is read is PLY, OBJ, STL and XYZ; {advice}")]
     Unknown {
-        /// What the content looks like.
+        /// Name of the format that the content seems to have.
         found: &'static str,
         /// Advice for the user.
         advice: &'static str,
@@ -54,7 +54,7 @@ pub enum ReadError {
     Line {
         /// Number of the line, from 1.
         line: u64,
-        /// What is wrong.
+        /// The error in words.
         message: String,
     },
     /// A row of a binary file is wrong.
@@ -66,7 +66,7 @@ pub enum ReadError {
         row: u64,
         /// Offset of the row in the file.
         byte: u64,
-        /// What is wrong.
+        /// The error in words.
         message: String,
     },
     /// The header claims more rows than the file can hold.
@@ -187,7 +187,7 @@ impl Reader {
     ///
     /// # Errors
     ///
-    /// What is wrong with a row, and its number.
+    /// An error with the number of the row that cannot be read, or [`ReadError::NoPoints`].
     pub async fn read(mut self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
         let mut read: usize = 0;
         while self.rows.row(&mut self.input, &mut self.mesh)? {

@@ -71,9 +71,9 @@ pub(crate) struct Audited<'a, 'b> {
     pub(crate) slack: f64,
     /// Usual radius of a particle.
     pub(crate) radius: f64,
-    /// How sheets are told apart.
+    /// Rule that tells sheets apart.
     pub(crate) rule: SheetRule,
-    /// What was searched.
+    /// The region that was searched.
     pub(crate) region: Region,
 }
 
@@ -227,7 +227,7 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// How far the part of the surface around a point reaches.
+/// Extent of the part of the surface around a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     /// Largest distance from the point.

@@ -1,4 +1,4 @@
-//! What a run claims to know of the connected components of the surface, and how sure it is.
+//! Claims of a run about the connected components of the surface, and how sure each of them is.
 //!
 //! Three claims are made, each weaker than the next one sounds:
 //!
@@ -10,7 +10,7 @@
 
 use serde::Serialize;
 
-/// How the first points of the connected components were found.
+/// Method by which the first points of the connected components were found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -24,7 +24,7 @@ pub enum Search {
     Searched,
 }
 
-/// Which of the witnessed components hold particles.
+/// The witnessed components that hold particles, and those that do not.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Sampled {
@@ -34,7 +34,7 @@ pub struct Sampled {
     /// Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
     /// two of its witnesses could not be proven to be connected.
     pub missing: Option<usize>,
-    /// One witness of each of these components: at most 256.
+    /// A witness of each component without a particle: at most 256.
     pub without: Vec<Unsampled>,
 }
 
@@ -76,7 +76,7 @@ pub enum Doubt {
         /// Length of its longest side.
         size: f64,
     },
-    /// It could not be proven of some witnesses whether a particle lies on their component.
+    /// There are witnesses of which it could not be proven whether a particle lies on their component.
     Witnesses {
         /// Number of witnesses.
         count: u64,
@@ -86,7 +86,7 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    /// The same doubt with its place, if it has one, where `to` puts it.
+    /// Returns the doubt with its place, if it has one, mapped by `to`.
     pub(crate) fn moved(mut self, to: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         match &mut self {
             Self::NoBounds | Self::Unfinished => {}

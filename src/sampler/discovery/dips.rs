@@ -5,7 +5,7 @@ use glam::Vec3;
 /// An edge is looked at between its ends if |f| there is expected to fall below this share of its larger value at them.
 const SHARE: f32 = 0.1;
 
-/// One end of an edge.
+/// An end of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     pub(super) place: Vec3,
@@ -17,7 +17,7 @@ pub(super) struct End {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dip {
     ends: [End; 2],
-    /// Where |f| is least, as a share of the edge.
+    /// Position of the minimum of |f|, as a share of the edge.
     t: f32,
     /// The axis of the edge.
     pub(super) axis: usize,
@@ -60,7 +60,7 @@ impl Dip {
         (least <= SHARE * a.max(b)).then_some(Self { ends, t, axis })
     }
 
-    /// Where |f| is expected to be least.
+    /// The point at which |f| is expected to be least.
     pub(super) fn bottom(&self) -> Vec3 {
         self.ends[0].place.lerp(self.ends[1].place, self.t)
     }

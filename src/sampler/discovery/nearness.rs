@@ -1,4 +1,4 @@
-//! How near another sheet of the surface is, in double precision: single precision may hold both at one place.
+//! Distance to another sheet of the surface, in double precision: single precision may hold both at one place.
 //!
 //! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that its second derivative is large
 //! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field

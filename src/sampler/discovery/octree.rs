@@ -135,7 +135,7 @@ pub(crate) struct Region {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Octree {
     state: SearchState,
-    /// What is searched.
+    /// The region that is searched.
     pub(crate) region: Region,
     /// Number of factors of the field, which are searched one after the other.
     factors: usize,

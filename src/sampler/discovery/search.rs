@@ -253,7 +253,7 @@ impl ComponentSearch {
         doubts
     }
 
-    /// Which of the components hold particles; `is_proven` says whether there are no [doubts](Self::doubts).
+    /// The components that hold particles, and those that do not; `is_proven` says whether there are no [doubts](Self::doubts).
     pub(crate) fn sampled(&self, is_proven: bool) -> Sampled {
         let without = self.audit.without.clone();
         let is_known = is_proven && !without.iter().any(|piece| piece.goes_on);

@@ -32,7 +32,7 @@ pub(crate) struct Prover<'a> {
     pub(crate) factor: usize,
     /// Largest distance of the points from the surface.
     pub(crate) slack: f64,
-    /// Where the surface is searched.
+    /// The region in which the surface is searched.
     pub(crate) region: Region,
 }
 
@@ -142,7 +142,7 @@ impl Prover<'_> {
         None
     }
 
-    /// The same in the region: a point outside is moved inside.
+    /// A point of the surface in the region, found from `p` by Newton's method: a point outside is moved inside.
     fn land_inside(&mut self, p: DVec3) -> Option<ExactPoint> {
         let landed = self.land(p)?;
         let bounds = self.region.bounds;
@@ -170,7 +170,7 @@ impl Prover<'_> {
         bounds.holds(p).then_some(p)
     }
 
-    /// What a step of Newton's method along the gradient subtracts from `p`, and the gradient there.
+    /// The step of Newton's method along the gradient, to be subtracted from `p`, and the gradient at `p`.
     fn newton_step(&mut self, p: DVec3) -> (DVec3, DVec3) {
         let (value, gradient) = value_at(self.field, self.factor, p);
         (gradient * (value / gradient.length_squared()), gradient)
@@ -189,7 +189,7 @@ struct GraphBox {
     bounds: Bounds,
     /// The axis nearest the normal.
     up: usize,
-    /// How far the box reaches beyond the ends along that axis.
+    /// Distance by which the box reaches beyond the ends along that axis.
     room: f64,
 }
 

@@ -24,7 +24,7 @@ const NO_CROSSING: f32 = -1.0;
 /// The result of a survey.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
-    /// What the field was multiplied by, so that its gradient can be squared in single precision.
+    /// Factor by which the field was multiplied, so that its gradient can be squared in single precision.
     pub(crate) scale: f32,
     /// The scale at which the field is evaluated in double precision, where single precision does not hold it.
     pub(crate) double: Option<f64>,
@@ -302,7 +302,7 @@ fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
 }
 
 impl Survey {
-    /// How near this surface particles have to be.
+    /// Limits for the residual of particles on this surface.
     pub(crate) fn residual_limits(&self) -> ResidualLimits {
         /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
         /// fifth of the way there.
@@ -316,7 +316,7 @@ impl Survey {
         UNRESOLVED[usize::from(is_adaptive)] * f64::from(self.resolution)
     }
 
-    /// What counts as being on the surface before there is a radius.
+    /// Tolerance for points of the surface before there is a radius.
     pub(crate) fn tolerance(&self) -> Tolerance {
         let residual = self.residual.max(self.resolution);
         Tolerance { residual, ..tolerance(0.0, ResidualLimits::UNLIMITED, self.gradient_scale) }

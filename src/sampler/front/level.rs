@@ -18,7 +18,7 @@ use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::Vec3;
 
-/// What a front works with and on, besides itself.
+/// The probe, the radius field, the neighbour lists and the particles that a front works on.
 pub(crate) struct FrontContext<'a, 'f> {
     pub(crate) probe: &'a mut Probe<'f>,
     /// The radius field, which the adaptive front needs.
@@ -34,7 +34,7 @@ impl<'a> FrontContext<'a, '_> {
     }
 }
 
-/// What a front has to know of an attempt before its first seed.
+/// Parameters of an attempt that a front needs before its first seed.
 pub(crate) struct FrontSetup<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) bounds: &'a Bounds,
@@ -48,13 +48,13 @@ pub(crate) struct FrontSetup<'a> {
 }
 
 impl FrontSetup<'_> {
-    /// How particles with radii in this range tell sheets apart.
+    /// The rule that tells the sheets of particles with radii in this range apart.
     pub(crate) fn rule(&self, radii: RadiusRange) -> SheetRule {
         SheetRule::new(self.survey.crowding, radii, self.survey.residual_limits())
     }
 }
 
-/// What a front does next within a level.
+/// Stage of a level: the work that is done for each parent or child in turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum LevelStage {
     /// Predict the children of a parent.
@@ -66,7 +66,7 @@ enum LevelStage {
     Settle,
 }
 
-/// How far a front has come, and its limits.
+/// State of a front within its level, and its limits.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrontLevel {
     stage: LevelStage,
@@ -98,9 +98,9 @@ impl FrontLevel {
 /// The children of a level between their prediction and their fate: a child `C` poses a problem `P`, whose solution is an `L`.
 #[derive(Clone, Debug)]
 pub(crate) struct ProvisionalChildren<C, P, L> {
-    /// In the order of their provisional places.
+    /// The children, in the order of their provisional places.
     pub(crate) list: Vec<C>,
-    /// Where each of them came to lie, in the same order.
+    /// Landing of each child, in the order of `list`.
     pub(crate) landings: Vec<L>,
     /// Largest distance between a provisional and a final place in this level.
     pub(crate) drift: f32,
@@ -131,7 +131,7 @@ impl<C, P, L> ProvisionalChildren<C, P, L> {
 
 /// A front that grows in levels.
 pub(crate) trait LevelFront {
-    /// How sheets are told apart.
+    /// The rule that tells sheets apart.
     fn rule(&self) -> SheetRule;
 
     /// Forgets an earlier run.
@@ -140,10 +140,10 @@ pub(crate) trait LevelFront {
     /// Gives back the memory that only the front needs.
     fn release(&mut self);
 
-    /// How far the front has come.
+    /// The state of the front within its level.
     fn level(&self) -> &FrontLevel;
 
-    /// How far the front has come, to be changed.
+    /// The state of the front within its level, for changes.
     fn level_mut(&mut self) -> &mut FrontLevel;
 
     /// Number of parents in the level; none if the front has come to its end.

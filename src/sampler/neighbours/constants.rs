@@ -1,4 +1,4 @@
-//! How far the neighbour lists reach. The fronts write the first lists and the relaxation renews them, so both have to
+//! Reach of the neighbour lists. The fronts write the first lists and the relaxation renews them, so both have to
 //! use the same figures.
 
 /// Range of the Gaussian repulsion, in radii.

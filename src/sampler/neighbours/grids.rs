@@ -21,7 +21,7 @@ pub(crate) struct RadiusRange {
 }
 
 impl RadiusRange {
-    /// One radius.
+    /// The range that consists of one radius.
     pub(crate) fn of(radius: f32) -> Self {
         Self { smallest: radius, largest: radius }
     }
@@ -80,14 +80,14 @@ impl Layers {
     }
 }
 
-/// Where a particle is stored in [`RadiusGrids`].
+/// Handle of a particle in [`RadiusGrids`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct GridHandle {
     layer: u32,
     place: CellHandle,
 }
 
-/// One grid for each layer of radii.
+/// Grids of particles of different radii, one for each layer of radii.
 #[derive(Clone, Default)]
 pub(crate) struct RadiusGrids {
     grids: Vec<CellGrid>,

@@ -37,8 +37,8 @@ pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<
     curvature.iter().map(largest).collect()
 }
 
-/// How often a front can be refined that has `count` particles in the end, where the spacing times the largest curvature is
-/// `bend`; `None` if not once. A front at full resolution is no choice: surgery on it leaves pairs that crowd.
+/// Number of times that a front can be refined that has `count` particles in the end, where the spacing times the largest curvature
+/// is `bend`; `None` if it cannot be refined. A front at full resolution is no choice: surgery on it leaves pairs that crowd.
 pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     let particles = |halvings: u32| count / f64::from(1_u32 << (2 * halvings));
     let is_large = |halvings: u32| particles(halvings) >= f64::from(LEAST_PARTICLES);

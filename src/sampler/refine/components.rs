@@ -29,9 +29,9 @@ const COPIES_PER_UNIT: usize = 16;
 struct AcceptedComponent {
     refinement: Refinement,
     area: f64,
-    /// Particles that it should have, relative to those of the others.
+    /// Share of the particles that the component should have, relative to the other components.
     weight: f64,
-    /// Its finished level, or its front.
+    /// The particles of the last finished level, or of the front.
     particles: Particles,
 }
 
@@ -42,13 +42,13 @@ struct Candidate {
     halvings: u32,
 }
 
-/// What is known of the surface before it is refined.
+/// Properties of the surface that are known before it is refined.
 pub(crate) struct SurfaceFacts<'a> {
     /// The box that is sampled. Coarse fronts grow beyond it.
     pub(crate) bounds: Bounds,
     /// The sizes that are wanted, where they differ.
     pub(crate) sizing: Option<&'a Sizing>,
-    /// Where it bends most.
+    /// Point of the surface with the largest curvature.
     pub(crate) bend: Vec3,
     /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is
     /// an end to the attempts.
@@ -73,9 +73,9 @@ pub(crate) struct CoarseFronts {
     pub(crate) are_several: bool,
 }
 
-/// What comes after a front.
+/// The step that follows a front.
 pub(crate) enum Next {
-    /// A front over one component, to be refined so many times.
+    /// A front over one component, whose radius is halved so many times.
     Front(u32),
     /// The refinement.
     Refine(Box<Components>),
@@ -100,7 +100,7 @@ impl CoarseFronts {
     ///
     /// # Errors
     ///
-    /// Why the first front is not good enough.
+    /// The defect for which the first front is refused.
     pub(crate) fn take_in(
         &mut self,
         probe: &mut Probe,

@@ -75,7 +75,7 @@ pub(crate) struct Target {
     pub(crate) count: Count,
 }
 
-/// How many particles the last level has.
+/// Wanted number of particles of the last level.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Count {
     /// A number of particles.
@@ -99,7 +99,7 @@ struct Refinement {
     corners: Vec<u32>,
 }
 
-/// What holds on every level of a refinement.
+/// Properties that hold on every level of a refinement.
 #[derive(Clone, Copy, Debug)]
 struct Shape {
     euler: i64,
@@ -108,7 +108,7 @@ struct Shape {
     wanted: f64,
 }
 
-/// What the level under way is to come to, and how.
+/// Goals of the level under way, and the recipe that leads to them.
 #[derive(Clone, Debug)]
 struct Goals {
     /// Levels still to come after this one.
@@ -131,7 +131,7 @@ struct Memory {
     crowded: Vec<u32>,
 }
 
-/// What a refinement is doing.
+/// The task under way in a refinement, with its state.
 #[derive(Clone, Debug)]
 enum Task {
     /// A pass of the recipe, come to `next` of the particles or half-edges below `end`.
@@ -162,7 +162,7 @@ impl Refinement {
     ///
     /// # Errors
     ///
-    /// Why the front is not good enough.
+    /// The defect for which the front is refused.
     fn new(
         probe: &mut Probe,
         particles: &Particles,
@@ -234,7 +234,7 @@ impl Refinement {
     ///
     /// # Errors
     ///
-    /// Why the refinement cannot go on.
+    /// The defect for which the refinement cannot go on.
     fn step(
         &mut self,
         probe: &mut Probe,
@@ -403,13 +403,13 @@ impl Refinement {
         Ok((self.begin_pass(pass + 1), units))
     }
 
-    /// How much the size may differ per unit of length at this level.
+    /// Largest slope of the sizes at this level, per unit of length.
     fn rise(&self) -> f32 {
         let spacing = 2.0 * self.target.radius * (1_u32 << self.level.to_come) as f32;
         sizes::slope(self.target.grading.unwrap_or(0.0), self.level.to_come) / spacing
     }
 
-    /// What is done once after a pass.
+    /// Ends a pass: does the work that its particles, half-edges or faces need together.
     fn end_pass(&mut self, kind: Pass) -> Result<(), Refusal> {
         match kind {
             Pass::Measure => self.measure(),

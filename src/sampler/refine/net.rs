@@ -50,12 +50,12 @@ pub(super) struct Ground<'a, 'field> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct MovedBlock {
     which: Vec<u32>,
-    /// Where they were before the move.
+    /// Positions of these particles before the move.
     before: Vec<Vec3>,
     points: Vec<Vec3>,
     /// Principal curvatures at the particles of the block, from which their sizes follow.
     pub(super) curvature: Vec<Curvature>,
-    /// Those that could not be brought back.
+    /// Particles that could not be brought back onto the surface.
     pub(super) refused: Vec<u32>,
 }
 
@@ -79,7 +79,7 @@ pub(super) struct Net {
     pub(super) mesh: HalfEdges,
     pub(super) position: Vec<Vec3>,
     pub(super) normal: Vec<Vec3>,
-    /// What became of the slots of the particles that the front placed; undecided for all others.
+    /// Fates of the slots of the particles that the front placed; undecided for all others.
     pub(super) slots: Vec<Slots>,
     /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
     pub(super) size: Vec<f32>,
@@ -225,7 +225,7 @@ impl Net {
         self.settle(ground, spacing);
     }
 
-    /// Brings the particles back onto the surface that have just been put near it.
+    /// Brings particles that were put near the surface onto it.
     pub(super) fn land(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
         ground.block.clear();
         for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
@@ -256,7 +256,7 @@ impl Net {
         }
     }
 
-    /// Where a particle at `p` comes to lie by one step of Newton's method, with the normal there; none if it cannot be brought back.
+    /// The position of a particle at `p` after one step of Newton's method, and the normal there; none if it cannot be brought back.
     #[inline]
     fn landing(&self, v: u32, p: Vec3, value: f32, gradient: Vec3, spacing: f32) -> Option<(Vec3, Vec3)> {
         let inverse_slope = 1.0 / gradient.length();
@@ -306,7 +306,7 @@ impl Net {
         (d - a).cross(c - a).dot(up) > 0.0 && (c - b).cross(d - b).dot(up) > 0.0 && self.mesh.can_flip(h)
     }
 
-    /// Flips those of the half-edges whose edge is not Delaunay's; each edge is looked at once.
+    /// Flips the edges of these half-edges that are not Delaunay's; each edge is looked at once.
     pub(super) fn flip(&mut self, half_edges: core::ops::Range<u32>) {
         for h in half_edges {
             if self.mesh.has_half_edge(h) && h < self.mesh.twin(h) && self.wants_flip(h) {
@@ -321,7 +321,7 @@ impl Net {
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
     }
 
-    /// Where a particle lies.
+    /// The site of a particle.
     pub(super) fn site(&self, v: u32) -> Site {
         Site {
             position: self.position[v as usize],
@@ -343,7 +343,7 @@ impl Net {
         (p + q) * 0.5 + self.normal_between(a, b) * (0.125 * (q - p).dot(turn))
     }
 
-    /// Where a particle lies that halves the edge between two others.
+    /// The site of a particle that halves the edge between two others.
     pub(super) fn halfway(&self, a: u32, b: u32) -> Site {
         Site {
             position: self.middle(a, b),
@@ -360,7 +360,7 @@ impl Net {
         self.mesh.valence(v) as i32 - wanted
     }
 
-    /// Where that one of two particles lies which is bound to more planes, `b` if they are bound to as many.
+    /// The site of the one of two particles that is bound to more planes, that of `b` if they are bound to as many.
     pub(super) fn more_bound(&self, a: u32, b: u32) -> Site {
         let [first, second] = [a, b].map(|v| self.site(v));
         if first.planes.count() > second.planes.count() { first } else { second }

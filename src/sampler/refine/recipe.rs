@@ -1,9 +1,9 @@
-//! What is done at each level: how many sweeps, how much surgery, and in which order.
+//! The recipe of each level: the number of sweeps, the rounds of surgery, and their order.
 
-/// One pass over the particles, the half-edges or the faces.
+/// A pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// Takes the sizes from the radius field, or their square roots: half-way to them from one size.
+    /// Takes the sizes from the radius field or, if not `is_whole`, their square roots: half-way from one size to those of the field.
     Size { is_whole: bool },
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
@@ -13,15 +13,15 @@ pub(super) enum Pass {
     Sweep,
     /// Flips to Delaunay's edges.
     Flip,
-    /// A round of surgery, which also keeps trials that lose up to so much, in units of the spacing squared.
+    /// A round of surgery, which also keeps trials that lose up to `loss`, in units of the spacing squared.
     Mend { loss: f32 },
     /// Finds the particles near defects.
     Find,
-    /// A step of Lloyd's method for those.
+    /// A step of Lloyd's method for the particles near defects.
     Centre,
     /// Finds the pairs of particles that crowd at the border, and takes one of each out.
     Thin,
-    /// One step of Newton's method for everyone, so that positions and normals are those of the surface.
+    /// A step of Newton's method for every particle, so that positions and normals are those of the surface.
     Land,
     /// Looks at the finished faces.
     Inspect,
@@ -37,7 +37,7 @@ pub(super) struct Recipe {
     pub(super) delta: f32,
 }
 
-/// What is done at a level: sweeps, then rounds of surgery with sweeps after each. A flip follows every sweep.
+/// Plan of a level: sweeps, then rounds of surgery with sweeps after each. A flip follows every sweep.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     /// Sweeps at the start.
@@ -54,19 +54,20 @@ pub(super) struct Plan {
     loss: f32,
 }
 
-/// All that the recipe is tuned by.
+/// Tuning parameters of the recipes.
 pub(super) struct Tuning {
-    /// Where order is made: the coarse level, whose particles are few.
+    /// Plan of the coarse level, whose particles are few: order is made there.
     first: Plan,
-    /// Where order is kept while scars grow. On the last of these levels, which costs most, the first half of the rounds is left out.
+    /// Plan of the levels between, where order is kept while scars grow. On the last of them, which costs most, the first half of the
+    /// rounds is left out.
     between: Plan,
-    /// Where the lattice comes to rest. Surgery would add more defects than it takes.
+    /// Plan of the last level, where the lattice comes to rest. Surgery would add more defects there than it removes.
     last: Plan,
-    /// Share of the rounds from which on none accepts a loss. The loss falls steadily until then.
+    /// Share of the rounds over which the accepted loss falls to 0. Later rounds accept no loss.
     losing: f32,
     /// Over-relaxation of the sweeps.
     pub(super) omega: f32,
-    /// What the rest length of the last level falls by for each share of particles with a defect: the more there are, the more the
+    /// Decrease of the rest length of the last level per share of particles with a defect: the more defects there are, the more the
     /// lattice between them is strained, and the stiffer in shear it has to be.
     theta_per_defect: f32,
     /// Shortest rest length of the last level.
@@ -77,9 +78,9 @@ pub(super) struct Tuning {
     lloyd: usize,
     /// Share of faces missing or too many from which on the first level tries every particle, and not only those with a defect.
     pub(super) slack: f32,
-    /// Sweeps half-way from one size to those of the radius field, and again at those.
+    /// Sweeps at the sizes half-way to those of the radius field, and again at the sizes of the radius field.
     blend_sweeps: usize,
-    /// Rounds of surgery half-way; the rest of the plan's follow at the sizes of the radius field.
+    /// Rounds of surgery at the sizes half-way; the other rounds of the plan follow at the sizes of the radius field.
     blend_rounds: usize,
 }
 

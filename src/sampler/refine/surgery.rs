@@ -24,7 +24,7 @@ const COUNT_PRICE: f32 = 20.0;
 const CROWDED: f32 = 0.96;
 const SPARSE: f32 = 1.04;
 
-/// What a round of surgery aims at.
+/// Parameters of a round of surgery.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     pub(super) springs: Springs,
@@ -38,14 +38,14 @@ pub(super) struct Aim {
     pub(super) loss: f32,
 }
 
-/// What may help at a particle.
+/// Change of the number of particles that may mend a defect.
 #[derive(Clone, Copy, PartialEq)]
-enum Wish {
+enum Remedy {
     OneFewer,
     OneMore,
 }
 
-/// What is tried.
+/// Operation of a trial.
 #[derive(Clone, Copy)]
 pub(super) enum Operation {
     /// Merge the particle at which the half-edge begins into the one at which it ends.
@@ -56,7 +56,7 @@ pub(super) enum Operation {
     Split(u32),
 }
 
-/// What an operation has done.
+/// Effect of an operation on the particles and their valences.
 struct Effect {
     /// The particle that was added, or into which another one was merged.
     at: u32,
@@ -74,7 +74,7 @@ pub(super) struct Surgeon {
     /// Trial in which a particle was last in the patch.
     stamp: Vec<u32>,
     trial: u32,
-    /// Where each particle of the patch was before the trial.
+    /// Site of each particle of the patch before the trial.
     saved: Vec<Site>,
     /// A half-edge of every edge with an end in the patch.
     edges: Vec<u32>,
@@ -90,16 +90,16 @@ impl Surgeon {
         if net.mesh.is_border(v) {
             return self.mend_border(net, ground, aim, v);
         }
-        let Some(wish) = wish(net, aim, v) else { return false };
+        let Some(remedy) = remedy(net, aim, v) else { return false };
         let mesh = &net.mesh;
         let p = net.position[v as usize];
-        let operation = match wish {
-            Wish::OneFewer => {
+        let operation = match remedy {
+            Remedy::OneFewer => {
                 let length = |h: u32| (net.position[mesh.target(h) as usize] - p).length_squared();
                 let shortest = mesh.around(v).min_by(|&g, &h| length(g).total_cmp(&length(h)));
                 shortest.filter(|&h| net.can_merge(h)).map(Operation::Collapse)
             }
-            Wish::OneMore => {
+            Remedy::OneMore => {
                 let area = |h: u32| {
                     net.area_vector([h, next(h), previous(h)].map(|h| mesh.origin(h))).length_squared()
                 };
@@ -335,17 +335,17 @@ fn badness(net: &Net, particles: &[u32]) -> i32 {
 
 /// Returns what may help at `v`: one particle fewer where its valence is below the wanted one, one more where it is above. Where both are
 /// equal, the number of faces decides if it is far from the wanted one, or else, where sizes differ, the lengths of the edges.
-fn wish(net: &Net, aim: Aim, v: u32) -> Option<Wish> {
+fn remedy(net: &Net, aim: Aim, v: u32) -> Option<Remedy> {
     let shortage = 1.0 - net.mesh.faces() as f32 / aim.faces;
     match net.excess(v).cmp(&0) {
-        Ordering::Less => Some(Wish::OneFewer),
-        Ordering::Greater => Some(Wish::OneMore),
+        Ordering::Less => Some(Remedy::OneFewer),
+        Ordering::Greater => Some(Remedy::OneMore),
         Ordering::Equal if shortage.abs() >= aim.slack => {
-            Some(if shortage < 0.0 { Wish::OneFewer } else { Wish::OneMore })
+            Some(if shortage < 0.0 { Remedy::OneFewer } else { Remedy::OneMore })
         }
         Ordering::Equal if net.is_graded() => match net.mean_stretch(aim.springs, v) {
-            stretch if stretch < CROWDED => Some(Wish::OneFewer),
-            stretch if stretch > SPARSE => Some(Wish::OneMore),
+            stretch if stretch < CROWDED => Some(Remedy::OneFewer),
+            stretch if stretch > SPARSE => Some(Remedy::OneMore),
             _ => None,
         },
         Ordering::Equal => None,

@@ -55,7 +55,7 @@ impl Planes {
     }
 }
 
-/// Where a particle lies.
+/// Place of a particle: its position, the normal there and the planes of the box on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Site {
     pub(super) position: Vec3,
@@ -145,8 +145,8 @@ impl Walls {
         if planes.is_corner() || !slide.is_finite() { Vec3::ZERO } else { slide }
     }
 
-    /// Where a particle at `p` comes to lie by one step of Newton's method on its planes: on them to the last bit, and in the box.
-    /// None if the step is longer than `longest` or leads out of the box.
+    /// The position of a particle at `p` after one step of Newton's method on its planes, and the normal there. The position is on the
+    /// planes to the last bit, and in the box. None if the step is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,
         planes: Planes,

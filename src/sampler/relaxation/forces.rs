@@ -15,7 +15,7 @@ const MOST_PAIRS: usize = BATCH_PARTICLES * ROOM;
 
 /// The pairs of a few particles, one particle after the other.
 ///
-/// They are collected first and evaluated four at a time, without a branch on the distance: such a branch is
+/// The pairs are collected first and evaluated four at a time, without a branch on the distance: such a branch is
 /// mispredicted for every other pair.
 #[derive(Clone, Debug)]
 struct PairBatch {

@@ -44,7 +44,7 @@ use core::ops::Range;
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
 const RENEWAL_UNITS: u32 = 10;
 
-/// What a relaxation does next, particle by particle.
+/// Stage of a relaxation: the work that is done for each particle in turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum RelaxationStage {
     /// Put all particles into the grid.
@@ -61,12 +61,12 @@ enum RelaxationStage {
     TakeBack,
     /// Bring the particles onto the surface as close as single precision allows.
     Polish,
-    /// Nothing: the relaxation has ended.
+    /// The relaxation has ended.
     #[default]
     Done,
 }
 
-/// What follows once the lists are renewed and the radii graded.
+/// Purpose for which the lists are renewed and the radii graded: the part of the relaxation that follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Purpose {
     /// A step: the particles have not moved, or were put back.
@@ -78,7 +78,7 @@ enum Purpose {
     End,
 }
 
-/// A law of repulsion with what it takes to be on the surface.
+/// A law of repulsion, with the tolerance for particles on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RepulsionLaw {
     /// For particles of this radius.
@@ -107,7 +107,7 @@ impl RepulsionLaw {
     }
 }
 
-/// What keeps particles where they belong.
+/// Limits on the moves of particles, which keep them in the box and on their sheets.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MoveLimits {
     /// The box.

@@ -192,7 +192,7 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
 /// * A radius is brought up to date once its particle has travelled a tenth of it, and at the end.
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
-    /// How near the surface particles have to be.
+    /// Limits for the residuals of particles.
     pub(crate) residual_limits: ResidualLimits,
     /// Smallest length of a gradient that has a direction.
     pub(crate) min_gradient: f32,

@@ -134,7 +134,7 @@ impl Stepper {
     }
 
     /// Puts the particles of `range` back where they were before the step, and writes their positions to `landing`.
-    /// They are still to land: their normals are those of the positions that they have left.
+    /// The particles are not yet landed: their normals are still those of the positions that they have left.
     pub(super) fn take_back<L: Repulsion>(
         &mut self,
         law: &L,

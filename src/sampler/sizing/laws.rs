@@ -64,7 +64,7 @@ impl SumOfCurvatures {
     }
 }
 
-/// One of the laws.
+/// A law for the radius, with its parameters.
 #[derive(Clone, Copy, Debug)]
 enum Law {
     ChordError(ChordError),

@@ -26,7 +26,7 @@ impl Row {
         Range { bounds: Interval::new(self.lo[k], self.hi[k]), flags: self.flags[k] }
     }
 
-    /// The same bounds over every box.
+    /// Returns a row with the same bounds over every box.
     pub(super) fn fill(range: Range) -> Self {
         Self { lo: [range.bounds.lo; BOXES], hi: [range.bounds.hi; BOXES], flags: [range.flags; BOXES] }
     }

@@ -143,9 +143,9 @@ pub(crate) struct PredictedChild {
 /// A free arc: between two angles, from the particle before it to the one behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
-    /// Where a child touches the particle before the arc.
+    /// Angle at which a child touches the particle before the arc.
     pub(crate) from: f32,
-    /// Where a child touches the particle behind the arc; less than `from` where it does not fit between them.
+    /// Angle at which a child touches the particle behind the arc; less than `from` where it does not fit between them.
     pub(crate) to: f32,
     /// No child has room before this angle.
     pub(crate) start: f32,

@@ -66,7 +66,7 @@ struct AdaptiveChild {
     proposal: Proposal,
     slot: u32,
     handle: GridHandle,
-    /// Its parent's number in the level.
+    /// Number of the parent in the level.
     parent: u32,
     /// Distance to the nearest collision when it was predicted.
     clearance: f32,
@@ -87,7 +87,7 @@ struct FrontRules {
 }
 
 impl FrontRules {
-    /// What counts as being on the surface for a particle of this radius.
+    /// Tolerance for a particle of this radius.
     fn tolerance(&self, radius: f32) -> Tolerance {
         tolerance(radius, self.residual_limits, self.gradient_scale)
     }
@@ -100,10 +100,10 @@ pub(crate) struct AdaptiveFront {
     level: FrontLevel,
     parents: Parents,
     children: ProvisionalChildren<AdaptiveChild, Proposal, DirectLanding>,
-    /// Most by which a radius grew in this level when its child was projected.
+    /// Largest increase of a radius in this level when its child was projected.
     growth: f32,
     grids: RadiusGrids,
-    /// Where the last seed sits in the grids.
+    /// Handle of the last seed in the grids.
     seed: GridHandle,
     /// The particles that the last query of the grids found.
     found: Vec<Neighbour>,

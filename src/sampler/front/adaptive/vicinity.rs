@@ -17,7 +17,7 @@ pub(super) struct Occupant {
     pub(super) kind: OccupantKind,
 }
 
-/// What is known of an occupant.
+/// Kind of an occupant.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OccupantKind {
     /// A particle that was there, or a child that matched such a one.

@@ -64,7 +64,7 @@ pub(crate) struct UniformFront {
     parents: Range<usize>,
     children: ProvisionalChildren<UniformChild, ChildCircle, CircleLanding>,
     grid: CellGrid,
-    /// Where the last seed sits in the grid.
+    /// Handle of the last seed in the grid.
     seed: CellHandle,
     /// The particles that the last query of the grid found.
     found: Vec<Neighbour>,

@@ -33,7 +33,7 @@ pub(crate) fn grown(bounds: &Bounds, radius: f64) -> Bounds {
 ///
 /// # Errors
 ///
-/// Where the surface ends inside the box, or its border could not be laid on the planes.
+/// A place where the surface ends inside the box, or where its border could not be laid on the planes.
 pub(in super::super) fn clip(net: &mut Net, ground: &mut Ground, spacing: f32) -> Result<(), Refusal> {
     if !net.walls.is_near() {
         return open_end(net).map_or(Ok(()), |v| Err(border(net, v)));
@@ -99,13 +99,13 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
     Ok(())
 }
 
-/// Where an edge is to be split.
+/// Target of the particle that splits an edge.
 struct EdgeSplit {
-    /// A place near it.
+    /// Position near the target.
     near: Vec3,
-    /// The planes on which it lies.
+    /// Planes of the box on which the target lies.
     planes: Planes,
-    /// Largest distance between the two.
+    /// Largest distance of the target from that position.
     reach: f32,
 }
 

@@ -33,7 +33,7 @@ impl Surgeon {
     }
 }
 
-/// What may mend a border vertex, in the order in which it is tried.
+/// The operations that may mend a border vertex, in the order in which they are tried.
 fn operations(net: &Net, spacing: f32, v: u32) -> [Option<Operation>; 2] {
     let mesh = &net.mesh;
     let [before, after] = net.border_edges(v);

@@ -37,7 +37,7 @@ export class Core {
      */
     curvature(from: number): Float32Array<ArrayBuffer>;
     /**
-     * Everything there is to choose and to read: `Description`.
+     * The description of all settings, surfaces and figures: `Description`.
      */
     describe(): Description;
     /**

@@ -46,7 +46,7 @@ export class Lesson {
      */
     levels(): Uint32Array<ArrayBuffer>;
     /**
-     * When a particle was added, treated and done: `LessonLife`; null if there is none.
+     * The events at which a particle was added, treated and done: `LessonLife`; null if there is no such particle.
      */
     life(particle: number): LessonLife | null;
     /**

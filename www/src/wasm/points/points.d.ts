@@ -28,7 +28,7 @@ export class Points {
      */
     file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, PointsFault>;
     /**
-     * What there is to know of the field: an `Answer` with `SolvedModel`.
+     * The report on the model: an `Answer` with `SolvedModel`.
      */
     info(): Answer<SolvedModel, PointsFault>;
     /**

@@ -9,7 +9,7 @@ export class Renderer {
     free(): void;
     [Symbol.dispose](): void;
     /**
-     * What the driver calls the graphics adapter; may be empty, since browsers hide it.
+     * Name of the graphics adapter as the driver gives it; may be empty, since browsers hide it.
      */
     adapter(): string;
     /**
@@ -94,7 +94,7 @@ export class Renderer {
      *
      * # Errors
      *
-     * As `write_faces`.
+     * The errors of `write_faces`.
      */
     tint_faces(first: number, colours: Uint32Array, marks: Uint32Array): void;
     /**
