@@ -1,5 +1,5 @@
 /**
- * What tests need of an engine: the faults that they provoke, what they wait for, and what is counted.
+ * Commands and counts of an engine for tests: they provoke faults, wait for the picture and read counters.
  *
  * @module
  */

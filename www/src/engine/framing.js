@@ -23,7 +23,7 @@ export class Framing {
   /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
   #writtenMs;
 
-  /** Whether the formula was typed, which keeps the camera where it is as long as the formula has no surface. */
+  /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
   #isTyped;
 
   /** @type {ReturnType<typeof setTimeout> | undefined} */

@@ -42,7 +42,7 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
       view.theme === 'auto' ? (isDark.value ? 'dark' : 'light') : view.theme
     );
     const field = store.field.value;
-    // Where there is no surface, its box is shown, unless there is no surface anywhere.
+    // A box that the surface misses is drawn, so that it can be moved; if there is no surface anywhere, it is not.
     const isMissed = store.empty.value && field?.reach !== 'nowhere';
     // While only a part of the run is shown, the surface to come is drawn faintly. The mesh over all particles stands
     // for it: it is exact where the particles will be, and there is no second way of drawing.

@@ -23,19 +23,19 @@ export type SettingInfo = import('./core-types.js').Setting;
 export type ReportRow = import('./core-types.js').ReportRow;
 /** A built-in model from points. Its `id` goes where a gallery surface's does. */
 export type PointModel = import('./core-types.js').Model;
-/** What is known of a model from points once it is solved. */
+/** The description of a model from points, known once it is solved. */
 export type ModelInfo = import('./core-types.js').ModelInfo;
-/** What goes with a solved system to the core. */
+/** The description that the core reads together with a solved system. */
 export type SolvedModel = import('./core-types.js').SolvedModel;
 export type MathNode = import('./core-types.js').MathNode;
 export type FieldFault = import('./core-types.js').Fault;
-/** What one step of the core answers. */
+/** The answer of the core to one step. */
 export type CoreProgress = import('./core-types.js').Progress;
 /** null while the run goes on */
 export type StopReason = CoreProgress['stop_reason'];
 /** The figures of a finished run. */
 export type CoreReport = import('./core-types.js').Report;
-/** What a mesh adds up to. */
+/** The counts and the topology of a mesh. */
 export type MeshAnswer = import('./core-types.js').MeshAnswer;
 export type LessonEvent = import('./core-types.js').LessonEvent;
 export type LessonIterate = import('./core-types.js').LessonIterate;
@@ -341,7 +341,7 @@ export interface EngineCommands {
 }
 /** File formats for a mesh. */
 export type MeshFormat = 'glb' | 'obj' | 'stl' | 'ply';
-/** What tests need of an engine. */
+/** Commands and counts of an engine for tests. */
 export interface EngineDebug {
   /** traps the core in its worker, overflows the worker's stack, or sends it into an endless loop */
   provoke: (fault: 'panic' | 'overflow' | 'hang') => void;
@@ -355,7 +355,7 @@ export interface EngineDebug {
   counts: () => { frames: number; uploads: number; opened: number; restarts: number; stale: number; dimmed: boolean };
 }
 export type Engine = EngineSignals & EngineCommands & { debug: EngineDebug };
-/** What an engine begins with. */
+/** The arguments of an engine's creation. */
 export interface EngineOptions {
   /** must be positioned; a canvas fills it */
   host: HTMLElement;

@@ -53,7 +53,7 @@ export function tangentPlane(opened, moment) {
 export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
 /**
- * Where the number of a particle stands: outwards, clear of the shape of a fate and of the slot's number.
+ * Returns the place of a particle's number: outwards, clear of the shape of a fate and of the slot's number.
  * @param {Point} at
  * @returns {Point}
  */

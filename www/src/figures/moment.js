@@ -1,6 +1,6 @@
 /**
- * What is known of a particle at one of its events. It is put together from the events up to that one, so a step back
- * gives exactly what was there before.
+ * The state of a particle at one of its events. It is put together from the events up to that one, so a step back
+ * gives exactly the state before.
  */
 
 /**

@@ -11,7 +11,7 @@ import { label, line, ring } from './svg.js';
 
 /** Half size of the drawing, in radii: particles push each other up to 3r. */
 const HALF = 4.1;
-/** How many times as long as they are forces are drawn: a neighbour at 2r pushes by a quarter of r. */
+/** Forces are drawn enlarged by this factor: a neighbour at 2r pushes by only a quarter of r. */
 const FORCE_SCALE = 5;
 /** Length of an arrow's head, in radii, and its half width over that. */
 const HEAD = 0.22;
@@ -19,8 +19,8 @@ const HEAD_WIDTH = 0.5;
 /** Half size of the enlargement, over the longer of the move and the way to the landing. */
 const LENS_ROOM = 1.5;
 /**
- * How much larger a lens with a half size of one radius shows things than the drawing: 7.5 rem for 2r against 16.25
- * rem.
+ * Enlargement by a lens whose half size is one radius, relative to the drawing: the lens shows 2r on 7.5 rem, the
+ * drawing its whole width on 16.25 rem.
  */
 const LENS_SCALE = 7.5 / 2 / (16.25 / (2 * HALF));
 /** Below this share of r there is no move to enlarge. */
@@ -90,5 +90,5 @@ export function moveLens(rest, towards) {
   return { svg, times: LENS_SCALE / half };
 }
 
-/** How the drawing is scaled. */
+/** The scale of the drawing, in words. */
 export const SCALE_WORDS = `Thin arrows: the pushes. The strong one: their sum in the tangent plane. All are drawn ${FORCE_SCALE} times as long.`;

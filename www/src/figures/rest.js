@@ -65,7 +65,7 @@ export async function mostPushed(client, chapters, step) {
   return found;
 }
 
-/** How the pushes add up, in words. @param {Rest} rest */
+/** Returns the number of the pushes and their sum, in words. @param {Rest} rest */
 export function pushWords({ pushes, moved, radius }) {
   const sum = inRadii(size(moved.force), radius);
   return pushes.length === 0
@@ -111,7 +111,7 @@ export function numbersOfRest(rest) {
   ];
 }
 
-/** Who pushes, from how far and how much, for those who do not see it. @param {Rest} rest @returns {string[]} */
+/** Returns the pushes in words, for readers who do not see the drawing. @param {Rest} rest @returns {string[]} */
 export const pushersOf = ({ pushes, radius }) =>
   pushes.map(
     ({ particle, distance, force }) =>

@@ -1,4 +1,4 @@
-// What is known of a particle and drawn of it.
+// Types of the drawings of a particle.
 import type { LessonEvent, LessonIterate, LessonPush, Vec3 } from '../engine/types.js';
 
 export type Of<T extends LessonEvent['type']> = Extract<LessonEvent, { type: T }>;
@@ -33,7 +33,7 @@ export interface Moment {
   evaluations: number;
 }
 /**
- * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's
+ * The drawing of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's
  * method from the place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens
  * is given in radii.
  */

@@ -18,7 +18,7 @@ const subscript = (k) => String(k).replace(/\d/g, (digit) => String.fromCharCode
 /** Name of the angle of an iterate, such as θ₂. @param {number} k */
 export const theta = (k) => `θ${subscript(k)}`;
 
-/** What each fate is called. @type {Record<string, string>} */
+/** Names of the fates. @type {Record<string, string>} */
 export const FATES = {
   open: 'not decided yet',
   parent: 'parent',
@@ -53,7 +53,7 @@ export const ALGORITHM = [
 ];
 
 /**
- * The same for particles of many sizes (§5), whose children are pushed into the free spaces around them.
+ * Algorithm 2 for particles of many sizes (§5): children are pushed into the free spaces around them.
  * @type {typeof ALGORITHM}
  */
 export const ADAPTIVE = [
@@ -264,7 +264,7 @@ export function valueText({ event, slot, isNow }, { level, levels, particle }) {
 }
 
 /**
- * All events of a particle as a text file.
+ * Returns all events of a particle as the text of a file.
  * @param {readonly Moment[]} moments @param {Subject} subject @param {readonly string[]} head  lines above
  */
 export function transcript(moments, subject, head) {

@@ -7,7 +7,7 @@ import { NoSurface } from './lab.js';
 
 /** @import { Figure } from './types.js' */
 
-/** How far from the window a figure begins, in pixels. */
+/** A figure is made once it is this near to the window, in pixels. */
 const AHEAD_PX = 500;
 
 /**

@@ -19,7 +19,7 @@ const UNKNOWN = 'The run has not been asked yet. Print from the page’s own but
  */
 export function createHandout(host, { figures, lab, compare, say }) {
   const title = host.querySelector('h2');
-  /** What the run said, by the id of the question. @type {Map<string, string>} */
+  /** The answers of the run, by the id of the question. @type {Map<string, string>} */
   const known = new Map();
   const ids = Object.keys(PREDICTIONS);
 

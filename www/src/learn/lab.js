@@ -26,7 +26,7 @@ const CLOSE = 0.12;
 const MOST_TRIALS = 4;
 
 /**
- * What the figures run unless they say otherwise: Algorithm 2 child by child, and ten steps.
+ * The usual settings of the figures: Algorithm 2 child by child, and ten relaxation steps.
  * @type {Partial<LessonSettings>}
  */
 export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', relax_steps: 10, residual: RESIDUAL };

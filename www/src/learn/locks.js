@@ -3,7 +3,7 @@
  * made.
  */
 
-/** What may be locked beside the comparison of the assignment, and where it is. @type {Record<string, string>} */
+/** Selectors of the controls that may be locked beside the assignment's comparison. @type {Record<string, string>} */
 const PARTS = {
   figures: '.stage .controls',
   questions: '.predict-form .controls',

@@ -1,4 +1,4 @@
-/** What the figures say about a run, worked out from its particles. */
+/** Measurements of a run for the figures, worked out from its particles. */
 import { NO_PARENT } from '../engine/columns.js';
 import { between, createGrid } from '../ui/neighbours.js';
 

@@ -56,7 +56,7 @@ function legendOf(colouring, [least, most]) {
 const around = ({ mean, deviation }) =>
   `${formatFixed(mean, 3)} ± ${formatFixed(Math.round(deviation * 1000) / 1000, 3)}`;
 
-/** What is compared. @param {LabRun} run */
+/** Returns the figures of a run that are compared. @param {LabRun} run */
 export function figuresOf(run) {
   const { particles, evaluations } = run.progress;
   const nearest = spread(nearestDistances(run.end));
@@ -76,7 +76,7 @@ export function figuresOf(run) {
 /** @param {readonly [Side, Side]} sides @param {readonly [LabRun, LabRun]} runs */
 function comparisonOf(sides, runs) {
   const [left, right] = runs.map(figuresOf);
-  // Of particles of one size more is said; where the other run has many, what both have is compared under its names.
+  // A run with one size has more figures. Beside a run with many sizes, only the figures of both are compared.
   const names = left.length < right.length ? left : right;
   const rows = names.map(([name], k) => [name, left[k][1], right[k][1]]);
   return tableOf({ class: 'compare', head: ['', ...sides.map((side) => side.label)], rows });

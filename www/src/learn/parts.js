@@ -12,7 +12,7 @@ import { icon } from '../ui/icons.js';
  */
 export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
-  /** Where it stands. */
+  /** The value of the slider. */
   const place = signal(value);
   const set = (/** @type {number} */ to) => {
     place.value = to;

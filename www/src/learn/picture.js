@@ -214,7 +214,7 @@ export class Picture {
       const at = projected(view, place, width, height);
       if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
       const far = Math.hypot(at.x - xPx, at.y - yPx) * at.perPx;
-      // Of the particles under the point, the one in front.
+      // Several particles may lie under the point; the one in front is chosen.
       if (far < 2 * radii[i] && at.perPx < nearest) [best, nearest] = [i, at.perPx];
     }
     return best;

@@ -14,7 +14,7 @@ import { reasonOf } from './figure.js';
  * @import { Guessed, Prediction } from './types.js'
  */
 
-/** Which predictions are out. Figures show what would give the answer away only then. */
+/** The predictions that were made. A figure shows what would give an answer away only after its prediction. */
 export class Stops {
   /** @type {Map<string, Signal<boolean>>} */
   #open;
@@ -28,13 +28,13 @@ export class Stops {
     /** @type {Map<string, Guessed>} */
     this.outcomes = new Map();
     /**
-     * What a learner has entered so far, by the stop.
+     * The present entries of a learner, by the stop.
      * @type {Map<string, { question: string, get: () => string | number | null }>}
      */
     this.entries = new Map();
   }
 
-  /** What has been guessed: with the answer where it is out, and with none where it is not. */
+  /** Returns the guesses, with their answers where these are out. */
   predictions() {
     const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
     const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));
@@ -55,7 +55,7 @@ export class Stops {
     return known;
   }
 
-  /** Whether a prediction is out; an effect that asks runs again when it is. @param {string} stop */
+  /** Whether a prediction was made. An effect that asks runs again once it is. @param {string} stop */
   isOpen(stop) {
     return this.state(stop).value;
   }

@@ -171,7 +171,7 @@ const rest = {
   judge: judgeNumber,
 };
 
-/** Where the answers to the last question begin. */
+/** The lower ends of the answers to the last question. */
 const FACTORS = [1.3, 2, 4];
 /** Below this factor all sizes are called alike. */
 const EVEN = 1.05;

@@ -30,7 +30,7 @@ const PICTURE_MS = 250;
 const [NEAR, FAR] = [0.7, 1.15];
 
 /**
- * How many times as long as the front the other method took in Table 1 of the paper, for each pair of its ellipsoids.
+ * Time of the other method over that of the front, for each pair of ellipsoids in Table 1 of the paper.
  * @type {Record<string, readonly { ratio: number, words: string }[]>}
  */
 const OF_THE_PAPER = {
@@ -232,11 +232,11 @@ function resultOf(names, lanes, ends) {
   return tableOf({ class: 'compare', head: ['', ...names], rows });
 }
 
-/** Where a ratio stands on the axis, 0 to 1. @param {number} ratio */
+/** Returns the place of a ratio on the axis, 0 to 1. @param {number} ratio */
 const axisShare = (ratio) =>
   Math.min(1, Math.max(0, Math.log(ratio / LEAST_RATIO) / Math.log(MOST_RATIO / LEAST_RATIO)));
 
-/** This race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
+/** Charts this race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
 function marksOf(kind, ratio) {
   const paper = OF_THE_PAPER[kind];
   const told = [

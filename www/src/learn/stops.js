@@ -47,7 +47,7 @@ export function mountStops({ stops, others, onBench, say }) {
     else document.getElementById(target)?.scrollIntoView({ block: 'start' });
   }
 
-  // What the address carries along stays in it when a link of the page leads to another stop.
+  // A link of the page names only a stop. The other parts of the address stay in it.
   document.addEventListener('click', (event) => {
     const link = event.target instanceof Element ? event.target.closest('a[href^="#"]') : null;
     if (!link || event.ctrlKey || event.metaKey || event.shiftKey || event.button !== 0) return;
@@ -57,7 +57,7 @@ export function mountStops({ stops, others, onBench, say }) {
     const next = writeAddress({ stop, parts });
     if (next === location.hash) go();
     else location.hash = next;
-    // As an anchor does, the reading place of the keyboard goes along.
+    // The focus moves to the target, as it does with an anchor.
     const target = document.getElementById(others.includes(stop) ? STOP : stop);
     target?.setAttribute('tabindex', '-1');
     target?.focus({ preventScroll: true });

@@ -8,7 +8,8 @@ export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;
 const MOST_QUESTIONS = 20;
 /**
- * What may be locked; `words` name it to a learner, `usual` is locked unless the teacher says otherwise.
+ * The controls that may be locked. `words` name them to a learner; `usual` ones are locked unless the teacher
+ * unlocks them.
  * @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]}
  */
 export const CONTROLS = [
@@ -25,7 +26,7 @@ export const CONTROLS = [
   { value: 'race', label: 'The race', words: 'the race' },
 ];
 
-/** What is locked, in words for the learner; empty if nothing is. @param {readonly Control[]} locks */
+/** Returns the locked controls in words for the learner; empty if none is locked. @param {readonly Control[]} locks */
 export const lockedWords = (locks) => {
   const names = CONTROLS.filter(({ value }) => locks.includes(value)).map(({ words }) => words);
   return names.length > 0 ? `Locked: ${names.join('; ')}.` : '';

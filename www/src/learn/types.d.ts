@@ -6,9 +6,9 @@ import type { FormulaSurface } from '../ui/types.js';
 import type { Lab } from './lab.js';
 import type { Stops } from './predict.js';
 
-/** What an assignment may lock: on its bench, then on the rest of the page. */
+/** The controls that an assignment may lock: those of its bench, then those of the rest of the page. */
 export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
-/** What stands on the bench. */
+/** The comparison on the bench. */
 export type Setup = { what: string; left: string; right: string };
 /** One choice. `make` is given a value and makes the run; the first two values are shown first. */
 export interface WhatIf {
@@ -33,11 +33,11 @@ export interface Prediction {
   answer: (lab: Lab, guess: string | number | null) => Promise<Answer>;
   judge?: (guess: string | number, right: string | number) => string;
 }
-/** What a learner has guessed and what the run said. */
+/** A learner's guess and the answer of the run. */
 export type Guessed = { stop: string; question: string; guess: string | number | null; answer: string };
 /** A place that is marked, if its side is in view. */
 export type Mark = { place: ArrayLike<number>; normal: ArrayLike<number>; radius: number; kind: 'ring' | 'cross' };
-/** What a picture shows. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
+/** The content of a picture. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
 export interface Scene {
   particles: LessonParticles;
   count?: number;
@@ -59,11 +59,11 @@ export interface LabRun {
   end: LessonParticles;
   placing: number;
 }
-/** How the two pictures are coloured. */
+/** The colouring of the two pictures. */
 export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';
 export type Side = { label: string; make: (lab: Lab) => Promise<LabRun> };
 export type Task = { title: string; setup: Setup; locks: Control[]; questions: string[] };
-/** What a learner hands in. */
+/** The work that a learner hands in. */
 export type Work = {
   assignment: string;
   surface: string;
@@ -76,7 +76,7 @@ export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Pro
 
 export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
-/** What a figure is given: the runs, and which predictions are out. */
+/** The input of a figure: the runs, and the predictions that were made. */
 export type Context = { lab: Promise<Lab>; stops: Stops };
 export interface HandoutOptions {
   figures: readonly Figure[];

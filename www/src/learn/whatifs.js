@@ -13,7 +13,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
  */
 const even = (settings) => (/** @type {Lab} */ lab, /** @type {string} */ value) => lab.run(settings(value));
 
-/** How a seed that was pressed is named: its place. */
+/** The value of a seed that was pressed is this and its place. */
 const AT = 'at ';
 
 /** @param {readonly number[]} place */

@@ -80,7 +80,7 @@ export function mountInterface(engine) {
   query(field, '.fold').before(...historyButtons(history));
   mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
-  // What is said where there is no surface does not hide the box.
+  // The layout leaves room for the message that there is no surface, so that it does not hide the box.
   layout.follow(query(view, '.empty'));
   const boxDrawn = computed(() => isBoxDrawn(engine));
   live(view, () => {

@@ -1,4 +1,4 @@
-/** What is said and done where the clip box cuts the surface, and how the box changes. */
+/** The clip box: the message and the remedy where it cuts the surface, and the ways in which it changes. */
 import { vec } from '../engine/vector.js';
 import { clamp } from './scale.js';
 

@@ -23,7 +23,7 @@ function endsOf({ kind, rows }) {
 /** The largest value in words. @param {Drawn} chart */
 export const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
 
-/** What stands below: the first and last place, and the fates where there are several. @param {Drawn} chart */
+/** Returns the line below a chart: its first and last place, and its fates if they are several. @param {Drawn} chart */
 export function footOf({ rows, first, ends: named }) {
   if (named) return named.map((text) => h('span', null, text));
   const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + rows[0].counts.length - 1))];

@@ -6,7 +6,7 @@ import { effect } from '@preact/signals-core';
 
 /** @import { Children, Given, Props, SvgProps } from './types.js' */
 
-/** What ends with a node. @type {WeakMap<Node, (() => void)[]>} */
+/** Functions that are called when a node ends. @type {WeakMap<Node, (() => void)[]>} */
 const endings = new WeakMap();
 
 /**

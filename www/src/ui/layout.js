@@ -17,7 +17,7 @@ const NARROW = '(max-width: 67.45em)';
 const COMPACT = '(max-width: 44.95em)';
 
 /**
- * What is hidden: `panels` leaves the picture with caption and timeline, to be presented.
+ * The part of the page that is hidden: `panels` leaves the picture with caption and timeline, to be presented.
  * @typedef {'nothing' | 'panels' | 'all'} Hidden
  */
 

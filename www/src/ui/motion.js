@@ -77,7 +77,7 @@ export function createMotion(engine, stage) {
     /** Name of the parameter that moves. */
     playing,
     turning,
-    /** Whether a film is made, for which parameters and camera are moved. */
+    /** Whether a film is being made. It moves parameters and the camera. */
     filming,
     course,
     speed,

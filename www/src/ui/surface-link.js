@@ -7,8 +7,8 @@ import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 /** @import { FormulaSurface } from './types.js' */
 
 /**
- * What is carried over. `surface` is null if it comes from points, which no address can hold; `from` is the fragment of
- * the page's own address.
+ * The surface that a link hands over. `surface` is null if it comes from points, which no address can hold; `from` is
+ * the fragment of the page's own address.
  * @typedef {{ surface: FormulaSurface | null, from: string }} Carried
  */
 

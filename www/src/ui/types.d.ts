@@ -11,7 +11,7 @@ import type { createMotion } from './motion.js';
 export type Live<T> = T | (() => T);
 export type Attribute = string | number | boolean | null | undefined;
 export type Child = Node | string | number | null | undefined | false;
-/** What an element holds; a function is read anew, and what it returned before is taken away. */
+/** The content of an element. A function is called again after every change, and its earlier result is removed. */
 export type Children = Child | readonly Children[] | (() => Children);
 type AttributeName =
   | `aria-${string}`
@@ -60,7 +60,7 @@ type AttributeName =
 type Listeners<E> = {
   [K in keyof HTMLElementEventMap]?: (event: HTMLElementEventMap[K] & { currentTarget: E }) => void;
 };
-/** What every element may be given besides attributes. */
+/** Properties of every element besides its attributes. */
 export interface Given<E> {
   /** listeners of events */
   on?: Listeners<E>;
@@ -127,7 +127,7 @@ export interface FollowPanel {
   onKey: (listener: (event: KeyboardEvent) => void) => void;
 }
 
-/** What a chart shows. `first` is the number of the first place. */
+/** The content of a chart. `first` is the number of the first place. */
 export interface Drawn {
   kind: 'bars' | 'line';
   rows: { fate: string; name: string; counts: readonly number[] }[];

@@ -1,4 +1,4 @@
-// What the engine's clients know of their workers.
+// The part of a worker that the engine's clients use.
 
 /** A function that takes an event; written as a method, so that a handler of a worker's own events is one, too. */
 type Handler<E> = { handle(event: E): void }['handle'];

@@ -24,7 +24,7 @@ export function viewCommands({ store, picture }) {
       const view = validView(/** @type {Record<string, unknown>} */ (patch), store.state.value.view);
       if (patch.camera) viewer.camera.set(view.camera);
       change(store, { view });
-      // What is switched on around the surface is brought into view.
+      // The box and the axes reach beyond the surface: the camera moves back to show them.
       if ((patch.box !== undefined || patch.axes !== undefined) && viewer.camera.state.fit) viewer.fit();
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);
     },

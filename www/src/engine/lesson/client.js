@@ -54,7 +54,7 @@ export class LessonClient {
   /** Number of the present run. */
   #run;
 
-  /** Those who wait, by the number of their message. @type {Map<number, Waiting>} */
+  /** The pending promises, by the number of the message. @type {Map<number, Waiting>} */
   #waiting;
 
   /**

@@ -8,7 +8,7 @@ export type LessonProgress = import('../core-types.js').LessonProgress;
 export type LessonChapter = import('../core-types.js').LessonChapter;
 export type Fault = import('../core-types.js').Fault;
 export type Vec3 = [number, number, number];
-/** What to sample: a formula, or the solved system of a model from points. */
+/** The surface to sample: a formula, or the solved system of a model from points. */
 export type Surface = LessonField | { system: Uint8Array; bounds: Bounds };
 /**
  * The particles at the moment that was sought. Vectors have three floats each; `parents` has 0xffffffff for a seed,
@@ -26,11 +26,11 @@ export interface Particles {
   slots: Uint32Array;
   done: Uint8Array;
 }
-/** How far a run has come, and the milliseconds that its worker has worked for it since it was asked. */
+/** The progress of a run, and the milliseconds that its worker has worked for it since it was asked. */
 export type Advanced = { progress: LessonProgress; workMs: number };
 /** A plane through a point: `right` and `up` are perpendicular unit vectors. */
 export type Plane = { centre: Vec3; right: Vec3; up: Vec3; half: number; cells: number };
-/** What may be asked of a run, and the answers. `events` and `chapters` are what there is so far. */
+/** The questions about a run and their answers. `events` and `chapters` are what there is so far. */
 export interface Questions {
   /** from number `first` on */
   chapters: { ask: { first: number }; answer: LessonChapter[] };
@@ -65,7 +65,7 @@ export type FromLesson =
   | { type: 'answer'; id: number; answer: unknown }
   | { type: 'crashed'; message: string; stack: string }
   | { type: 'failed'; message: string };
-/** One of the two: how far it is, and the milliseconds that it has worked. */
+/** One of the two runs of a race: its progress, and the milliseconds that its worker has worked. */
 export type Lane = { progress: LessonProgress | null; workMs: number };
 export interface LessonClientOptions {
   spawn?: () => WorkerLike;

@@ -1,4 +1,4 @@
-/** What the page and the worker that turns points into a field agree on. @module */
+/** Constants of the worker that turns points into a field and of its client. @module */
 
 /** Largest interval between messages while the worker loads or reads. */
 export const BEAT_MS = 250;

@@ -15,10 +15,10 @@ export class SamplingClient {
   #onMessage;
   #onLoadFailed;
 
-  /** What the page shows, which a new worker is told again. */
+  /** Whether the page shows the curvature and a mesh. A new worker is told again. */
   #wishes = { curvature: false, mesh: false };
   /**
-   * Those who wait for a file, by the number of the request.
+   * The pending requests for a file, by their numbers.
    * @type {Map<number, (bytes: Uint8Array<ArrayBuffer> | null) => void>}
    */
   #files = new Map();
@@ -44,7 +44,7 @@ export class SamplingClient {
     return this.supervisor.worker !== null;
   }
 
-  /** Whether no worker is there or coming. */
+  /** Whether there is no worker, and none is loading. */
   get isOff() {
     return ['failed', 'safe'].includes(this.supervisor.state);
   }

@@ -1,5 +1,6 @@
 /**
- * What a run costs on this machine, learnt from earlier runs, and how many particles a run may have during a drag.
+ * A model of the cost of a run on this machine, learnt from earlier runs. It says how many particles a run may have
+ * during a drag.
  *
  * @module
  */

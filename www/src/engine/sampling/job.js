@@ -328,7 +328,7 @@ class JobRun {
       const slots = core.slots(0);
       env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
     }
-    // What was kept last is where the particles are, unless another step has been made since.
+    // The positions kept last are the present ones if no step was made since; those are not sent again.
     const positions = this.past.slice(0, this.#stepsOf(last));
     if (positions.length > 0) {
       env.post(

@@ -194,7 +194,7 @@ export type RunEvent =
   | { type: 'crashed'; input: string; again: boolean }
   | { type: 'revived' };
 
-/** What the client reports. */
+/** The events of the client. */
 export interface ClientEvents {
   onMessage: (message: FromWorker) => void;
   /** the old worker is gone and the new one is loading */

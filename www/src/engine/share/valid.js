@@ -1,5 +1,5 @@
 /**
- * What is left of any input once it is checked.
+ * Checks of untyped input: each gives the nearest valid value, or undefined where there is none.
  *
  * @module
  */

@@ -106,7 +106,7 @@ export const VIEW = {
   level: place('generation level'),
   /** The relaxation step after which the particles are drawn, null for the last one. */
   step: place('relaxation step'),
-  /** What a step on the timeline is. */
+  /** The unit of a step on the timeline. */
   grain: choice('grain of the timeline', ['level', 'particle', 'event']),
   /**
    * The particle of the paper's run that is followed, and the number of its event.

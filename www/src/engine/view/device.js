@@ -58,7 +58,7 @@ export class DeviceKeeper {
     this.opened = 0;
     this.#inSight = true;
     this.#resting = false;
-    /** Those who wait for an answer of the device. @type {Set<(error: Error) => void>} */
+    /** Rejects the promises that wait for an answer of the device. @type {Set<(error: Error) => void>} */
     this.waiting = new Set();
   }
 

@@ -24,7 +24,7 @@ const POINT_PX = 0.7;
 const RIM_FROM_PX = 4;
 /** Share by which discs of earlier levels fade towards the background. */
 const MUTE = 0.5;
-/** What the inside keeps of its light and of its distance from grey, as in shaders/common.wgsl. */
+/** Shares of its light and of its chroma that the inside of a surface keeps, as in shaders/common.wgsl. */
 const INSIDE_LIGHT = 0.4;
 const INSIDE_CHROMA = 0.5;
 

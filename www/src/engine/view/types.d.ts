@@ -37,7 +37,7 @@ export interface Colouring {
   legend: (context: Context) => Omit<Legend, 'unit'> & { unit?: string };
 }
 /**
- * What became of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
+ * The outcome of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
  * canvas.
  */
 export type FrameResult = 'drawn' | 'skipped' | 'none';
@@ -78,7 +78,7 @@ export interface Stage {
   /** the pointer left, or was `pressed` */
   leave: (pressed: boolean) => void;
 }
-/** What of the view the picture itself shows, and what else it shows. */
+/** The options of the view that the picture shows, and the rest of what it shows. */
 export type Look = Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'> &
   Setting;
 export interface Setting {
@@ -106,7 +106,7 @@ export interface ViewerEvents {
   onFrame: () => void;
   onReveal: (reveal: Reveal | null) => void;
 }
-/** What a colouring works with. */
+/** The input of a colouring. */
 export type Context = { palette: Palette; columns: Columns; range: [number, number] | null };
 export interface DeviceOptions {
   host: HTMLElement;

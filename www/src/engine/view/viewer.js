@@ -60,7 +60,7 @@ export class Viewer {
     this.dimmer = new Dimmer();
     this.upload = new ParticleUpload(columns);
     this.#faces = new FaceUpload(columns);
-    /** What has changed since the last frame. */
+    /** The parts that have changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
     this.frames = new FrameLoop((nowS, dtS) => this.#frame(nowS, dtS));
     this.screen = new Screen(host, () => this.#resized());

@@ -1,4 +1,4 @@
-/** What placing costs and what relaxing costs, in evaluations of f. */
+/** The chapter on the cost of placing and of relaxing, in evaluations of f. */
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 

@@ -1,4 +1,4 @@
-/** One particle and its children: the tangent plane event by event, and the particles that were there first. */
+/** The chapter on one particle and its children: the tangent plane event by event, and the particles met there. */
 
 import { signal } from '@preact/signals-core';
 import { tangentPlane } from '../../figures/drawings.js';
@@ -98,7 +98,7 @@ export async function sixChildren({ lab, stops }) {
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 
-/** What became of the children, level by level. @param {LabRun} run @param {() => boolean} hidden */
+/** Charts the fates of the children, level by level. @param {LabRun} run @param {() => boolean} hidden */
 function fateChart(run, hidden) {
   const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
   const rows = levels.map(({ fates }) => [fates.added, fates.matched]);
@@ -130,7 +130,7 @@ export async function whoWasFirst({ lab, stops }) {
   let particle = Math.floor(count / 2);
   async function show() {
     const opened = await openParticle(run.client, run, particle);
-    // It begins where the first child is compared, which is what the chapter is about.
+    // The chapter is about comparing, so the drawing begins with the comparison of the first child.
     const first = opened.events.findIndex(({ type }) => type === 'compared');
     const { drawing, told, controls } = stepThrough(opened, first);
     fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));

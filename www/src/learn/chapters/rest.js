@@ -1,4 +1,4 @@
-/** Where rings meet, and ten steps of rest. */
+/** The chapter on the seams where rings meet, and on ten relaxation steps. */
 import { triple } from '../../engine/vector.js';
 import { h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';

@@ -11,7 +11,7 @@ const FORMATS = FILE_TYPES.split(',')
 /** @param {string[]} words */
 const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
 
-/** What files can be opened. @param {Engine} engine */
+/** Returns the kinds of files that can be opened, in words. @param {Engine} engine */
 export const filesOf = ({ description }) =>
   `${listOf(FORMATS)}, up to ${Math.round((description.value?.limits.file_bytes ?? 0) / 1e6)}\u202fMB`;
 

@@ -30,7 +30,7 @@ export interface Editor {
   /** whether the editor itself marks the error */
   marks: boolean;
 }
-/** What the tiles depend on. */
+/** The signals on which the tiles depend. */
 export interface Finding {
   /** that the search looks for */
   words: ReadonlySignal<readonly string[]>;

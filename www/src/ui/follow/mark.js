@@ -31,7 +31,7 @@ export function circleAround(centre, a, b, radius, corners) {
   });
 }
 
-/** Where a child is, as far as it is known. @param {Child} child */
+/** Returns the last known position of a child. @param {Child} child */
 const whereIs = ({ landed, iterates, start, pushes }) =>
   landed?.position ?? iterates.at(-1)?.position ?? start?.place ?? pushes.at(-1)?.position ?? null;
 

@@ -52,7 +52,7 @@ export async function mountFollow(shell, engine, { say, mount }) {
   mount(childrenMark(engine, follower));
 
   /**
-   * Where the focus and the picture were before.
+   * The focus and the place of the timeline before the panel opened.
    * @type {{ focus: HTMLElement | null, level: number | null, step: number | null }}
    */
   let before = { focus: null, level: null, step: null };
@@ -107,7 +107,7 @@ export async function mountFollow(shell, engine, { say, mount }) {
  */
 function createPanel(engine, follower, { particles, open, close }) {
   const id = uniqueId('follow');
-  // What was pressed goes away with what it offered, so the panel itself takes the focus.
+  // A pressed button may vanish with its choice, so the panel itself takes the focus.
   const held = () => element.focus({ preventScroll: true });
   const title = h('h2', { id }, () => {
     const opened = follower.opened.value;

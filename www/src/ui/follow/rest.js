@@ -22,7 +22,7 @@ import { settingOf, settingsOf } from './run.js';
  */
 
 /**
- * What there is of a step: null where the timeline stands elsewhere.
+ * The state of a relaxation step: null while the timeline stands elsewhere.
  * @typedef {null | { text: string, rest: Rest | null }} RestStatus
  */
 

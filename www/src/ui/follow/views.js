@@ -158,8 +158,8 @@ function mark(kind) {
 }
 
 /**
- * How much larger a lens with a half size of one radius shows things than the profile: 7.5 rem for 2 r against 16.25
- * rem for 5.3 r.
+ * Enlargement by a lens whose half size is one radius, relative to the profile: the lens shows 2 r on 7.5 rem, the
+ * profile 5.3 r on 16.25 rem.
  */
 const LENS_SCALE = 7.5 / 2 / (16.25 / 5.3);
 

@@ -40,7 +40,7 @@ export async function createCharts(engine, player) {
   const shown = signal(true);
   const moves = computed(() => {
     const { past, positions, radii } = engine.columns;
-    // Of many particles only the first positions are kept, and the way from those to the last is no step.
+    // With many particles only the first positions are kept. The way from those to the last is not one step.
     const steps = engine.report.value?.energy?.length ?? 0;
     return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
   });

@@ -1,4 +1,4 @@
-/** What a key means on the timeline. */
+/** The keys of the timeline. */
 
 /** @import { Move } from './types.js' */
 

@@ -1,4 +1,4 @@
-/** How even the particles are that are shown: distances to the nearest, and numbers of neighbours. */
+/** The evenness of the shown particles: distances to the nearest, and numbers of neighbours. */
 import { between, createGrid } from '../neighbours.js';
 
 /**
@@ -28,7 +28,7 @@ export function nearestOver(positions, radii, chosen) {
   const grid = createGrid(positions, chosen, cell);
   return Float32Array.from(chosen, (i) => {
     let least = Infinity;
-    // What lies beyond the cells that have been looked at is farther away than their ring is wide.
+    // A particle outside the rings searched so far is farther away than their width.
     for (let ring = 0; ring <= MOST_RINGS && least > Math.max(0, ring - 1) * cell; ring += 1)
       for (const j of grid.around(i, ring)) if (j !== i) least = Math.min(least, between(positions, i, j));
     return least / (2 * radii[i]);

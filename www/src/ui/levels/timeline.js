@@ -69,7 +69,7 @@ export function createTimeline(body, engine, { told, loadFollow, say }) {
 }
 
 /**
- * What the caption says of the place; null where it says what it says of the whole.
+ * Returns the caption of the present place; null where it is the caption of the whole run.
  * @param {Engine} engine
  * @param {Levels} levels
  * @param {Player} player

@@ -181,7 +181,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
       canFilm ? action('Record film', () => record(recordFilm)) : null,
       h('span', { class: 'picture-sequence' }, [
         action('Picture sequence', () => {
-          // What the user does has no end, and no single pictures of full quality.
+          // A recording of what the user does has no known end, and its pictures are not finished runs.
           if (durationOf(subject()) < Infinity) void sequence();
           else
             page.toast({

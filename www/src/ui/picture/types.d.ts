@@ -3,16 +3,16 @@ import type { Engine, Legend } from '../../engine/types.js';
 import type { Course, Motion, Range, Toast } from '../types.js';
 
 export type Context = OffscreenCanvasRenderingContext2D | CanvasRenderingContext2D;
-/** What goes with the surface. */
+/** The parts of a picture beside the surface. */
 export interface Parts {
   legend: Legend | null;
   /** lines */
   caption: string[];
   colours: { ink: string; quiet: string };
 }
-/** Where the parts are drawn, and how large. */
+/** The place of the parts and their size. */
 export type Sheet = { context: Context; em: number; left: number; parts: Parts };
-/** What both sections need. */
+/** Shared by the section of pictures and that of films. */
 export interface Shared {
   engine: Engine;
   page: { motion: Motion; toast: Toast };
@@ -20,7 +20,7 @@ export interface Shared {
   transparent: HTMLInputElement;
   close: () => void;
 }
-/** What is recorded. */
+/** A recording. */
 export interface Wish {
   engine: Engine;
   size: { width: number; height: number };
@@ -32,6 +32,6 @@ export interface Wish {
   /** is told of the progress: of the whole, if that is known, and in seconds */
   tell: (share: number | null, seconds: number) => void;
 }
-/** What moves: the turntable, a parameter, or what the user does. */
+/** The cause of the motion: the turntable, a parameter, or what the user does. */
 export type Subject = { kind: 'turn' } | { kind: 'parameter'; range: Range; course: Course } | { kind: 'free' };
 export type Size = { width: number; height: number };

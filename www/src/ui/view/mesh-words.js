@@ -30,5 +30,5 @@ export function meshWords({ components, unfilled, left_out }) {
     .join(' · ');
 }
 
-/** What is said where there is no mesh to be drawn. */
+/** The message where no mesh can be drawn. */
 export const NO_MESH = 'A mesh needs WebGPU or WebGL2; the picture shows discs';

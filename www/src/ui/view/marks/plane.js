@@ -84,9 +84,9 @@ class Mover {
     return along(near, normal, offset - dot(normal, near));
   }
 
-  /** What the knob does: it moves the plane along its normal, within the box. */
+  /** Returns the drag of the knob, which moves the plane along its normal, within the box. */
   sliding() {
-    /** Where the pointer was along the normal. @type {number | null} */
+    /** The last place of the pointer along the normal. @type {number | null} */
     let last = null;
     return {
       grab: (/** @type {Ray} */ ray) => {
@@ -107,7 +107,10 @@ class Mover {
     };
   }
 
-  /** What the tip of the arrow does: it turns the plane about its knob. The panel has sliders for the two angles. */
+  /**
+   * Returns the drag of the arrow's tip, which turns the plane about its knob. The panel has sliders for the two
+   * angles.
+   */
   turning() {
     let [radius, isFar] = [0, false];
     return {
