@@ -179,11 +179,10 @@ export class Picture {
 
   /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {View} view */
   #drawMarks(context, marks, view) {
-    const { width, height } = this.#size.peek();
     const style = getComputedStyle(this.element);
     context.lineWidth = 2 * FINENESS;
     for (const { place, normal, radius, kind } of marks) {
-      const at = projected(view, place, width, height);
+      const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normal)) continue;
       const [x, y] = [at.x * FINENESS, at.y * FINENESS];
       const r = Math.max(6, (1.6 * radius) / at.perPx) * FINENESS;
@@ -205,13 +204,12 @@ export class Picture {
     const scene = this.scene.peek();
     if (!scene) return null;
     const { positions, normals, radii } = scene.particles;
-    const { width, height } = this.#size.peek();
     const view = this.#view();
     let best = null;
     let nearest = Infinity;
     for (let i = 0; i < (scene.count ?? radii.length); i += 1) {
       const place = positions.subarray(3 * i, 3 * i + 3);
-      const at = projected(view, place, width, height);
+      const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
       const far = Math.hypot(at.x - xPx, at.y - yPx) * at.perPx;
       // Several particles may lie under the point; the one in front is chosen.

@@ -166,22 +166,23 @@ describe('picking', () => {
   const apart = (i, j) =>
     Math.hypot(...[0, 1, 2].map((k) => columns.positions[3 * i + k] - columns.positions[3 * j + k]));
 
+  /** Along the axis of the sphere, from below. @type {import('../../src/engine/types.js').Ray} */
+  const upwards = { eye: [0, 0, -5], direction: [0, 0, 1] };
+
   test('sees through particles of later levels', () => {
-    const eye = /** @type {const} */ ([0, 0, -5]);
-    const near = pick(columns, [...eye], [0, 0, 1], 0.92, 0);
+    const near = pick(columns, upwards, { discScale: 0.92, toleranceRad: 0 });
     expect(near).toBeGreaterThan(1900);
     // The sphere's levels go from the far pole to the near one.
-    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, 3)).toBeLessThan(16);
-    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.lastLevel)).toBe(near);
+    expect(pick(columns, upwards, { discScale: 0.92, toleranceRad: 0, lastLevel: 3 })).toBeLessThan(16);
+    expect(pick(columns, upwards, { discScale: 0.92, toleranceRad: 0, lastLevel: columns.lastLevel })).toBe(near);
   });
 
   test('sees through particles beyond the cutting plane', () => {
-    const eye = /** @type {const} */ ([0, 0, -5]);
     const plane = { normal: /** @type {[number, number, number]} */ ([0, 0, -1]), offset: 0 };
-    const far = pick(columns, [...eye], [0, 0, 1], 0.92, 0, Infinity, plane);
+    const far = pick(columns, upwards, { discScale: 0.92, toleranceRad: 0, plane });
     expect(columns.positions[3 * (far ?? 0) + 2]).toBeGreaterThan(0.9);
     const all = { ...plane, offset: -2 };
-    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, Infinity, all)).toBe(null);
+    expect(pick(columns, upwards, { discScale: 0.92, toleranceRad: 0, plane: all })).toBe(null);
   });
 
   test('finds the disc that the definition finds, from anywhere, and in a gap one around it', () => {
@@ -195,10 +196,10 @@ describe('picking', () => {
       const ray = /** @type {[number, number, number]} */ (way.map((w) => w / length));
       // Discs that leave much open hide nothing that lies behind them.
       const small = oracle(eye, ray, 0.6);
-      expect(pick(columns, eye, ray, 0.6, 0), `ray ${k}`).toBe(small);
+      expect(pick(columns, { eye, direction: ray }, { discScale: 0.6, toleranceRad: 0 }), `ray ${k}`).toBe(small);
       const best = oracle(eye, ray, 0.92);
       const front = oracle(eye, ray, 2 / Math.sqrt(3));
-      const picked = pick(columns, eye, ray, 0.92, 0);
+      const picked = pick(columns, { eye, direction: ray }, { discScale: 0.92, toleranceRad: 0 });
       if (front === null) {
         expect(picked, `ray ${k}`).toBe(null);
       } else if (best !== null && apart(best, front) <= 4 * columns.radii[0]) {
@@ -222,8 +223,9 @@ describe('picking', () => {
     const ray = /** @type {[number, number, number]} */ (p.map((c) => -c));
     const length = Math.hypot(...ray);
     const unit = /** @type {[number, number, number]} */ (ray.map((c) => c / length));
-    expect(pick(columns, eye, unit, 1e-6, 0.002)).toBe(i);
-    expect(pick(columns, eye, /** @type {[number, number, number]} */ (unit.map((c) => -c)), 0.92, 0.01)).toBe(null);
+    expect(pick(columns, { eye, direction: unit }, { discScale: 1e-6, toleranceRad: 0.002 })).toBe(i);
+    const away = /** @type {[number, number, number]} */ (unit.map((c) => -c));
+    expect(pick(columns, { eye, direction: away }, { discScale: 0.92, toleranceRad: 0.01 })).toBe(null);
   });
 });
 

@@ -104,7 +104,21 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
   packed.set(eye, 16);
   packed.set(forward, 19);
   packed[22] = worldPerPx;
-  return { clipFromWorld, eye, forward, right, up, tanX, tanY, shiftX, shiftY, worldPerPx, packed };
+  return {
+    widthPx: w,
+    heightPx: h,
+    clipFromWorld,
+    eye,
+    forward,
+    right,
+    up,
+    tanX,
+    tanY,
+    shiftX,
+    shiftY,
+    worldPerPx,
+    packed,
+  };
 }
 
 /** Smallest share of a side that counts as free, however much the panels cover. */
@@ -124,12 +138,12 @@ function fair(a, b, side) {
 
 /**
  * Returns the unit direction of the ray through a pixel.
- * @param {View} view @param {number} xPx @param {number} yPx @param {number} widthPx @param {number} heightPx
+ * @param {View} view @param {number} xPx @param {number} yPx
  * @returns {Vec3}
  */
-export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
-  const sx = ((2 * xPx) / widthPx - 1 - view.shiftX) * view.tanX;
-  const sy = (1 - (2 * yPx) / heightPx - view.shiftY) * view.tanY;
+export function rayThrough(view, xPx, yPx) {
+  const sx = ((2 * xPx) / view.widthPx - 1 - view.shiftX) * view.tanX;
+  const sy = (1 - (2 * yPx) / view.heightPx - view.shiftY) * view.tanY;
   const d = [0, 1, 2].map((k) => view.forward[k] + sx * view.right[k] + sy * view.up[k]);
   const length = Math.hypot(d[0], d[1], d[2]);
   return [d[0] / length, d[1] / length, d[2] / length];
@@ -137,10 +151,10 @@ export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
 
 /**
  * Returns where a place is in the picture; null behind the eye.
- * @param {View} view @param {ArrayLike<number>} place @param {number} widthPx @param {number} heightPx
+ * @param {View} view @param {ArrayLike<number>} place
  * @returns {Spot | null}
  */
-export function projected({ clipFromWorld: m, worldPerPx }, place, widthPx, heightPx) {
+export function projected({ clipFromWorld: m, worldPerPx, widthPx, heightPx }, place) {
   const row = (/** @type {number} */ k) => m[k] * place[0] + m[4 + k] * place[1] + m[8 + k] * place[2] + m[12 + k];
   const w = row(3);
   if (!(w > 0)) return null;
@@ -252,7 +266,7 @@ export class Camera {
   /**
    * Reduces the distance by `factor` (> 1) and keeps the world point under the cursor in place.
    * @param {number} factor
-   * @param {{view: View, xPx: number, yPx: number, widthPx: number, heightPx: number} | null} [at]
+   * @param {{view: View, xPx: number, yPx: number} | null} [at]
    */
   zoom(factor, at = null) {
     if (!(factor > 0) || !Number.isFinite(factor)) return;
@@ -260,7 +274,7 @@ export class Camera {
     const next = clamp(distance / factor, this.#nearLimit, this.#farLimit);
     let moved = target;
     if (at) {
-      const ray = rayThrough(at.view, at.xPx, at.yPx, at.widthPx, at.heightPx);
+      const ray = rayThrough(at.view, at.xPx, at.yPx);
       // The fixed point is the intersection of the ray with the plane through the target that faces the eye.
       const along = distance / dot(ray, at.view.forward);
       const share = 1 - next / distance;

@@ -11,7 +11,10 @@ import { grown, NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
-/** @import { Style, Target } from './types.js' */
+/**
+ * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { Style, Target } from './types.js'
+ */
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
@@ -151,7 +154,7 @@ export class Painter {
     return Infinity;
   }
 
-  /** @param {number} widthPx @param {number} heightPx */
+  /** @type {Renderer['resize']} */
   resize(widthPx, heightPx) {
     this.width = Math.max(0, Math.floor(widthPx));
     this.height = Math.max(0, Math.floor(heightPx));
@@ -159,10 +162,7 @@ export class Painter {
     this.#canvas.height = this.height;
   }
 
-  /**
-   * @param {number} first @param {Float32Array} positions @param {Float32Array} normals @param {Float32Array} radii
-   * @param {Uint32Array} levels @param {Uint32Array} colours @param {number} birthS
-   */
+  /** @type {Renderer['write']} */
   write(first, positions, normals, radii, levels, colours, birthS) {
     const last = first + radii.length;
     if (last > this.radii.length) {
@@ -182,22 +182,22 @@ export class Painter {
     this.#births.fill(birthS, first, last);
   }
 
-  /** @param {number} first @param {Uint32Array} colours */
+  /** @type {Renderer['write_colours']} */
   write_colours(first, colours) {
     this.colours.set(colours.subarray(0, Math.max(0, this.colours.length - first)), first);
   }
 
-  /** @param {number} n */
+  /** @type {Renderer['set_count']} */
   set_count(n) {
     this.#count = Math.min(n, this.radii.length);
   }
 
-  /** @param {Float32Array} view */
+  /** @type {Renderer['set_view']} */
   set_view(view) {
     this.view.set(view);
   }
 
-  /** @param {string} json */
+  /** @type {Renderer['set_style']} */
   set_style(json) {
     this.#style = { ...this.#style, ...JSON.parse(json) };
   }
@@ -214,12 +214,12 @@ export class Painter {
     return 'drawn';
   }
 
-  /** @param {number} widthPx @param {number} heightPx */
+  /** @type {Renderer['picture_size']} */
   picture_size(widthPx, heightPx) {
     return Uint32Array.of(widthPx, heightPx);
   }
 
-  /** @param {number} widthPx @param {number} heightPx @param {boolean} transparent */
+  /** @type {Renderer['read_pixels']} */
   async read_pixels(widthPx, heightPx, transparent) {
     const image = new ImageData(widthPx, heightPx);
     const onScreen = this.view.slice();
@@ -257,7 +257,7 @@ export class Painter {
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
     const scene = { target: { out, depth, width, height }, axes, key, ground };
     for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
-    if (box) this.#paintBox(out, depth, width, height, box);
+    if (box) this.#paintBox(scene.target, box);
   }
 
   /**
@@ -334,10 +334,9 @@ export class Painter {
 
   /**
    * Draws the twelve edges of the clip box, one pixel wide, where no disc hides them.
-   * @param {Uint32Array} out @param {Float32Array} depth @param {number} width @param {number} height
-   * @param {{min: number[], max: number[], colour: number[]}} box
+   * @param {Target} target @param {NonNullable<Style['box']>} box
    */
-  #paintBox(out, depth, width, height, box) {
+  #paintBox({ out, depth, width, height }, box) {
     const m = this.view;
     const value =
       ((255 << 24) |

@@ -7,7 +7,8 @@
 
 /**
  * @import { Columns } from '../columns.js'
- * @import { CuttingPlane, Vec3 } from '../types.js'
+ * @import { CuttingPlane, Ray } from '../types.js'
+ * @import { PickOptions } from './types.js'
  */
 
 /**
@@ -22,20 +23,14 @@ const DENSE = 0.8;
  * Returns the index of the nearest disc that the ray meets; in a gap between dense discs, the nearest of them;
  * otherwise, for discs too small to hit, the particle nearest to the ray within the angle `toleranceRad`. It is null if
  * there is none.
- * @param {Columns} columns
- * @param {Vec3} eye
- * @param {Vec3} ray  length 1
- * @param {number} discScale  disc radius as a share of the particle's radius
- * @param {number} toleranceRad
- * @param {number} [lastLevel]  particles of later levels are hidden
- * @param {CuttingPlane | null} [plane]  particles beyond it are hidden
- * @param {number} [upto]  particles from this one on are hidden
+ * @param {Columns} columns @param {Ray} ray @param {PickOptions} options
  */
-export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity, plane = null, upto = Infinity) {
+export function pick(columns, { eye, direction }, options) {
+  const { discScale, toleranceRad, lastLevel = Infinity, plane = null, upto = Infinity } = options;
   const { shown: positions, normals, radii, levels } = columns;
   const count = Math.min(columns.count, upto);
   const [ex, ey, ez] = eye;
-  const [dx, dy, dz] = ray;
+  const [dx, dy, dz] = direction;
   let hit = -1;
   let hitT = Infinity;
   let gap = -1;

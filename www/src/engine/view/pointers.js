@@ -27,9 +27,8 @@ export function placeOn(host, event) {
 }
 
 /** Zooms by a factor towards a place. @param {Stage} stage @param {number} factor @param {Place} at */
-export function zoomAt({ camera, currentView, host }, factor, at) {
-  const { clientWidth: widthPx, clientHeight: heightPx } = host;
-  camera.zoom(factor, { view: currentView(), xPx: at.x, yPx: at.y, widthPx, heightPx });
+export function zoomAt({ camera, currentView }, factor, at) {
+  camera.zoom(factor, { view: currentView(), xPx: at.x, yPx: at.y });
 }
 
 export class Pointers {

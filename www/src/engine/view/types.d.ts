@@ -15,7 +15,10 @@ export interface Device {
 }
 /** pixels covered by panels */
 export type Insets = { left: number; right: number; top: number; bottom: number };
+/** A picture from an eye: its matrices and vectors, and its size in CSS pixels. */
 export type View = {
+  widthPx: number;
+  heightPx: number;
   clipFromWorld: Float32Array;
   eye: Vec3;
   forward: Vec3;
@@ -108,6 +111,19 @@ export interface ViewerEvents {
 }
 /** The input of a colouring. */
 export type Context = { palette: Palette; columns: Columns; range: [number, number] | null };
+/** The particles that {@link pick} sees. */
+export interface PickOptions {
+  /** disc radius as a share of the particle's radius */
+  discScale: number;
+  /** angle around the ray within which a disc that is too small to hit is found */
+  toleranceRad: number;
+  /** particles of later levels are hidden */
+  lastLevel?: number;
+  /** particles beyond it are hidden */
+  plane?: CuttingPlane | null;
+  /** particles from this one on are hidden */
+  upto?: number;
+}
 export interface DeviceOptions {
   host: HTMLElement;
   /** a new device, without particles, is open */

@@ -270,10 +270,17 @@ export class Viewer {
     const { cssWidth, cssHeight } = this.screen;
     if (columns.count === 0 || columns.stale || cssWidth === 0 || cssHeight === 0) return null;
     const view = this.currentView();
-    const ray = rayThrough(view, x, y, cssWidth, cssHeight);
-    const newest = shownLevel(look, columns.lastLevel) ?? Infinity;
-    const upto = look.upto ?? Infinity;
-    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest, look.plane, upto);
+    return pick(
+      columns,
+      { eye: view.eye, direction: rayThrough(view, x, y) },
+      {
+        discScale: look.size,
+        toleranceRad: PICK_PX * view.worldPerPx,
+        lastLevel: shownLevel(look, columns.lastLevel) ?? Infinity,
+        plane: look.plane,
+        upto: look.upto ?? Infinity,
+      },
+    );
   }
 
   /**
@@ -281,15 +288,13 @@ export class Viewer {
    * @param {ArrayLike<number>} place
    */
   project(place) {
-    const { cssWidth, cssHeight } = this.screen;
-    return projected(this.currentView(), place, cssWidth, cssHeight);
+    return projected(this.currentView(), place);
   }
 
   /** Returns the ray through a point of the host, in CSS pixels. @param {number} x @param {number} y @returns {Ray} */
   rayThrough(x, y) {
     const view = this.currentView();
-    const { cssWidth, cssHeight } = this.screen;
-    return { eye: view.eye, direction: rayThrough(view, x, y, Math.max(1, cssWidth), Math.max(1, cssHeight)) };
+    return { eye: view.eye, direction: rayThrough(view, x, y) };
   }
 
   // ---- drawing

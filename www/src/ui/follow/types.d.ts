@@ -1,12 +1,16 @@
 // Types of the panel that follows a particle.
 import type { LessonParticles } from '../../engine/types.js';
+import type { Opened as Drawn, Moment } from '../../figures/types.js';
+import type { Children } from '../types.js';
 import type { childrenMark } from './mark.js';
 
 /**
  * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a
  * step to another one.
  */
-export type Opened = import('../../figures/types.js').Opened & { picture: { index: number; distance: number } | null };
+export type Opened = Drawn & { picture: { index: number; distance: number } | null };
+/** Makes the content of a view of a particle. */
+export type ViewContent = (opened: Opened, moment: Moment) => Children;
 export type Status =
   | { kind: 'running'; particles: number }
   | { kind: 'ready' }

@@ -12,9 +12,8 @@ import { createRestViews } from './rest.js';
 
 /**
  * @import { Child, Moment } from '../../figures/types.js'
- * @import { Children } from '../types.js'
  * @import { Follower } from './follower.js'
- * @import { Opened } from './types.js'
+ * @import { Opened, ViewContent } from './types.js'
  */
 
 /** @param {Follower} follower */
@@ -63,7 +62,7 @@ function linkHover(element, { pointed, hot, opened, moment }) {
 
 /**
  * @param {Follower} follower
- * @param {string} title @param {(opened: Opened, moment: Moment) => Children} contentOf
+ * @param {string} title @param {ViewContent} contentOf
  * @param {boolean} [isPointed]  whether it shows one child, which may be pointed at elsewhere
  */
 function view({ opened, moment, hot, rest }, title, contentOf, isPointed = false) {
@@ -84,7 +83,7 @@ function view({ opened, moment, hot, rest }, title, contentOf, isPointed = false
   );
 }
 
-/** @param {Opened} opened @param {Moment} moment */
+/** @type {ViewContent} */
 const tangentView = (opened, moment) => [
   isAdaptive(opened.events) ? adaptivePlane(opened, moment) : tangentPlane(opened, moment),
   h(
@@ -109,7 +108,7 @@ function slotRow({ slot, fate, particle }, moment) {
   );
 }
 
-/** @param {Opened} opened @param {Moment} moment */
+/** @type {ViewContent} */
 function profileView(opened, moment) {
   const { profiles, subject } = opened;
   const slot = moment.slot ?? profiles.findIndex((profile) => profile !== null);
@@ -167,7 +166,7 @@ const LENS_SCALE = 7.5 / 2 / (16.25 / 5.3);
 const magnification = ({ lens: about }) =>
   about ? `The search, enlarged about ${formatSignificant(LENS_SCALE / about.half, 2)} times` : '';
 
-/** @param {Opened} opened @param {Moment} moment */
+/** @type {ViewContent} */
 function numbersView({ subject }, { event, slot, isNow, children, evaluations }) {
   const child = isNow && slot !== null ? children[slot] : null;
   const last = child?.iterates.at(-1) ?? null;
@@ -208,7 +207,7 @@ function numbersOfPush(child, radius, pushed) {
   ];
 }
 
-/** @param {Opened} opened @param {Moment} moment */
+/** @type {ViewContent} */
 function algorithmView({ events }, { event }) {
   const lines = isAdaptive(events) ? ADAPTIVE : ALGORITHM;
   const now = lineOf(event, lines);
