@@ -14,9 +14,8 @@ const worker = /** @type {any} */ (self);
 // The build writes the files of the site here. Parameters of the address, such as `backend`, do not change a file.
 precacheAndRoute(import.meta.env.SITE_FILES, { ignoreURLParametersMatching: [/./], cleanURLs: false });
 
-worker.addEventListener('message', (/** @type {MessageEvent} */ { data }) => {
-  if (data === 'take over') worker.skipWaiting();
+worker.addEventListener('message', (/** @type {any} */ event) => {
+  if (event.data === 'take over') worker.skipWaiting();
+  // The page that has stored the first version works without a network at once, not only when it is loaded again.
+  if (event.data === 'answer') event.waitUntil(worker.clients.claim());
 });
-
-// The page that has stored the first version works without a network at once, not only when it is loaded again.
-worker.addEventListener('activate', (/** @type {any} */ event) => event.waitUntil(worker.clients.claim()));

@@ -24,10 +24,10 @@ const MAY_USE = {
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
   'engine/columns': ['engine/types', 'engine/vector'],
   'engine/store': ['engine/types', 'engine/share'],
-  'engine/view': ['engine/types', 'engine/columns', 'engine/vector'],
+  'engine/view': ['engine/types', 'engine/columns', 'engine/vector', 'engine/bundle'],
   // The state holds the camera's.
   'engine/share': ['engine/types', 'engine/constants', 'engine/columns', 'engine/vector', 'engine/view'],
-  // What the workers need to bring in a bundle and to keep its pace.
+  // How a bundle is brought in, and how a worker keeps its pace.
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.
   'engine/lesson': ['engine/core-types', 'engine/bundle'],

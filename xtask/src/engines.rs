@@ -20,13 +20,8 @@ pub(crate) fn test(project: &Project) -> Result<()> {
     for (engine, command) in [("Firefox", firefox()), ("WebKit", webkit())] {
         let label = format!("page: browser tests in {engine}");
         match command {
-            // A page that is late on a busy machine gets one more chance, as in Chromium, and it is said.
             Ok(mut command) => {
-                let command = command.current_dir(&project.www);
-                if let Err(error) = step::run(&label, command, "") {
-                    println!("  {label}: once more after\n{error:#}");
-                    step::run(&label, command, "")?;
-                }
+                step::run(&label, command.current_dir(&project.www), "")?;
             }
             Err(error) => println!("  {label} … SKIPPED: {error:#}"),
         }

@@ -31,7 +31,7 @@ export function createPicture({ host, store, columns, first }) {
   const viewer = new Viewer(
     { host, columns, look: store.state.value.view, first },
     {
-      ...deviceEvents(store),
+      ...deviceEvents(store, () => void viewer.keeper.retry()),
       onLegend(legend) {
         store.legend.value = legend;
       },
@@ -93,8 +93,9 @@ export function createPicture({ host, store, columns, first }) {
 /**
  * Returns the handlers that report the state of the graphics device to the user.
  * @param {Store} store
+ * @param {() => void} retry  opens the best kind again
  */
-function deviceEvents(store) {
+function deviceEvents(store, retry) {
   return {
     onDevice(/** @type {Device} */ { kind, renderer }) {
       batch(() => {
@@ -113,14 +114,18 @@ function deviceEvents(store) {
         details: `${kind}: ${message}`,
       };
     },
-    onFallback(/** @type {string} */ kind, /** @type {string} */ message) {
-      // During the start a fallback is expected. A later one is reported to the user.
-      if (store.backend.value === 'starting') return;
+    onFallback(/** @type {string} */ kind, /** @type {string} */ message, isLate = false) {
+      const isLast = kind === 'canvas2d';
+      // During the start a kind that the browser lacks is expected. A later one is reported to the user.
+      if (store.backend.value === 'starting' && !isLast && !isLate) return;
       store.notice.value = {
         id: 'fallback',
-        kind: 'warn',
-        text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
+        kind: isLast ? 'error' : 'warn',
+        text: isLast
+          ? 'There is no picture: none of the ways of drawing could be started.'
+          : `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
         details: `${kind}: ${message}`,
+        action: { label: 'Try again', run: retry },
       };
     },
   };

@@ -3,6 +3,7 @@ import '../ui/trusted.js';
 import { kindOf, LessonClient } from '../engine/lesson/client.js';
 import { button } from '../ui/button.js';
 import { byId, query, queryAll } from '../ui/dom.js';
+import { storeSite } from '../ui/offline.js';
 import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
 import { createMaker, mountAssignment } from './assignment.js';
@@ -11,7 +12,6 @@ import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
 import { createHandout } from './handout.js';
 import { Lab, NoSurface, PARTICLES } from './lab.js';
-import { keepOffline } from './offline.js';
 import { createPair } from './pair.js';
 import { mountPrediction, Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
@@ -127,4 +127,4 @@ if (address.parts.task) {
       mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops }),
     );
 }
-keepOffline();
+storeSite('../service-worker.js');

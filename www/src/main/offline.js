@@ -3,15 +3,13 @@
  * files of the site, so it starts when the first surface is there and nothing else is to be done.
  */
 import { effect } from '@preact/signals-core';
+import { storeSite } from '../ui/offline.js';
 
 /**
  * @import { Engine } from '../engine/types.js'
  * @import { Toast } from '../ui/types.js'
  */
 
-const SCRIPT = './service-worker.js';
-/** Longest time for which an idle moment is awaited. */
-const PATIENCE_MS = 10_000;
 /**
  * Time after which a page that is looked at again asks for a new version. A browser asks by itself whenever a page is
  * loaded.
@@ -20,24 +18,19 @@ const ASK_MS = 3_600_000;
 
 /** @param {Engine} engine @param {Toast} toast */
 export function keepOffline(engine, toast) {
-  // The development server has its files from the sources.
-  if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const stop = effect(() => {
     if (engine.busy.value || (engine.report.value === null && !engine.empty.value)) return;
     queueMicrotask(() => stop());
-    const begin = () =>
-      start(toast).catch((error) => console.warn(`The page will not work without a network: ${error}`));
-    if ('requestIdleCallback' in window) requestIdleCallback(begin, { timeout: PATIENCE_MS });
-    else setTimeout(begin, 1000);
+    storeSite('./service-worker.js', (registration, isFirst) => follow(registration, isFirst, toast));
   });
 }
 
-/** @param {Toast} toast */
-async function start(toast) {
+/**
+ * Says when there is a new version, and asks for one now and then.
+ * @param {ServiceWorkerRegistration} registration @param {boolean} isFirst @param {Toast} toast
+ */
+function follow(registration, isFirst, toast) {
   const { serviceWorker } = navigator;
-  const isFirst = serviceWorker.controller === null;
-  const registration = await serviceWorker.register(SCRIPT);
-
   /** Whether this page has asked the new version to take over. */
   let isAsked = false;
   const offer = () => {

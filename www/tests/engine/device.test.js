@@ -1,29 +1,36 @@
 import { describe, expect, test } from 'vitest';
+import { LOADING_MS } from '../../src/engine/bundle/load.js';
 import { DeviceKeeper } from '../../src/engine/view/device.js';
 
 /**
- * A keeper over scripted devices. `broken` kinds cannot be opened.
- * @param {string[]} [broken]
+ * A keeper over scripted devices. `broken` kinds cannot be opened; `lost` ones never answer.
+ * @param {string[]} [broken] @param {string[]} [lost]
  */
-function kept(broken = []) {
+function kept(broken = [], lost = []) {
   /** @type {string[]} */
   const log = [];
   /** @type {any[]} */
   const events = [];
-  const clock = { ms: 0 };
+  /** `late` ends the wait for a device. */
+  const clock = { ms: 0, late: () => {} };
   const keeper = new DeviceKeeper({
     host: /** @type {any} */ (null),
     onOpen: (device) => log.push(`open ${device.kind}`),
     onLost: (kind) => log.push(`lost ${kind}`),
-    onFallback: (kind) => log.push(`gave up ${kind}`),
+    onFallback: (kind, _message, isLate) => log.push(`gave up ${kind}${isLate ? ', late' : ''}`),
     open: async (kind, _host, on) => {
+      if (lost.includes(kind)) await new Promise(() => {});
       if (broken.includes(kind)) throw new Error(`${kind} is not available`);
       events.push(on);
       return /** @type {any} */ ({ kind, renderer: {}, dispose: () => log.push(`close ${kind}`) });
     },
     clock: {
       now: () => clock.ms,
-      wait: async () => {},
+      wait: (ms) =>
+        new Promise((resolve) => {
+          if (ms < LOADING_MS) resolve();
+          else clock.late = resolve;
+        }),
     },
   });
   const settle = async () => {
@@ -43,6 +50,25 @@ describe('the keeper of devices', () => {
     const { keeper, log } = kept(['webgpu', 'webgl2']);
     await keeper.start();
     expect(log.at(-1)).toBe('open canvas2d');
+  });
+
+  test('gives up a kind whose request is lost, says so, and tries it again when it is asked to', async () => {
+    const lost = ['webgpu'];
+    const { keeper, log, clock, settle } = kept([], lost);
+    const started = keeper.start();
+    await settle();
+    clock.late();
+    await started;
+    expect(log).toEqual(['gave up webgpu, late', 'open webgl2']);
+    lost.pop();
+    await keeper.retry();
+    expect(log.slice(2)).toEqual(['close webgl2', 'open webgpu']);
+  });
+
+  test('says that there is no picture at all', async () => {
+    const { keeper, log } = kept(['webgpu', 'webgl2', 'canvas2d']);
+    await keeper.start();
+    expect(log.at(-1)).toBe('gave up canvas2d');
   });
 
   test('leaves nobody waiting for the answer of a device that is gone', async () => {

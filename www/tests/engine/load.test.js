@@ -1,4 +1,4 @@
-import { describe, expect, test } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { loadModule } from '../../src/engine/bundle/load.js';
 
 // The smallest module: a header and nothing else.
@@ -25,6 +25,20 @@ describe('the sampler’s file', () => {
       env(() => new Response(EMPTY, type('application/wasm')), { compile }),
     );
     expect(module).toBeInstanceOf(WebAssembly.Module);
+  });
+
+  test('that takes too long is not called damaged', async () => {
+    vi.spyOn(AbortSignal, 'timeout').mockReturnValueOnce(AbortSignal.abort(new Error('it timed out')));
+    const compileStreaming = () => Promise.reject(new Error('aborted'));
+    const loading = loadModule(
+      url,
+      'sampler',
+      env(() => new Response(EMPTY, type('application/wasm')), { compileStreaming }),
+    );
+    await expect(loading).rejects.toMatchObject({
+      fault: 'blocked',
+      message: expect.stringMatching(/could not be fetched: it timed out/),
+    });
   });
 
   test('is compiled all the same when the host names the wrong type', async () => {

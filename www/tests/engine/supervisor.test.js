@@ -69,6 +69,23 @@ describe('the supervisor', () => {
     expect(workers[0].terminated).toBe(true);
   });
 
+  test('gives up a worker whose script does not come within a minute, busy or not', () => {
+    const supervisor = supervised();
+    supervisor.start();
+    supervisor.setBusy(true);
+    vi.advanceTimersByTime(59_000);
+    expect(events).toEqual([]);
+    vi.advanceTimersByTime(2000);
+    expect(events).toEqual(['load: its script has not come within 60 s']);
+    expect(supervisor.state).toBe('failed');
+    // Once it has been heard, a word is expected sooner.
+    supervisor.revive();
+    vi.advanceTimersByTime(50_000);
+    workers[1].say({ type: 'beat' });
+    vi.advanceTimersByTime(2500);
+    expect(events.at(-1)).toBe('restart: hang');
+  });
+
   test('leaves a busy worker alone that speaks', () => {
     const supervisor = supervised();
     supervisor.start();

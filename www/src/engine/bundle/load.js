@@ -6,6 +6,12 @@
 
 /** @import { LoadFault } from './types.js' */
 
+/**
+ * Time in which a bundle has to come: a connection of 15 kB/s brings the largest in it. A request that a browser loses
+ * never ends.
+ */
+export const LOADING_MS = 60_000;
+
 /** A module that contains one 128-bit constant. It is valid exactly if the browser supports SIMD. */
 const SIMD_PROBE = new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
@@ -40,14 +46,17 @@ export async function loadModule(
       `This browser lacks WebAssembly SIMD, which the ${what} needs. Chrome and Edge have it from 91 on, Firefox from 89, Safari from 16.4.`,
     );
   const name = new URL(url, 'http://localhost').pathname.split('/').pop();
-  let response;
-  try {
-    response = await env.fetch(url);
-  } catch (error) {
-    throw new LoadError(
+  const signal = AbortSignal.timeout(LOADING_MS);
+  const blocked = (/** @type {unknown} */ error) =>
+    new LoadError(
       'blocked',
       `The ${what} (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`,
     );
+  let response;
+  try {
+    response = await env.fetch(url, { signal });
+  } catch (error) {
+    throw blocked(error);
   }
   if (!response.ok) {
     throw new LoadError(
@@ -60,6 +69,7 @@ export async function loadModule(
     if (type.startsWith('application/wasm') && wasm.compileStreaming) return await wasm.compileStreaming(response);
     return await wasm.compile(await response.arrayBuffer());
   } catch (error) {
+    if (signal.aborted) throw blocked(signal.reason);
     const hint = type.startsWith('text/html') ? 'The server sends a page in its place' : 'The file is damaged';
     throw new LoadError(
       'corrupt',

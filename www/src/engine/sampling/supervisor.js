@@ -6,6 +6,7 @@
  *
  * @module
  */
+import { LOADING_MS } from '../bundle/load.js';
 import { SILENCE_MS } from './protocol.js';
 
 /**
@@ -75,6 +76,8 @@ export class Supervisor {
     this.state = 'loading';
     this.#busy = false;
     this.#heard = false;
+    this.#deadline = this.#clock.now() + LOADING_MS;
+    this.#watch();
     worker.onmessage = ({ data }) => {
       // The last messages of a terminated worker may still arrive. They are ignored.
       if (this.worker === worker) this.receive(data);
@@ -82,9 +85,7 @@ export class Supervisor {
     worker.onerror = (event) => {
       if (this.worker !== worker) return;
       if (this.state === 'loading') {
-        this.#drop();
-        this.state = 'failed';
-        this.#onLoadError(event.message || 'its script did not load');
+        this.#fail(event.message || 'its script did not load');
       } else {
         this.#replace('panic', event.message || 'uncaught error', '');
       }
@@ -105,13 +106,15 @@ export class Supervisor {
 
   /** Sets whether the worker has work. Silence is only monitored while it has. @param {boolean} busy */
   setBusy(busy) {
-    if (busy && !this.#busy) this.#deadline = this.#clock.now() + SILENCE_MS;
+    if (busy && !this.#busy && this.#heard) this.#deadline = this.#clock.now() + SILENCE_MS;
     this.#busy = busy;
     this.#watch();
   }
 
   /** @param {FromWorker} message */
   receive(message) {
+    // The wait for a script is longer than that for a word.
+    if (!this.#heard) this.#rest();
     this.#heard = true;
     this.#deadline = this.#clock.now() + SILENCE_MS;
     if (message.type === 'ready') this.state = 'up';
@@ -128,10 +131,9 @@ export class Supervisor {
   }
 
   #watch() {
-    const on = this.worker !== null && (this.#busy || (this.state === 'loading' && this.#heard));
+    const on = this.worker !== null && (this.#busy || this.state === 'loading');
     if (!on) {
-      this.#clock.clearTimeout(this.#timer);
-      this.#timer = undefined;
+      this.#rest();
     } else if (this.#timer === undefined) {
       this.#timer = this.#clock.setTimeout(() => this.#check(false), Math.max(1, this.#deadline - this.#clock.now()));
     }
@@ -142,12 +144,24 @@ export class Supervisor {
     this.#timer = undefined;
     if (this.#clock.now() < this.#deadline) this.#watch();
     else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
+    else if (!this.#heard) this.#fail(`its script has not come within ${LOADING_MS / 1000} s`);
     else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
-  #drop() {
+  /** Gives up a worker that was never heard. @param {string} message */
+  #fail(message) {
+    this.#drop();
+    this.state = 'failed';
+    this.#onLoadError(message);
+  }
+
+  #rest() {
     this.#clock.clearTimeout(this.#timer);
     this.#timer = undefined;
+  }
+
+  #drop() {
+    this.#rest();
     const { worker } = this;
     this.worker = null;
     if (worker) {

@@ -8,6 +8,7 @@
  *
  * @module
  */
+import { LOADING_MS } from '../bundle/load.js';
 import { BACKENDS, openDevice } from './backends.js';
 
 /** @import { Device, DeviceOptions } from './types.js' */
@@ -26,6 +27,7 @@ export class DeviceKeeper {
   #onFallback;
   #open;
   #clock;
+  #first;
   #rank;
 
   /** Whether the picture is in sight. */
@@ -47,7 +49,8 @@ export class DeviceKeeper {
       now: () => performance.now(),
       wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)),
     };
-    this.#rank = first ? BACKENDS.indexOf(first) : 0;
+    this.#first = first ? BACKENDS.indexOf(first) : 0;
+    this.#rank = this.#first;
     /** @type {Device | null} */
     this.device = null;
     /** Counter of device changes, by which late answers are recognised. */
@@ -69,7 +72,7 @@ export class DeviceKeeper {
     for (; this.#rank < BACKENDS.length; this.#rank += 1) {
       const kind = BACKENDS[this.#rank];
       try {
-        const device = await this.#open(kind, this.#host, {
+        const opening = this.#open(kind, this.#host, {
           onLost: (reason, message) => {
             if (this.epoch === epoch) this.lost(`${reason}: ${message}`);
           },
@@ -78,19 +81,24 @@ export class DeviceKeeper {
             if (this.epoch === epoch) this.giveUp(message);
           },
         });
-        if (this.epoch !== epoch) {
-          device.dispose();
+        const device = await Promise.race([opening, this.#clock.wait(LOADING_MS).then(() => null)]);
+        if (device && this.epoch === epoch) {
+          this.#take(device);
           return;
         }
-        this.#take(device);
-        return;
+        // One that comes too late is not needed any more.
+        opening.then(
+          (late) => late.dispose(),
+          () => {},
+        );
+        if (this.epoch !== epoch) return;
+        this.#onFallback(kind, `it has not opened within ${LOADING_MS / 1000} s`, true);
       } catch (error) {
         if (this.epoch !== epoch) return;
-        if (kind !== 'canvas2d')
-          this.#onFallback(
-            kind,
-            error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),
-          );
+        this.#onFallback(
+          kind,
+          error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),
+        );
       }
     }
   }
@@ -120,6 +128,14 @@ export class DeviceKeeper {
     if (!inSight || !this.#resting) return;
     this.close();
     void this.start();
+  }
+
+  /** Begins anew with the best kind, at the user's request. */
+  retry() {
+    this.close();
+    this.losses = [];
+    this.#rank = this.#first;
+    return this.start();
   }
 
   close() {

@@ -102,7 +102,7 @@ export interface Setting {
 export interface ViewerEvents {
   onDevice: (device: Device) => void;
   onLost: (kind: string, message: string) => void;
-  onFallback: (kind: string, message: string) => void;
+  onFallback: DeviceOptions['onFallback'];
   onLegend: (legend: Legend) => void;
   onCamera: (camera: CameraState) => void;
   /** a picture was drawn */
@@ -130,8 +130,8 @@ export interface DeviceOptions {
   onOpen: (device: Device) => void;
   /** the device is lost and another is being opened */
   onLost: (kind: BackendKind, message: string) => void;
-  /** a kind of device was abandoned */
-  onFallback: (kind: BackendKind, message: string) => void;
+  /** a kind of device was abandoned, with `isLate` because it took too long to open */
+  onFallback: (kind: BackendKind, message: string, isLate?: boolean) => void;
   /** kind to try first */
   first?: BackendKind | null;
   open?: typeof openDevice;
