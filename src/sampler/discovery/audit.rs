@@ -25,10 +25,8 @@ const MOST_NEAR: usize = 30;
 const SCANNED: usize = 8;
 /// Units of work that a witness counts for.
 const UNITS: u32 = 64;
-/// Largest number of components that are named.
-pub(crate) const MOST_NAMED: usize = 256;
-/// Witnesses without a proof after which the others are not looked at, and count as open.
-const MOST_FAILED: u64 = 512;
+/// Components that are named, and witnesses left open, after which the others are not looked at and count as open.
+const MOST_NAMED: usize = 256;
 /// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0.
 const ROUNDING: f64 = 1e-12;
 /// Distance, in radii, to which a component without a particle is followed. One that reaches farther has room
@@ -99,7 +97,7 @@ impl Audit {
                 self.near = Vec::new();
                 break;
             };
-            if self.open + self.without.len() as u64 >= MOST_FAILED {
+            if self.without.len() + self.open as usize >= MOST_NAMED {
                 self.leave_open(seed.exact, (audited.seeds.len() - self.next) as u64);
                 self.next = audited.seeds.len();
                 continue;
@@ -179,10 +177,6 @@ impl Audit {
         }
         let followed = FOLLOWED * *radius;
         if self.is_on_named(&mut prover, from, followed) {
-            return;
-        }
-        if self.without.len() >= MOST_NAMED {
-            self.leave_open(exact, 1);
             return;
         }
         let Piece { reach, goes_on } = follow(prover.field, factor, exact, followed);

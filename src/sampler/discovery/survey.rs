@@ -18,9 +18,6 @@ const LOOKS: usize = 3;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
 const POLE_PROBE: f32 = 4.0;
 
-/// Stands for the area of a candidate where f does not change its sign.
-const NO_CROSSING: f32 = -1.0;
-
 /// The result of a survey.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
@@ -78,8 +75,8 @@ pub(crate) enum Absence {
 /// Candidates for points of the surface, and the range of the values on the grid.
 struct Candidates {
     place: Vec<Vec3>,
-    /// Area that each candidate stands for; [`NO_CROSSING`] where f keeps its sign.
-    areas: Vec<f32>,
+    /// Area that each candidate stands for; none where f keeps its sign.
+    areas: Vec<Option<f32>>,
     /// Sum of the areas.
     area: f64,
     least: f32,
@@ -150,7 +147,7 @@ impl Candidates {
                 let slope = here.gradient.length();
                 if crossings == 0 && slope > 0.0 && here.value.abs() <= slope * grid.spacing as f32 {
                     self.place.push(here.place - here.gradient * (here.value / (slope * slope)));
-                    self.areas.push(NO_CROSSING);
+                    self.areas.push(None);
                 }
             }
         }
@@ -172,7 +169,7 @@ impl Candidates {
         let face = grid.step[(axis + 1) % 3] * grid.step[(axis + 2) % 3];
         let area = if weight > 0.0 { face / weight } else { 0.0 };
         self.area += area;
-        self.areas.push(area as f32);
+        self.areas.push(Some(area as f32));
     }
 
     /// Looks at the edges that the surface may cross twice, and adds the places where it does.
@@ -203,7 +200,7 @@ impl Candidates {
             Absence::Undefined
         } else if self.least == self.greatest {
             Absence::Constant
-        } else if self.areas.iter().any(|&area| area != NO_CROSSING) {
+        } else if self.areas.iter().any(Option::is_some) {
             Absence::NoZero
         } else {
             Absence::NotSeen
@@ -251,12 +248,12 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Surv
 }
 
 /// Moves the candidates in `start` onto the surface and keeps those that converge inside the box. `areas` holds the area that
-/// each stands for, or [`NO_CROSSING`].
+/// each stands for, if it is at a crossing.
 fn project(
     probe: &mut Probe,
     bounds: &Bounds,
     start: &mut [Vec3],
-    areas: &[f32],
+    areas: &[Option<f32>],
     spacing: f32,
     out: &mut Survey,
 ) {
@@ -279,7 +276,7 @@ fn project(
             if ok[i] && bounds.contains(chunk[i]) {
                 out.position.push(chunk[i]);
                 out.normal.push(normal[i]);
-                out.weight.push(if areas[i] == NO_CROSSING { 0.0 } else { areas[i] });
+                out.weight.push(areas[i].unwrap_or(0.0));
             }
         }
     }
@@ -288,13 +285,12 @@ fn project(
 
 /// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient
 /// without a change of sign, both may be of any size.
-fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
-    let crosses = |area: f32| area != NO_CROSSING;
-    let by_crossings = areas.iter().any(|&area| crosses(area));
+fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[Option<f32>]) -> f32 {
+    let by_crossings = areas.iter().any(Option::is_some);
     let mut slopes = Vec::new();
     for (chunk, areas) in start.chunks(BATCH).zip(areas.chunks(BATCH)) {
         let (_, gradient) = probe.gradients(chunk);
-        let counted = gradient.iter().zip(areas).filter(|(_, area)| crosses(**area) || !by_crossings);
+        let counted = gradient.iter().zip(areas).filter(|(_, area)| area.is_some() || !by_crossings);
         slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
     sort_numbers(&mut slopes);
