@@ -19,7 +19,6 @@ export const isAdaptive = (events) => events.some(({ type }) => type === 'arc');
 /**
  * @param {readonly LessonEvent[]} events  of one particle, from `taken` to `done`
  * @param {number} at
- * @returns {Moment}
  */
 export function momentAt(events, at) {
   /** @type {Moment} */

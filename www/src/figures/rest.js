@@ -111,7 +111,7 @@ export function numbersOfRest(rest) {
   ];
 }
 
-/** Returns the pushes in words, for readers who do not see the drawing. @param {Rest} rest @returns {string[]} */
+/** Returns the pushes in words, for readers who do not see the drawing. @param {Rest} rest */
 export const pushersOf = ({ pushes, radius }) =>
   pushes.map(
     ({ particle, distance, force }) =>

@@ -58,7 +58,7 @@ export class Lab {
     this.#last = Promise.resolve();
   }
 
-  /** @template T @param {() => Promise<T>} job @returns {Promise<T>} */
+  /** @template T @param {() => Promise<T>} job */
   #queued(job) {
     const done = this.#last.then(job, job);
     this.#last = done.catch(() => {});
@@ -68,7 +68,6 @@ export class Lab {
   /**
    * The radius with which the surface has about so many particles.
    * @param {number} particles
-   * @returns {Promise<number>}
    */
   radiusFor(particles) {
     const known = this.#radii.get(particles);

@@ -26,7 +26,7 @@ import { createToolbar } from './view/toolbar.js';
  * @import { Dialog, Motion, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
-/** @param {Engine} engine @returns {Toast}  shows a notice of the page */
+/** @param {Engine} engine @returns shows a notice of the page */
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));

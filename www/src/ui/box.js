@@ -21,7 +21,6 @@ const SIDE_DIGITS = 3;
  * @param {number} axis
  * @param {'min' | 'max'} end
  * @param {number} value
- * @returns {Bounds}
  */
 export function withFace(bounds, axis, end, value) {
   const side = bounds.max[axis] - bounds.min[axis];

@@ -84,7 +84,6 @@ export function extentOf({ min, max }, direction) {
  * Returns the corners of the polygon in which a plane cuts a box, in order around it; none where it misses the box.
  * @param {Bounds} bounds
  * @param {CuttingPlane} plane
- * @returns {Vec3[]}
  */
 export function sectionOf(bounds, { normal, offset }) {
   /** @type {Vec3[]} */

@@ -14,7 +14,6 @@ const STAY_MS = 6000;
  * @param {HTMLElement} host
  * @param {Engine} engine
  * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
- * @returns {Toast}
  */
 export function mountToasts(host, engine, isTold) {
   host.setAttribute('role', 'status');

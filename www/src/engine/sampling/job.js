@@ -206,7 +206,7 @@ class JobRun {
 
   /**
    * Steps the core until it is done or the job is stopped.
-   * @returns {Promise<CoreProgress | null>} the last progress; null if another job replaces this one
+   * @returns the last progress; null if another job replaces this one
    */
   async sample() {
     const { core, job, env, sent } = this;

@@ -61,7 +61,6 @@ export async function join(core, env) {
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {string} format
  * @param {Env} env
- * @returns {Promise<{bytes: Uint8Array<ArrayBuffer> | null} | null>}
  */
 export const write = (core, format, env) =>
   inSlices(

@@ -89,7 +89,7 @@ function firstParticles(state, description) {
   return { ...next, shown: shown && { request: relaxed(shown, request.steps, description), reported: false } };
 }
 
-/** @param {RunState} state @param {Extract<RunEvent, {type: 'done'}>} event @returns {RunState} */
+/** @param {RunState} state @param {Extract<RunEvent, {type: 'done'}>} event */
 function done(state, { outcome, particles, reportFollows }) {
   const { current, shown, accepted } = state;
   if (!current) return state;
@@ -120,7 +120,6 @@ export const askedRun = ({ asked }, id) => asked.find((run) => run.id === id);
  * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field
  * was refused. It ends before its report.
  * @param {RunState} state
- * @returns {Run | null}
  */
 export function runningOf({ asked, current }) {
   if (asked.length > 0) return asked[asked.length - 1];

@@ -54,7 +54,6 @@ export function marksOf(triangles, count, theme) {
  * @template {Float32Array | Uint32Array} T
  * @param {T} column @param {number} width  values per particle
  * @param {Uint32Array} corners
- * @returns {T}
  */
 function gather(column, width, corners) {
   const out = emptyLike(column, width * corners.length);

@@ -81,7 +81,7 @@ export class ParticleUpload {
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {{reveal: Reveal, calm: boolean, nowS: number}} present
-   * @returns {number} number of particles on the device
+   * @returns number of particles on the device
    */
   write(renderer, look, { reveal, calm, nowS }) {
     const { columns, glide, dirty } = this;

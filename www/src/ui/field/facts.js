@@ -5,10 +5,7 @@ import { formatCount, formatSignificant } from '../format.js';
 
 const NORMALS = { given: 'given', from_mesh: 'from the mesh', estimated: 'estimated' };
 
-/**
- * @param {ModelInfo} info
- * @returns {{ label: string, value: string, unit: string, help: string }[]}
- */
+/** @param {ModelInfo} info */
 export function factsOf({ condition, residual_mean, residual_95, residual_max, normals }) {
   const share = (/** @type {number} */ v) => formatSignificant(v * 100, 2);
   return [

@@ -84,7 +84,6 @@ const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
 /**
  * Splits a message into segments. Text between backticks is code.
  * @param {string} message
- * @returns {{ text: string, code: boolean }[]}
  */
 export function segmentsOf(message) {
   const parts = message.split('`');

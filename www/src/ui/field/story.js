@@ -8,7 +8,6 @@ import { formatCount, plural } from '../format.js';
  * @param {Description} description
  * @param {string | null} id null for a formula that is not in the gallery
  * @param {ModelInfo | null} info of a surface from points
- * @returns {{ name: string, facts: string, text: string, credit: string }}
  */
 export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);

@@ -41,7 +41,7 @@ export class Player {
     });
   }
 
-  /** @param {Grain} grain @returns {Track} */
+  /** @param {Grain} grain */
   #trackOf(grain) {
     const panel = this.panel.value;
     if (!panel || grain === 'level') return this.levels;
@@ -122,7 +122,7 @@ export class Player {
     this.#go(track, to);
   }
 
-  /** @param {Track} track @param {1 | -1} by @returns {boolean} whether there was a place to go to */
+  /** @param {Track} track @param {1 | -1} by @returns whether there was a place to go to */
   #go(track, by) {
     const moved = track.some.peek() && track.go(by);
     if (moved && track === this.levels) this.#followLevel();
