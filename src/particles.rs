@@ -157,7 +157,7 @@ impl Particles {
         self.slots.truncate(len);
     }
 
-    /// For each particle the seed from which its front grew.
+    /// Returns, for each particle, the index of the seed from which its front grew.
     pub(crate) fn fronts(&self) -> Vec<u32> {
         let mut fronts: Vec<u32> = Vec::with_capacity(self.len());
         for (i, &parent) in (0..).zip(&self.parent) {

@@ -9,13 +9,13 @@ const SLICE: usize = 2048;
 /// A connected part of a mesh: vertices that edges join.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Component {
-    /// Vertices.
+    /// Number of vertices.
     pub vertices: u32,
-    /// Edges, border edges included.
+    /// Number of edges, border edges included.
     pub edges: u32,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: u32,
-    /// Edges with one triangle.
+    /// Number of edges with one triangle.
     pub border_edges: u32,
 }
 

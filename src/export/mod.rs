@@ -46,13 +46,13 @@ impl Format {
 pub enum ColumnKind {
     /// A coordinate: in double precision where the particles have an origin of their own, else in single precision.
     Coordinate,
-    /// Single precision.
+    /// Number in single precision.
     Float,
-    /// 32 bits with a sign.
+    /// Integer of 32 bits with a sign.
     Int,
-    /// 32 bits without a sign.
+    /// Integer of 32 bits without a sign.
     Uint,
-    /// 8 bits without a sign.
+    /// Integer of 8 bits without a sign.
     Uchar,
 }
 
@@ -64,9 +64,9 @@ pub struct Column {
     pub name: &'static str,
     /// Type of the values.
     pub kind: ColumnKind,
-    /// Whether it is known only once the particles are measured.
+    /// Whether the column is known only once the particles are measured.
     pub measured: bool,
-    /// The value for one particle.
+    /// Returns the value of a particle, given by its index.
     #[serde(skip)]
     read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
 }

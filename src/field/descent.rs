@@ -14,7 +14,7 @@ pub(crate) const BATCH: usize = 128;
 /// Below this |∇f|, its square is subnormal and has lost digits.
 const FAINT: f32 = 1e-18;
 
-/// ∇f/|∇f|.
+/// The unit normal ∇f/|∇f|.
 pub(crate) fn unit(gradient: Vec3, slope: f32) -> Vec3 {
     if slope < FAINT { (gradient / FAINT).normalize_or_zero() } else { gradient / slope }
 }
@@ -56,14 +56,14 @@ pub(crate) trait Descents {
     }
 }
 
-/// All points have the same limits.
+/// Limits that are the same for all points.
 impl Descents for Descent {
     fn of(&self, _: usize) -> Descent {
         *self
     }
 }
 
-/// Each point has its own.
+/// Limits for each point of the batch.
 impl Descents for [Descent; BATCH] {
     fn of(&self, i: usize) -> Descent {
         self[i]

@@ -30,7 +30,7 @@ pub struct FnField<F, G = fn(DVec3) -> DVec3> {
 }
 
 impl<F: FnMut(DVec3) -> f64 + Send> FnField<F> {
-    /// The field whose value at a point is `value` of it.
+    /// The field with the function `value`.
     pub fn new(value: F) -> Self {
         Self { value, gradient: None, origin: DVec3::ZERO }
     }

@@ -173,8 +173,7 @@ pub trait Field: Send {
         None
     }
 
-    /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come
-    /// again.
+    /// The period of f along each axis: 0 if f does not change along it, none if f is not known to be periodic.
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]
     }

@@ -12,7 +12,7 @@ const SAMPLES: usize = 128;
 /// smaller or larger, is a normal number in single precision.
 const COMFORTABLE: i32 = 40;
 
-/// Another field times a positive power of two. The surface is the same, and no digit is lost.
+/// A field times a positive power of two, which has the same surface. No digit is lost.
 pub(crate) struct Scaled<'a> {
     field: &'a mut dyn Field,
     scale: f32,

@@ -30,7 +30,7 @@ pub enum Event {
     LevelBegins {
         /// Number of the level.
         level: u32,
-        /// Particles that wait.
+        /// Number of particles that wait.
         waiting: u32,
     },
     /// A particle that is not done is taken from the queue ("while it exists one particle marked as not done").
@@ -53,7 +53,7 @@ pub enum Event {
     },
     /// A child is proposed ("place its six children").
     Slot {
-        /// The particle that places it.
+        /// The particle that places the child.
         parent: u32,
         /// Number of the slot, at an angle of slot · π/3 in uniform sampling.
         slot: u32,
@@ -61,7 +61,7 @@ pub enum Event {
         direction: Vector,
         /// Angle θ₀ on the circle.
         theta_rad: f64,
-        /// The place there.
+        /// Position at this angle.
         place: Vector,
     },
     /// The field is evaluated on the way to the surface (§4.3).
@@ -74,22 +74,22 @@ pub enum Event {
         step: u32,
         /// Angle θₖ on the circle; none for Newton's method in space.
         theta_rad: Option<f64>,
-        /// The place.
+        /// Position.
         position: Vector,
-        /// f there.
+        /// Value f at the position.
         value: f64,
-        /// |∇f| there.
+        /// Length |∇f| of the gradient at the position.
         slope: f64,
         /// Angles between which f changes its sign, where Newton's method has given way to a bracketed search.
         bracket_rad: Option<[f64; 2]>,
     },
     /// The child has come to the surface.
     Landed {
-        /// The particle that places it.
+        /// The particle that places the child.
         parent: u32,
         /// Number of the slot.
         slot: u32,
-        /// The place.
+        /// Position.
         position: Vector,
         /// Unit normal there.
         normal: Vector,
@@ -119,7 +119,7 @@ pub enum Event {
         distance: Option<f64>,
         /// Match radius.
         limit: f64,
-        /// Whether the distance is within it.
+        /// Whether the distance is within the match radius.
         corresponds: bool,
     },
     /// The child met a particle out of step: the front meets itself or another one, and a seam begins.
@@ -162,11 +162,11 @@ pub enum Event {
     Arc {
         /// The particle.
         parent: u32,
-        /// The particle before it; none if the whole circle is free.
+        /// The particle before the free space; none if the whole circle is free.
         before: Option<u32>,
-        /// The particle behind it, in the direction of growing angles.
+        /// The particle behind the free space, in the direction of growing angles.
         behind: Option<u32>,
-        /// Their directions in the frame.
+        /// Directions of these two particles in the frame.
         angles_rad: [f64; 2],
     },
     /// An adaptive child starts on the circle of its parent (§5.1, Figs 7a and 7c).
@@ -206,7 +206,7 @@ pub enum Event {
         /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is none.
         overlap: f64,
     },
-    /// The angle φ that it takes on the circle is compared with the free angle τ (Figs 7g, 8c and 8e).
+    /// The angle φ that an adaptive child takes on the circle is compared with the free angle τ (Figs 7g, 8c and 8e).
     Room {
         /// The particle that places the child.
         parent: u32,
@@ -265,9 +265,9 @@ pub enum Event {
     IterationBegins {
         /// Number of the iteration, from 1.
         iteration: u32,
-        /// Particles.
+        /// Number of particles.
         particles: u32,
-        /// Mean of what their neighbours make them feel: an energy, or a sum of squared overlaps.
+        /// Mean energy of the particles, or mean sum of their squared overlaps.
         energy: f64,
     },
     /// A particle divides in two.
@@ -276,7 +276,7 @@ pub enum Event {
         particle: u32,
         /// Index of the other child.
         child: u32,
-        /// Columns of both.
+        /// Columns of both children.
         data: Box<[Particle; 2]>,
         /// Energy of the particle.
         energy: f64,
@@ -292,7 +292,7 @@ pub enum Event {
     IterationEnds {
         /// Number of the iteration, from 1.
         iteration: u32,
-        /// Particles.
+        /// Number of particles.
         particles: u32,
         /// Longest move, in radii.
         largest_move: f64,

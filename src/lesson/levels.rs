@@ -84,7 +84,7 @@ impl Course {
             Some(other) => self.run.decide(child, SlotFate::Matched, Some(other)),
             None => {
                 // There is room: the children that were predicted have been counted.
-                self.run.add_waiting(child, (position, normal, self.setup.settings.radius));
+                self.run.add_waiting(child, position, normal, self.setup.settings.radius);
             }
         }
     }

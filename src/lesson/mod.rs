@@ -69,13 +69,13 @@ pub struct Chapter {
     /// Kind of the chapter.
     #[serde(flatten)]
     pub kind: ChapterKind,
-    /// Number of its first event in the run.
+    /// Number of the first event of the chapter in the run.
     pub first_event: u32,
-    /// Number of its events so far.
+    /// Number of events of the chapter so far.
     pub events: u32,
-    /// Particles when it begins.
+    /// Number of particles at the beginning of the chapter.
     pub before: u32,
-    /// Particles when it ends.
+    /// Number of particles at the end of the chapter.
     pub after: u32,
     /// Number of proposed children by fate.
     pub fates: FateCounts,
@@ -87,7 +87,7 @@ pub struct Chapter {
     pub fissions: u32,
     /// Particles that have died.
     pub deaths: u32,
-    /// Whether it is over.
+    /// Whether the chapter is over.
     pub is_over: bool,
 }
 
@@ -436,9 +436,9 @@ impl Lesson {
 
     /// The run at the beginning of a chapter.
     fn course_to(&self, chapter: usize) -> Course {
-        let (from, moment, particles) = self.snapshots.before(chapter, &self.course.run.particles);
-        let mut course = self.course.elsewhere(moment, particles);
-        for _ in from..chapter {
+        let kept = self.snapshots.before(chapter, &self.course.run.particles);
+        let mut course = self.course.elsewhere(kept.moment, kept.particles);
+        for _ in kept.chapter..chapter {
             course.do_chapter();
             course.run.seen.events.clear();
         }

@@ -11,11 +11,11 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonIterate"))]
 pub struct Iterate {
-    /// The place.
+    /// Position.
     pub position: Vector,
-    /// f there.
+    /// Value f at the position.
     pub value: f64,
-    /// |∇f| there.
+    /// Length |∇f| of the gradient at the position.
     pub slope: f64,
 }
 

@@ -91,7 +91,7 @@ pub struct LessonSettings {
     pub fit: f64,
     /// Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none.
     pub seeds: Vec<[f64; 3]>,
-    /// Chooses the first seed where none is given.
+    /// Seed of the random choice of the first seed point, where no seed points are given.
     pub seed: u32,
     /// Order in which the fronts of several seeds begin.
     pub seeding: Seeding,
@@ -267,7 +267,7 @@ pub enum LessonError {
         /// Largest value allowed.
         max: f64,
     },
-    /// The box is not one.
+    /// The box is not valid.
     #[error("the box {}", Bounds::REQUIREMENT)]
     Box,
     /// Placing level by level goes with one choice of the others.
@@ -290,9 +290,9 @@ pub enum LessonError {
     TooMany {
         /// Particles to expect.
         expected: u32,
-        /// The most that are followed.
+        /// Largest number of particles that a run may have.
         limit: u32,
-        /// By what all radii have to be multiplied.
+        /// Factor by which all radii have to be multiplied to stay within the limit.
         factor: f64,
     },
 }

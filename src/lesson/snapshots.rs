@@ -9,12 +9,20 @@ const MOST: usize = 400_000;
 
 /// State of the run at the beginning of a chapter. The way back restores it and replays the events that follow.
 enum Snapshot {
-    /// The first so many particles, as they were placed: until the first one is moved, nothing more is needed.
+    /// The state with the number of particles: until the first particle is moved, all are where they were placed.
     Placed(Moment, usize),
-    /// All particles.
+    /// The state with all particles.
     Whole(Moment, Vec<Particle>),
-    /// Nothing: the chapter is reached from an earlier one.
+    /// No state is kept: the chapter is reached from an earlier one.
     Dropped,
+}
+
+/// The beginning of a chapter, restored from a snapshot.
+pub(super) struct ChapterStart {
+    /// Number of the chapter.
+    pub(super) chapter: usize,
+    pub(super) moment: Moment,
+    pub(super) particles: Vec<Particle>,
 }
 
 /// The snapshots of a run. Of the chapters in which particles move one in `stride` is kept, the first of them always.
@@ -64,13 +72,13 @@ impl Snapshots {
         }
     }
 
-    /// The last chapter up to this one whose beginning is kept, and that beginning. `now` are the particles at the end of the run
-    /// so far.
-    pub(super) fn before(&self, chapter: usize, now: &[Particle]) -> (usize, Moment, Vec<Particle>) {
-        let mut from = chapter;
+    /// The beginning of the last chapter up to this one whose beginning is kept. `now` are the particles at the end of the run so far.
+    pub(super) fn before(&self, mut chapter: usize, now: &[Particle]) -> ChapterStart {
         loop {
-            match &self.all[from] {
-                Snapshot::Whole(moment, particles) => return (from, moment.clone(), particles.clone()),
+            match &self.all[chapter] {
+                Snapshot::Whole(moment, particles) => {
+                    return ChapterStart { chapter, moment: moment.clone(), particles: particles.clone() };
+                }
                 Snapshot::Placed(moment, count) => {
                     let first = self.first_moving.map(|first| &self.all[first]);
                     let placed =
@@ -80,10 +88,10 @@ impl Snapshots {
                         let particle = &mut particles[waiting as usize];
                         (particle.is_done, particle.slots) = (false, Slots::default());
                     }
-                    return (from, moment.clone(), particles);
+                    return ChapterStart { chapter, moment: moment.clone(), particles };
                 }
                 // The first chapter of all is never dropped.
-                Snapshot::Dropped => from -= 1,
+                Snapshot::Dropped => chapter -= 1,
             }
         }
     }

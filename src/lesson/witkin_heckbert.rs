@@ -44,12 +44,12 @@ const MAX_GROWTH: f64 = 2.0;
 /// Smallest σ, in σ̂: a particle as small dies with a probability of 13/14.
 const LEAST: f64 = 0.05;
 
-/// σ̂.
+/// The wanted radius σ̂.
 fn wanted(setup: &Setup) -> f64 {
     setup.settings.radius
 }
 
-/// σ_max, which is d/2.
+/// The largest radius σ_max, which is d/2.
 fn largest(setup: &Setup) -> f64 {
     match setup.settings.radius_max {
         0.0 => (0.5 * setup.diameter).max(wanted(setup)),

@@ -8,12 +8,12 @@ pub(crate) struct Forest {
 }
 
 impl Forest {
-    /// Every number in a set of its own.
+    /// The forest in which every number is in a set of its own.
     pub(crate) fn new(count: usize) -> Self {
         Self::with_links((0..count as u32).collect())
     }
 
-    /// Every number in the set of the one that it is linked to, which must not be larger.
+    /// The forest in which every number is in the set of the number that it is linked to, which must not be larger.
     pub(crate) fn with_links(up: Vec<u32>) -> Self {
         debug_assert!((0..).zip(&up).all(|(i, &up)| up <= i), "a link leads to a smaller number");
         Self { up }

@@ -24,7 +24,7 @@ const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
 /// 2²³: from here on every single-precision number is an integer.
 const ALL_INTEGERS: f32 = 8_388_608.0;
 
-/// −1, 0 or 1.
+/// Sign of a number: −1, 0 or 1.
 #[inline]
 #[must_use]
 pub fn sign(a: f32) -> f32 {

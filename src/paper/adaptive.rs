@@ -61,7 +61,7 @@ struct SheetNeighbour {
     touches: bool,
 }
 
-/// The parent whose children are placed, and what is around it.
+/// The parent whose children are placed, with the particles around it.
 struct Circumference {
     parent: u32,
     p: DVec3,
@@ -96,7 +96,7 @@ impl Circumference {
         shares.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// φ: the angle that the diameter of a child takes on the circle.
+    /// The angle φ that the diameter of a child takes on the circle.
     fn taken(&self, child: Disc) -> f64 {
         2.0 * libm::asin(child.radius / (self.radius + child.radius))
     }
@@ -108,7 +108,7 @@ impl Circumference {
         libm::acos(((d * d + e * e - apart * apart) / (2.0 * d * e)).clamp(-1.0, 1.0))
     }
 
-    /// τ: the free angle between two discs; φ where the child just fits between them.
+    /// The free angle τ between two discs, which is φ where the child just fits between them.
     fn free(&self, child: Disc, before: Disc, behind: Disc) -> f64 {
         let apart = behind.angle() - before.angle();
         let apart = if apart <= 0.0 { apart + TAU } else { apart };
@@ -252,7 +252,7 @@ impl<O: Observer> PaperRun<O> {
         let Some(radius) = self.radius_at(position) else { return };
         if let Some(other) = self.in_the_way(ring, position, normal, radius) {
             self.decide(of, SlotFate::Matched, Some(other));
-        } else if let Some(particle) = self.add_waiting(of, (position, normal, radius)) {
+        } else if let Some(particle) = self.add_waiting(of, position, normal, radius) {
             let disc = ring.disc(position, radius);
             ring.around.push(SheetNeighbour { particle, disc, touches: true });
         }

@@ -191,7 +191,9 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn add_waiting(
         &mut self,
         child: ChildSlot,
-        (position, normal, radius): (DVec3, DVec3, f64),
+        position: DVec3,
+        normal: DVec3,
+        radius: f64,
     ) -> Option<u32> {
         if self.particles.len() >= self.rules.max_particles {
             self.is_capped = true;

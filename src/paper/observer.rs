@@ -9,7 +9,7 @@ use glam::DVec3;
 /// A child that is not a particle yet: slot number `slot` of particle number `parent`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChildSlot {
-    /// The particle that places it.
+    /// The particle that places the child.
     pub parent: u32,
     /// Number among the parent's children.
     pub slot: u32,

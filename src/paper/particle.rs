@@ -4,7 +4,7 @@ use crate::particles::Slots;
 use glam::DVec3;
 use serde::Serialize;
 
-/// A particle: position p, normal N̂ and repulsion radius r (§4.2), and how it came to be.
+/// A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front and slots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonParticle"))]
 pub struct Particle {
@@ -14,16 +14,16 @@ pub struct Particle {
     pub normal: [f64; 3],
     /// Repulsion radius.
     pub radius: f64,
-    /// The particle that placed it; none for a seed and in particle systems, where no index lasts.
+    /// The particle that placed this one; none for a seed and in particle systems, where no index lasts.
     pub parent: Option<u32>,
     /// Generation level; in a particle system the number of fissions since the first particle.
     pub level: u32,
-    /// Number of the front: that of its seed, from 0.
+    /// Number of the front, from 0.
     pub front: u32,
-    /// Fates of its slots, three bits each.
+    /// Fates of the slots, three bits each.
     #[serde(skip)]
     pub slots: Slots,
-    /// Whether its children have been placed.
+    /// Whether the particle has placed its children.
     #[serde(skip)]
     pub is_done: bool,
     /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's particles are beside it for long.

@@ -38,7 +38,7 @@ pub(crate) struct Circle {
     pub(crate) normal: DVec3,
     /// Unit tangent vector V̂ towards the child.
     pub(crate) direction: DVec3,
-    /// 2r, or in adaptive sampling r_i + r_j.
+    /// Radius of the circle: 2r, or in adaptive sampling r_i + r_j.
     pub(crate) radius: f64,
 }
 

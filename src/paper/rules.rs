@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
 #[serde(rename_all = "snake_case")]
 pub enum Projection {
-    /// Along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
+    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
     Circle,
-    /// By Newton's method in space, "the most common technique", which does not keep it.
+    /// The child moves by Newton's method in space, "the most common technique", which does not keep the distance to the parent.
     Newton,
 }
 
@@ -21,9 +21,9 @@ pub enum Projection {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
 #[serde(rename_all = "snake_case")]
 pub enum SearchStart {
-    /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
+    /// The search starts in the tangent plane, θ₀ = 0, as in Fig. 4 (left).
     Tangent,
-    /// At the angle where the parent's normal curvature predicts the surface, sin θ₀ = −κ_V r.
+    /// The search starts at the angle at which the parent's normal curvature predicts the surface, sin θ₀ = −κ_V r.
     Curvature,
 }
 

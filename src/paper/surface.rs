@@ -22,11 +22,11 @@ pub struct ImplicitSurface {
 /// f and ∇f at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldSample {
-    /// f.
+    /// The value f.
     pub value: f64,
-    /// ∇f.
+    /// The gradient ∇f.
     pub gradient: DVec3,
-    /// |∇f|.
+    /// The length |∇f| of the gradient.
     pub slope: f64,
 }
 
@@ -44,9 +44,9 @@ pub struct Trial {
     pub step: u32,
     /// Angle on the circle; none in space.
     pub theta_rad: Option<f64>,
-    /// The place.
+    /// Position of the evaluation.
     pub position: DVec3,
-    /// The field there.
+    /// The field at that position.
     pub sample: FieldSample,
     /// Angles between which f changes its sign, in the bracketed search.
     pub bracket_rad: Option<[f64; 2]>,

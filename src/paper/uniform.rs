@@ -36,7 +36,7 @@ pub(crate) const RISE_SLACK: f64 = 0.5;
 const STEEPEST: f64 = 0.9;
 
 impl TangentFrame {
-    /// V̂ⁱ: direction of a child.
+    /// Direction V̂ⁱ of a child.
     pub(crate) fn direction(&self, slot: usize) -> DVec3 {
         let [cos, sin] = DIRECTIONS[slot];
         self.u * cos + self.w * sin
@@ -98,7 +98,7 @@ impl<O: Observer> PaperRun<O> {
                 if self.rules.matched == Matched::Leave {
                     neighbours.retain(|near| near.particle != other);
                 }
-            } else if let Some(added) = self.add_waiting(child(slot), (position, normal, radius))
+            } else if let Some(added) = self.add_waiting(child(slot), position, normal, radius)
                 && self.rules.matched == Matched::Stay
             {
                 neighbours.push(Nearby { particle: added, distance: position.distance(centre) });

@@ -72,7 +72,7 @@ pub enum JobError {
     /// The number of centres is not in [`CENTRES`].
     #[error("{count} centres: choose {} to {}", CENTRES.start(), CENTRES.end())]
     Centres {
-        /// The number.
+        /// Number of centres that was given.
         count: u32,
     },
 }
@@ -157,7 +157,7 @@ impl JobStatus {
         Rc::new(Self { progress: Cell::new(first.at(0.0)), centres: OnceCell::new() })
     }
 
-    /// Begins a part of the job. The answer takes the fraction of it that is done.
+    /// Begins a part of the job. Returns a function that takes the fraction of the part that is done.
     fn begin(&self, part: &'static JobPart) -> impl Fn(f64) {
         self.progress.set(part.at(0.0));
         |share| self.progress.set(part.at(share))
@@ -265,7 +265,7 @@ fn check_number(centres: u32) -> Result<(), JobError> {
     if CENTRES.contains(&centres) { Ok(()) } else { Err(JobError::Centres { count: centres }) }
 }
 
-/// From a file to a field.
+/// The work of a job for a file, from the file to a field.
 async fn of_file(
     reader: Reader,
     wanted: usize,
@@ -288,7 +288,7 @@ async fn of_file(
     of_cloud(cloud, given, wanted, info, status).await
 }
 
-/// From points with normals to a field. The distances from the surface are measured at the points `given`.
+/// The work from points with normals to a field. The distances from the surface are measured at the points `given`.
 async fn of_cloud(
     mut cloud: Cloud,
     given: Vec<DVec3>,

@@ -22,11 +22,11 @@ pub(super) struct Decomposition {
     matrix: DMatrix<f64>,
     /// Rows exchanged in each step.
     exchanges: Vec<(usize, usize)>,
-    /// ‖A‖₁.
+    /// Norm ‖A‖₁ of the matrix.
     norm: f64,
 }
 
-/// Error: a pivot is zero or not finite, so the matrix is singular.
+/// Error of a matrix that is singular: a pivot is zero or not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SingularMatrix;
 

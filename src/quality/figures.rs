@@ -30,7 +30,7 @@ pub struct Figures {
     /// Holes between the points.
     #[serde(flatten)]
     pub coverage: Coverage,
-    /// Natural neighbours of the points, and how nearly they stand in a hexagon.
+    /// Valences of the points, and their six-fold order.
     #[serde(flatten)]
     pub order: Order,
     /// Lengths of the edges between natural neighbours.
@@ -144,7 +144,7 @@ impl Default for Coverage {
     }
 }
 
-/// Natural neighbours of the points, and how nearly they stand in a hexagon.
+/// Valences of the points, and their six-fold order.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Order {

@@ -78,7 +78,7 @@ pub(super) struct LargestHoles {
 }
 
 impl LargestHoles {
-    /// Returns the larger of both.
+    /// Returns the larger of the two radii and of the two ratios.
     pub(super) fn or(self, other: Self) -> Self {
         Self { widest: self.widest.max(other.widest), relative: self.relative.max(other.relative) }
     }

@@ -100,9 +100,9 @@ pub struct Measurements {
 /// Places away from the border of a clipped surface where the triangles of natural neighbours do not close it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening {
-    /// Edges of one triangle alone.
+    /// Number of edges that belong to one triangle alone.
     pub(crate) edges: usize,
-    /// Points in no triangle.
+    /// Number of points in no triangle.
     pub(crate) points: usize,
     /// Position of one of these edges or points.
     pub(crate) position: Vec3,
@@ -172,7 +172,7 @@ pub(crate) async fn in_slices(
     }
     figures.spacing.crowded = (!points.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
-    report.places = Places { pairs: pairs.told(), holes };
+    report.places = Places { pairs: pairs.reported(), holes };
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);
     report
 }
@@ -288,8 +288,8 @@ async fn measure_neighbourhoods(
     ratios.pairs
 }
 
-/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and where they are
-/// open.
+/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and the
+/// opening of the triangles.
 async fn measure_triangles(
     prepared: &Prepared,
     inner: &[bool],
@@ -364,7 +364,7 @@ async fn measure_holes(
     let mean_sq = search.mean_sq() * (1.0 - uncovered.share) + uncovered.sum_sq;
     figures.coverage.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
     search.found.extend(uncovered.found);
-    let (wide, told) = places::distinct(search.found).await;
+    let (wide, reported) = places::distinct(search.found).await;
     figures.coverage.wide_holes = Some(wide);
-    told
+    reported
 }

@@ -9,9 +9,9 @@ pub enum Sizes<'a> {
     None,
     /// The wanted radius of each particle. If the slice is too short, particles without a radius are left out.
     Given(&'a [f32]),
-    /// Half the mean length of the particle's own edges. The figures are then small if the sizes change smoothly.
+    /// The wanted radius is half the mean length of the particle's own edges. The figures are then small if the sizes change smoothly.
     Local,
-    /// 1 / clamp(max(|κ₁|, |κ₂|), lowest, highest), with the principal curvatures of the field.
+    /// The wanted radius is 1 / clamp(max(|κ₁|, |κ₂|), lowest, highest), with the principal curvatures of the field.
     Curvature {
         /// Lower limit of the curvature, in 1/length.
         lowest: f64,

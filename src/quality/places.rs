@@ -86,15 +86,15 @@ impl Pairs {
         self.kept.truncate(MOST);
     }
 
-    /// Returns the pairs to be told.
-    pub(super) fn told(mut self) -> Vec<Pair> {
+    /// Returns the pairs to be reported.
+    pub(super) fn reported(mut self) -> Vec<Pair> {
         self.settle();
         self.kept.truncate(self.crowded.max(1));
         self.kept
     }
 }
 
-/// Returns the number of wide holes, and those to be told, from the empty discs that were found.
+/// Returns the number of wide holes, and the holes to be reported, from the empty discs that were found.
 ///
 /// Several empty discs may show one hole: where the middle of one disc lies in another, only the one with the larger ratio of its
 /// radius to the ideal one counts.
@@ -136,9 +136,9 @@ mod tests {
             pairs.add(ratio, k as u32 + 10, k as u32);
         }
         assert_eq!(pairs.crowded, 3);
-        let told = pairs.told();
-        assert_eq!(told.iter().map(|pair| pair.ratio).collect::<Vec<_>>(), [0.5, 0.7, 0.74]);
-        assert_eq!(told[0].particles, [4, 14]);
+        let reported = pairs.reported();
+        assert_eq!(reported.iter().map(|pair| pair.ratio).collect::<Vec<_>>(), [0.5, 0.7, 0.74]);
+        assert_eq!(reported[0].particles, [4, 14]);
     }
 
     #[test]
@@ -148,25 +148,25 @@ mod tests {
             pairs.add(f64::from(k) / 2000.0, k, k + 1);
         }
         assert_eq!(pairs.crowded, 1500);
-        let told = pairs.told();
-        assert_eq!(told.len(), MOST);
-        assert!(told.iter().enumerate().all(|(k, pair)| pair.particles[0] == k as u32));
+        let reported = pairs.reported();
+        assert_eq!(reported.len(), MOST);
+        assert!(reported.iter().enumerate().all(|(k, pair)| pair.particles[0] == k as u32));
     }
 
     #[test]
     fn without_a_crowded_pair_the_closest_is_told() {
         let mut pairs = Pairs::default();
         [0.9, 0.85, 0.95].iter().for_each(|&ratio| pairs.add(ratio, 1, 2));
-        assert_eq!((pairs.crowded, pairs.told()), (0, vec![Pair { particles: [1, 2], ratio: 0.85 }]));
-        assert!(Pairs::default().told().is_empty());
+        assert_eq!((pairs.crowded, pairs.reported()), (0, vec![Pair { particles: [1, 2], ratio: 0.85 }]));
+        assert!(Pairs::default().reported().is_empty());
     }
 
     #[test]
     fn discs_in_one_hole_are_one_hole() {
         // The first two overlap, the third lies apart, and the last is not wide.
         let found = vec![hole(0.0, 1.5), hole(1.0, 1.6), hole(5.0, 1.45), hole(9.0, 1.3)];
-        let (wide, told) = complete(distinct(found));
-        assert_eq!((wide, told), (2, vec![hole(1.0, 1.6), hole(5.0, 1.45)]));
+        let (wide, reported) = complete(distinct(found));
+        assert_eq!((wide, reported), (2, vec![hole(1.0, 1.6), hole(5.0, 1.45)]));
         assert_eq!(complete(distinct(vec![hole(0.0, 1.1)])), (0, vec![hole(0.0, 1.1)]));
         assert_eq!(complete(distinct(Vec::new())), (0, Vec::new()));
     }

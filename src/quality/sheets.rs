@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-6;
 /// d³/3000 times the change of the curvature, which must be less than the distance to another sheet.
 const STEPS: u32 = 8;
 
-/// The points, in tree order, with what tells their sheets.
+/// The points, in tree order, with the normals and heights that tell sheets apart.
 pub(super) struct Sheets<'a> {
     pub(super) tree: &'a Tree,
     /// Unit normals.

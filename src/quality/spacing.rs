@@ -19,7 +19,7 @@ pub struct Histogram {
     pub min: f64,
     /// Upper end of the last bin.
     pub max: f64,
-    /// Counts.
+    /// Number of distances in each bin.
     pub bins: Vec<u32>,
 }
 

@@ -8,17 +8,27 @@ pub const CHUNK: u32 = 1 << 18;
 /// Most records of one kind: more than the particles that a run may place.
 pub const MOST_RECORDS: u32 = 18 * CHUNK;
 
-/// Splits records `first..first + count` at chunk borders. Each item is a chunk, the first record within it, and
-/// the range relative to `first`.
-pub fn split_at_chunks(first: u32, count: u32) -> impl Iterator<Item = (usize, u32, Range<usize>)> {
+/// Consecutive records within one chunk.
+pub struct ChunkSpan {
+    /// Number of the chunk.
+    pub chunk: usize,
+    /// Index within the chunk of the first of these records.
+    pub start: u32,
+    /// These records, counted from the first record that is split.
+    pub records: Range<usize>,
+}
+
+/// Splits records `first..first + count` at chunk borders.
+pub fn split_at_chunks(first: u32, count: u32) -> impl Iterator<Item = ChunkSpan> {
     let end = first + count;
     let mut at = first;
     core::iter::from_fn(move || {
         (at < end).then(|| {
             let stop = end.min((at / CHUNK + 1) * CHUNK);
-            let item = ((at / CHUNK) as usize, at % CHUNK, (at - first) as usize..(stop - first) as usize);
+            let records = (at - first) as usize..(stop - first) as usize;
+            let span = ChunkSpan { chunk: (at / CHUNK) as usize, start: at % CHUNK, records };
             at = stop;
-            item
+            span
         })
     })
 }
@@ -32,11 +42,11 @@ mod tests {
         for (first, count) in [(0, 0), (0, 1), (5, CHUNK), (CHUNK - 1, 2), (3 * CHUNK, CHUNK), (7, 3 * CHUNK)]
         {
             let mut next = 0;
-            for (chunk, local, span) in split_at_chunks(first, count) {
-                assert_eq!(span.start, next);
-                assert_eq!(chunk as u32 * CHUNK + local, first + span.start as u32);
-                assert!(!span.is_empty() && local + span.len() as u32 <= CHUNK);
-                next = span.end;
+            for ChunkSpan { chunk, start, records } in split_at_chunks(first, count) {
+                assert_eq!(records.start, next);
+                assert_eq!(chunk as u32 * CHUNK + start, first + records.start as u32);
+                assert!(!records.is_empty() && start + records.len() as u32 <= CHUNK);
+                next = records.end;
             }
             assert_eq!(next, count as usize, "first {first}");
         }

@@ -1,4 +1,4 @@
-//! The graphics device, and what is known of its health.
+//! The graphics device, and the report of its loss.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,7 +45,7 @@ pub(super) struct Gpu {
 }
 
 impl Gpu {
-    /// Opens a device that can draw on `surface`; with the adapter that provides it.
+    /// Opens a device that can draw on `surface`. Returns it with the adapter that provides it.
     pub(super) async fn open(
         instance: &wgpu::Instance,
         surface: &wgpu::Surface<'_>,

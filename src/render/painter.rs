@@ -12,9 +12,9 @@ const FACE_SAMPLES: u32 = 4;
 pub(super) struct Painter {
     format: wgpu::TextureFormat,
     frame: FrameBinding,
-    /// For pictures of discs alone.
+    /// Pipelines for pictures of discs alone.
     discs: Pipelines,
-    /// For pictures with faces, from the first one on.
+    /// Pipelines for pictures with faces, made for the first one.
     faces: Option<Pipelines>,
     /// Buffers of the canvas, kept between pictures.
     buffers: Option<Buffers>,
@@ -33,7 +33,7 @@ struct Buffers {
 /// Contents of a picture.
 pub(super) struct Scene<'a> {
     pub(super) particles: &'a Store,
-    /// Particles `0..count` are there.
+    /// Number of particles.
     pub(super) count: u32,
     pub(super) faces: Option<Faces<'a>>,
     /// Index of a particle that is marked by a ring.
@@ -51,7 +51,7 @@ pub(super) struct Scene<'a> {
 pub(super) struct Faces<'a> {
     pub(super) store: &'a Store,
     pub(super) count: u32,
-    /// Number of particles that they stand for. Only those after them are drawn as discs, except above a ghost.
+    /// Number of particles that the faces stand for. Only the particles after these are drawn as discs, except above a ghost.
     pub(super) particles: u32,
     pub(super) is_ghost: bool,
 }

@@ -37,6 +37,8 @@ pub struct Columns<'a> {
 }
 
 impl Columns<'_> {
+    /// The records of the particles, which begin to appear at `birth`.
+    ///
     /// # Panics
     ///
     /// If the columns differ in length.

@@ -1,6 +1,6 @@
 //! Sources of the shaders.
 
-/// A shader: the text common to all, and its own.
+/// A shader: the text that all shaders share, and that of its own file.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
     /// File name in `shaders/`.

@@ -1,6 +1,6 @@
 //! Records on the GPU, in chunks of instance buffers that grow and keep their content.
 
-use super::chunks::{CHUNK, MOST_RECORDS, split_at_chunks};
+use super::chunks::{CHUNK, ChunkSpan, MOST_RECORDS, split_at_chunks};
 use core::ops::Range;
 
 /// Initial capacity of the first chunk.
@@ -45,24 +45,24 @@ impl Store {
     pub(super) fn write(&self, queue: &wgpu::Queue, part: Part, first: u32, bytes: &[u8]) {
         let stride = self.strides[part as usize];
         let count = (bytes.len() as u64 / stride) as u32;
-        for (chunk, local, span) in split_at_chunks(first, count) {
+        for ChunkSpan { chunk, start, records } in split_at_chunks(first, count) {
             let Some(chunk) = self.chunks.get(chunk) else { break };
-            let room = chunk.capacity.saturating_sub(local) as usize;
-            let span = span.start..span.end.min(span.start + room);
-            let bytes = &bytes[span.start * stride as usize..span.end * stride as usize];
-            queue.write_buffer(&chunk.buffers[part as usize], u64::from(local) * stride, bytes);
+            let room = chunk.capacity.saturating_sub(start) as usize;
+            let end = records.end.min(records.start + room);
+            let bytes = &bytes[records.start * stride as usize..end * stride as usize];
+            queue.write_buffer(&chunk.buffers[part as usize], u64::from(start) * stride, bytes);
         }
     }
 
     /// Slices of the vertex buffers for the records `range`, in order.
     pub(super) fn runs(&self, range: Range<u32>) -> impl Iterator<Item = RecordRun<'_>> {
         split_at_chunks(range.start, range.end.saturating_sub(range.start)).filter_map(
-            |(chunk, local, span)| {
+            |ChunkSpan { chunk, start, records }| {
                 let chunk = self.chunks.get(chunk)?;
-                let count = (span.len() as u32).min(chunk.capacity.saturating_sub(local));
+                let count = (records.len() as u32).min(chunk.capacity.saturating_sub(start));
                 let slice = |part: Part| {
                     let stride = self.strides[part as usize];
-                    let bytes = u64::from(local) * stride..u64::from(local + count) * stride;
+                    let bytes = u64::from(start) * stride..u64::from(start + count) * stride;
                     chunk.buffers[part as usize].slice(bytes)
                 };
                 (count > 0)

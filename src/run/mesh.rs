@@ -18,16 +18,16 @@ const ROWS: usize = 1_000;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshAnswer {
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
     /// Connected components, in the order of their first particles.
     pub components: Vec<MeshComponent>,
-    /// Border loops where the surface ends. The page shows the open edges.
+    /// Number of border loops where the surface ends. The page shows the open edges.
     #[serde(skip)]
     pub borders: usize,
-    /// Border loops where no manifold could be had, other than those where the surface ends.
+    /// Number of border loops where no manifold could be had, other than those where the surface ends.
     pub unfilled: usize,
-    /// Particles in no triangle.
+    /// Number of particles in no triangle.
     pub left_out: usize,
 }
 
@@ -35,11 +35,11 @@ pub struct MeshAnswer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshComponent {
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: u32,
-    /// Vertices − edges + triangles: 2 − 2g for a closed surface of genus g.
+    /// Euler number, vertices − edges + triangles: 2 − 2g for a closed surface of genus g.
     pub euler: i64,
-    /// Edges with one triangle.
+    /// Number of edges with one triangle.
     pub open_edges: u32,
 }
 
@@ -52,12 +52,12 @@ pub(super) struct Meshing {
 
 #[derive(Default)]
 enum MeshState {
-    /// Nobody has asked for it since the particles have changed.
+    /// The mesh was not asked for since the particles have changed.
     #[default]
     None,
-    /// Under way.
+    /// The particles are being joined.
     Joining(Work<Triangulation>),
-    /// Complete.
+    /// The mesh is complete.
     Joined(Triangulation),
 }
 
@@ -83,7 +83,7 @@ impl Meshing {
 /// A mesh file that is being written.
 struct File {
     format: MeshFormat,
-    /// Rows that are written.
+    /// Number of rows that are written.
     next: usize,
     bytes: Vec<u8>,
 }

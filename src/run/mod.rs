@@ -296,7 +296,7 @@ impl<F: Field> Run<F> {
         &self.field
     }
 
-    /// The field again, at the end.
+    /// Ends the run and returns the field.
     #[must_use]
     pub fn into_field(self) -> F {
         self.field
@@ -318,7 +318,7 @@ impl<F: Field> Run<F> {
         curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
-    /// Columns of the last report, a value of each kind for every particle.
+    /// The measurements of the last report, in columns with a value for each particle.
     #[must_use]
     pub fn measured(&self) -> &quality::Measurements {
         &self.measuring.measured

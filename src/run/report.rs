@@ -1,4 +1,4 @@
-//! The report of a run: what the sampler counted and what was measured of the particles, before and after the relaxation.
+//! The report of a run: the counts of the sampler, and the measurements of the particles before and after the relaxation.
 
 use super::measuring::{Measured, MeasuringInput, ParticleCopy};
 use super::{Run, Warning};
@@ -112,9 +112,9 @@ pub struct Proof {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Measures {
-    /// Quality now; none without particles.
+    /// Quality of the present particles; none if there are none.
     pub quality: Option<Figures>,
-    /// Quality after the front, before the relaxation; none where nothing was relaxed.
+    /// Quality of the particles after the front, before the relaxation; none where nothing was relaxed.
     pub quality_before: Option<Figures>,
     /// Nearest-neighbour distances.
     pub nearest_histogram: Histogram,
@@ -153,7 +153,7 @@ impl<F: Field> Run<F> {
         Some(self.take(measured))
     }
 
-    /// Keeps what was measured, and reports.
+    /// Keeps the measurements and returns the report.
     fn take(&mut self, Measured { front, now, facing }: Measured) -> Report {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
@@ -198,7 +198,7 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Why particles lie at the border, if some do.
+    /// The reason why particles lie at the border of the box, if some do.
     fn cut(&self) -> Option<Cut> {
         match self.reach {
             // Particles that are large against the surface may have a child outside of a box that holds it.

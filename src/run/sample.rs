@@ -1,4 +1,4 @@
-//! The whole job in one call, and what it leads to.
+//! The whole job in one call, and its result.
 
 use super::mesh::Meshing;
 use super::{Error, Report, Run};

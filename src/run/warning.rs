@@ -24,7 +24,7 @@ pub enum Warning {
     Limit {
         /// Number of particles to expect.
         predicted: u64,
-        /// [`Settings::max_particles`](crate::sampler::Settings::max_particles).
+        /// The limit, [`Settings::max_particles`](crate::sampler::Settings::max_particles).
         limit: u32,
     },
     /// f touches zero without changing its sign.
@@ -45,7 +45,7 @@ pub enum Warning {
     Count {
         /// Number of particles.
         count: usize,
-        /// Wanted number.
+        /// Wanted number of particles.
         wanted: u32,
     },
     /// A refinement was asked for, and the front stands.
@@ -59,7 +59,7 @@ pub enum Warning {
     },
     /// Particles face another sheet within their diameter.
     CloseSheets {
-        /// Number of such particles.
+        /// Number of these particles.
         count: usize,
     },
     /// The run was ended because too many seeds stayed alone beside other particles.
@@ -74,7 +74,7 @@ pub enum Warning {
     },
     /// Components of the surface hold no particle.
     WithoutParticle {
-        /// The components; there is at least one.
+        /// The components without a particle, at least one.
         components: Vec<Unsampled>,
         /// Radius of the run.
         length: f64,
@@ -94,7 +94,7 @@ pub enum Warning {
     },
     /// It is not proven that every component has been found.
     Unproven {
-        /// Why; its place is in the coordinates of the field.
+        /// The reason. Its position is in the coordinates of the field.
         doubt: Doubt,
         /// Radius of the run.
         length: f64,

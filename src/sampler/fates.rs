@@ -2,7 +2,7 @@
 
 use crate::particles::SlotFate;
 
-/// Fates of children, counted.
+/// Number of children with each fate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FateCounts {
@@ -10,13 +10,13 @@ pub struct FateCounts {
     pub added: u64,
     /// Slots where an existing particle sits.
     pub matched: u64,
-    /// No surface met on the circle.
+    /// Children that met no surface on the circle.
     pub not_converged: u64,
-    /// Outside the clip box.
+    /// Children outside the clip box.
     pub outside: u64,
-    /// No value or no gradient.
+    /// Children at places where the field has no value or no gradient.
     pub undefined: u64,
-    /// Not placed because the limit on particles was reached.
+    /// Children that were not placed because the limit on particles was reached.
     pub capped: u64,
 }
 

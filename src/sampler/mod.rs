@@ -62,7 +62,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
     }
 }
 
-/// Samples one surface at a time.
+/// A sampler, which covers one surface at a time with particles.
 #[derive(Clone, Default)]
 pub struct Sampler {
     settings: Settings,
@@ -108,8 +108,8 @@ impl Sampler {
         Self::default()
     }
 
-    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. What a
-    /// coarse front has placed beyond the box is not among them.
+    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. Those
+    /// that a coarse front has placed beyond the box are not among them.
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.output.inside.as_ref().unwrap_or(&self.output.particles)
@@ -150,7 +150,7 @@ impl Sampler {
         if self.doubts().is_empty() { Search::Proven } else { Search::Searched }
     }
 
-    /// Why that is not proven; nothing where it is.
+    /// The doubts that are left about the components; empty where everything is proven.
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
         self.components.doubts(self.survey.nearness, self.least_gap())

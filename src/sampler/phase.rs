@@ -94,7 +94,7 @@ pub(super) enum PhaseState {
 }
 
 impl PhaseState {
-    /// The name that the phase has outside.
+    /// The public name of the phase.
     pub(super) fn name(&self) -> Phase {
         match self {
             Self::Idle => Phase::Idle,

@@ -15,7 +15,7 @@ const RELAXATION_STEP_COST: f64 = 0.25;
 pub struct Forecast {
     /// Repulsion radius of the run.
     pub radius: f64,
-    /// Particles to expect.
+    /// Number of particles to expect.
     pub predicted_count: u64,
     /// Estimated area of the surface in the box.
     pub area: f64,
@@ -53,7 +53,7 @@ pub struct Progress {
     pub moved: bool,
 }
 
-/// Evaluations by phase, and what became of the children.
+/// Counts of a run: evaluations by phase, and fates of the children.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Counts {
     /// Evaluations of the survey, of the radius field, of the tests whether seeds are covered, and of the audit.

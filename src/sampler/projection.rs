@@ -39,7 +39,7 @@ pub(crate) struct ChildCircle {
     pub(crate) normal: Vec3,
     /// Unit tangent direction V̂ of the slot.
     pub(crate) direction: Vec3,
-    /// Parent–child distance 2r.
+    /// Distance 2r between parent and child.
     pub(crate) radius: f32,
     /// cos θ and sin θ of the guess.
     pub(crate) guess: [f32; 2],
@@ -312,7 +312,7 @@ impl Probe<'_> {
         None
     }
 
-    /// [`descend`], counted.
+    /// Calls [`descend`] and counts its evaluations.
     pub(crate) fn land_along_gradient(
         &mut self,
         points: &mut [Vec3],

@@ -218,7 +218,7 @@ impl Sampler {
         !holds_any(field, &self.output.particles, seed, reach, others, slack)
     }
 
-    /// Calls a method of the front with what it works on.
+    /// Calls a method of the front with its context.
     fn with_front<R>(
         &mut self,
         probe: &mut Probe,

@@ -20,9 +20,9 @@ pub enum Sampling {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeMode {
-    /// By [`Settings::radius_share`], or by the radius law of adaptive sampling.
+    /// The size is given by [`Settings::radius_share`], or by the radius law of adaptive sampling.
     Radius,
-    /// By [`Settings::count`].
+    /// The size follows from the wanted number of particles, [`Settings::count`].
     Count,
 }
 
@@ -30,11 +30,11 @@ pub enum SizeMode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
-    /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
+    /// The largest radius at which every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
     ChordError,
-    /// [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
+    /// The radius is [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
     MaxCurvature,
-    /// [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
+    /// The radius is [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
     SumOfCurvatures,
 }
 
@@ -52,7 +52,7 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GapPolicy {
-    /// A particle is placed in the middle.
+    /// A particle is placed in the middle of each gap.
     Fill,
     /// The gaps stay, as in the paper.
     Leave,
@@ -105,7 +105,7 @@ pub struct Settings {
     pub match_tolerance: f64,
     /// Treatment of gaps where fronts meet.
     pub gaps: GapPolicy,
-    /// Chooses the point on the surface where the front begins.
+    /// Seed of the random choice of the point where the front begins.
     pub seed: u64,
     /// The run stops when it has placed this many. A wanted count up to it may be missed upwards like any other.
     pub max_particles: u32,

@@ -35,12 +35,12 @@ pub(crate) struct OrientedPoint {
 }
 
 impl OrientedPoint {
-    /// Particle `i`.
+    /// The position and normal of particle `i`.
     pub(crate) fn of(particles: &Particles, i: usize) -> Self {
         Self { position: particles.position[i], normal: particles.normal[i] }
     }
 
-    /// This point and one at `offset` from it with the unit normal `other`.
+    /// The pair of this point and one at `offset` from it with the unit normal `other`.
     pub(crate) fn pair(self, offset: Vec3, other: Vec3) -> PointPair {
         PointPair { offset, normal: self.normal, other }
     }

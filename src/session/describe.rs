@@ -84,11 +84,11 @@ pub struct SurfaceEntry {
     pub degree: Option<u32>,
     /// Genus, where the surface is closed, connected and smooth.
     pub genus: Option<u32>,
-    /// Two sentences about it.
+    /// Two sentences about the surface.
     pub story: &'static str,
-    /// A text to read on.
+    /// Reference to a text about the surface.
     pub source: &'static str,
-    /// Name of its group in the gallery.
+    /// Name of the group of the surface in the gallery.
     pub group: &'static str,
 }
 

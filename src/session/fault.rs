@@ -16,11 +16,11 @@ pub enum FaultKind {
     Settings,
     /// A run would have more particles than the limit allows, see [`Fault::excess`].
     TooMany,
-    /// No surface of that name.
+    /// There is no surface of that name.
     UnknownSurface,
-    /// The clip box is not one.
+    /// The clip box is not valid.
     Box,
-    /// The points make no field.
+    /// The centres and coefficients do not describe a field.
     Points,
     /// The formula has this mistake.
     #[serde(untagged)]

@@ -82,13 +82,13 @@ pub enum FieldError {
     /// The formula has a mistake.
     #[error(transparent)]
     Formula(#[from] FormulaError),
-    /// No surface of that name.
+    /// There is no surface of that name.
     #[error("there is no surface `{0}` in the gallery")]
     UnknownSurface(String),
-    /// The box is not one.
+    /// The box is not valid.
     #[error("the box {}", Bounds::REQUIREMENT)]
     Box,
-    /// The centres and coefficients make no field.
+    /// The centres and coefficients do not describe a field.
     #[error(transparent)]
     Points(#[from] DataError),
 }
@@ -97,9 +97,9 @@ pub enum FieldError {
 #[derive(Clone)]
 #[expect(clippy::large_enum_variant, reason = "there is one in a session")]
 pub enum Source {
-    /// A formula's.
+    /// The field of a formula.
     Formula(Formula),
-    /// That of a model from points.
+    /// The field of a model from points.
     Points {
         /// The field.
         field: RbfField,
@@ -168,7 +168,7 @@ impl Session {
         self.run.field()
     }
 
-    /// The field as it is.
+    /// The description of the present field.
     #[must_use]
     pub fn answer(&self) -> FieldAnswer {
         match self.source() {
@@ -377,7 +377,7 @@ impl Session {
         Some(report)
     }
 
-    /// [`Session::measure`] to its end.
+    /// Calls [`Session::measure`] until the report is complete.
     pub fn report(&mut self) -> Report {
         loop {
             if let Some(report) = self.measure(u32::MAX) {

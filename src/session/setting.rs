@@ -39,25 +39,25 @@ pub struct Setting {
     pub choices: &'static [Choice],
     /// The setting has an effect, and is shown, while all of these hold; always if there is none.
     pub when: &'static [Condition],
-    /// The value of some settings.
+    /// Reads the value of this setting.
     #[serde(skip)]
     read: fn(&Settings) -> Value,
 }
 
 impl Setting {
-    /// The values of a number that are accepted.
+    /// Range of the values that are accepted, for a setting that is a number.
     #[must_use]
     pub fn accepted(&self) -> RangeInclusive<f64> {
         self.min..=self.accepted_max
     }
 
-    /// Whether it is a share of the diagonal of the box.
+    /// Whether the setting is a share of the diagonal of the box.
     #[must_use]
     pub fn is_share(&self) -> bool {
         self.unit == "%"
     }
 
-    /// Whether it has an effect only while another setting has this value.
+    /// Whether the setting has an effect only while another setting has this value.
     #[must_use]
     pub fn needs(&self, name: &str, value: &str) -> bool {
         self.when

@@ -66,7 +66,7 @@ fn points(system: &[u8]) -> Result<Box<dyn Field>, Fault> {
 
 #[wasm_bindgen]
 impl Lesson {
-    /// Nothing begun.
+    /// A lesson without a run.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();

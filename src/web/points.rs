@@ -15,7 +15,7 @@ const TYPES: &str = r"import type {
   SolvedModel,
 } from '../../engine/core-types.js';";
 
-/// From a built-in model or a file to a field. Answers are plain objects.
+/// Solver that makes a field from a built-in model or a file of points. Answers are plain objects.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Points {
@@ -24,7 +24,7 @@ pub struct Points {
 
 #[wasm_bindgen]
 impl Points {
-    /// Nothing begun.
+    /// A solver without a job.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         console_error_panic_hook::set_once();

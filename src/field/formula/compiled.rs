@@ -28,7 +28,7 @@ pub(super) struct Compiled {
     /// The nodes that f needs, and those that f and ∇f need, in the order of the graph.
     value_nodes: Vec<Id>,
     gradient_nodes: Vec<Id>,
-    /// Empty until it is compiled.
+    /// Programs for the factors of f; empty until they are compiled.
     factors: Vec<interval::FactorProgram>,
 }
 

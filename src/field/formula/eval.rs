@@ -82,7 +82,7 @@ fn load(register: &mut [Lanes], points: &[Vec3], axis: usize) {
     }
 }
 
-/// The register file in cells, since the result of an instruction may be one of its operands.
+/// The register file as cells, since the result of an instruction may replace one of its operands.
 struct RegisterCells<'a> {
     cells: &'a [Cell<Lanes>],
     /// Distance between registers in the file.

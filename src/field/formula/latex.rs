@@ -5,15 +5,15 @@ use super::token::{Bar, Token};
 /// The meaning of a LaTeX command.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum LatexCommand {
-    /// Nothing: a space, or how large a thing is set.
+    /// No meaning: a space, or the size of what follows.
     Nothing,
-    /// Nothing, but that it makes a `|` after it one that opens or closes.
+    /// No meaning of its own. A `|` after it opens or closes, as the bar says.
     Side(Bar),
-    /// A name in braces follows.
+    /// The beginning of a name in braces.
     Word,
     /// The sign of an inequality.
     Comparison(char),
-    /// This token.
+    /// A token of the formula language.
     Token(Token),
 }
 

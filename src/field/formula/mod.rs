@@ -90,8 +90,8 @@ pub struct Parameter {
     pub step: f64,
 }
 
-/// The names that parameters may have, as a regular expression of JavaScript. Those of coordinates, constants and functions are
-/// refused all the same.
+/// The names that parameters may have, as a regular expression of JavaScript. Names of coordinates, constants and functions match
+/// it, and are refused all the same.
 #[must_use]
 pub fn name_pattern() -> String {
     lex::name_pattern()
@@ -143,7 +143,7 @@ pub struct Formula {
     doubles: Vec<f64>,
     /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
     double: Option<f64>,
-    /// See [`Field::origin`].
+    /// The point from which positions are counted, [`Field::origin`].
     origin: DVec3,
     /// Scratch memory for boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,

@@ -22,7 +22,7 @@ enum Along {
     Other,
 }
 
-/// The length after which f comes again along an axis: 0 if it does not change along it, none if it is not known to come again.
+/// The period of f along an axis: 0 if f does not change along it, none if f is not known to be periodic.
 pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
     let walk = Walk { axis, parameter };
     let left = walk.along(&equation.left);
@@ -134,7 +134,7 @@ fn joined(a: Along, b: Along) -> Along {
     }
 }
 
-/// The least common multiple of two periods.
+/// The least common multiple of two periods, if it is at most [`MOST_PERIODS`] times each.
 fn common(a: f64, b: f64) -> Option<f64> {
     (1..=MOST_PERIODS).find_map(|n| {
         let whole = f64::from(n) * a;

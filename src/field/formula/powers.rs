@@ -74,9 +74,9 @@ fn is_pole(relation: Factor, factor: &Expr) -> bool {
 /// Lower bound of an expression.
 #[derive(Clone, Copy, PartialEq)]
 enum LowerBound {
-    /// At least 0.
+    /// The expression is at least 0.
     Zero,
-    /// More than 0.
+    /// The expression is more than 0.
     Positive,
 }
 

@@ -3,11 +3,11 @@
 /// The last use of a value that is a result of the program.
 const NEVER: usize = usize::MAX;
 
-/// Registers for the values of a straight-line program, whose steps are asked about in their order.
+/// Allocator of registers for the values of a straight-line program, whose steps are handled in their order.
 pub(super) struct RegisterAllocator {
-    /// For each value the step that uses it last, 0 for none.
+    /// Last step that uses each value, 0 for none.
     last_use: Vec<usize>,
-    /// For each value its register.
+    /// Register of each value.
     of: Vec<u32>,
     free: Vec<u32>,
     count: u32,

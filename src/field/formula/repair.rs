@@ -6,8 +6,8 @@ use super::{MAX_FORMULA_BYTES, syntax};
 /// Largest number of places that one repair corrects. It bounds the work of a repair.
 const MOST_PLACES: usize = 256;
 
-/// The error with all of its kind corrected, if there are several: each suggestion is taken until none follows, or a mistake of
-/// another kind.
+/// The error, with the formula in which all mistakes of its kind are corrected, if there are several: each suggestion is taken until
+/// none follows, or a mistake of another kind.
 pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> FormulaError {
     let mut mended = text.to_owned();
     let mut places = 0;
@@ -31,7 +31,7 @@ fn correction(error: &FormulaError) -> Option<&str> {
     error.suggestion.as_deref().filter(|suggestion| !suggestion.contains('…'))
 }
 
-/// Whether both are told in the same words, but for numbers and what is quoted.
+/// Whether two errors have the same kind, and the same message but for numbers and quoted text.
 fn is_same_kind(a: &FormulaError, b: &FormulaError) -> bool {
     let words = |error: &FormulaError| -> String {
         let unquoted = error.message.split('`').step_by(2).flat_map(str::chars);

@@ -1,4 +1,4 @@
-//! Other surfaces that go on beyond the box.
+//! Surfaces that go on beyond the box, other than those that repeat.
 
 use super::{Surface, parameter};
 use crate::math::Bounds;

@@ -14,11 +14,11 @@ const LEAST_DISTANCE: f32 = 1e-12;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
     place: [Lanes; 3],
-    /// α.
+    /// Coefficients α.
     alpha: Lanes,
-    /// 3 α.
+    /// Coefficients 3 α.
     alpha3: Lanes,
-    /// 3 β.
+    /// Coefficients 3 β.
     beta: [Lanes; 3],
 }
 

@@ -22,7 +22,7 @@ pub(super) struct BallPoints {
     index: Vec<u32>,
     /// Positions, by coordinate; the last ones are infinitely far away.
     place: Vec<[[f32; LANES]; 3]>,
-    /// Position and normal of each.
+    /// Position and normal of each point.
     point: Vec<[f32; 6]>,
 }
 
@@ -53,7 +53,7 @@ fn four(row: &PerPoint, block: usize) -> Vec4 {
     Vec4::from_array(row.as_chunks().0[block])
 }
 
-/// Points round a centre, four by four. Those that are not on its sheet lie at the centre, infinitely far away.
+/// Points round a centre, four by four. Points on another sheet lie at the centre, infinitely far away.
 pub(super) struct Ball {
     /// Number of points.
     count: usize,

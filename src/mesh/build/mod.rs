@@ -1,4 +1,4 @@
-//! From any set of points with normals to triangles that form one oriented manifold, closed or with border.
+//! Triangulation of any set of points with normals to one oriented manifold, closed or with border.
 //!
 //! 1. *Stars.* The natural neighbours of every point are found in its tangent plane, among the points of the same sheet.
 //! 2. *Agreement.* A triangle on which the stars of its three corners agree is kept. Every directed edge then belongs to one
@@ -49,7 +49,7 @@ impl Default for MeshOptions<'_> {
     }
 }
 
-/// Triangles over points, and what is known of them.
+/// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
     /// Triples of the indices of points, counter-clockwise round their normals. They form an oriented manifold: every edge

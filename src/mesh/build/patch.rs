@@ -20,7 +20,7 @@ pub(super) struct Patch<'a> {
     triangles: Vec<[u32; 3]>,
     /// The triangle of each entry of a star with the next entry.
     of_entry: Vec<u32>,
-    /// The number of a vertex's own list.
+    /// Number of the list of each vertex that has one of its own.
     list_of: Vec<u32>,
     lists: Vec<Vec<u32>>,
     /// The vertices with lists, in the order of the lists.

@@ -1,4 +1,4 @@
-//! From a list of triangles to half-edges.
+//! Construction of half-edges from a list of triangles.
 
 use super::{HalfEdges, NONE, next};
 

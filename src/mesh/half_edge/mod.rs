@@ -1,4 +1,4 @@
-//! A triangle surface as half-edges: who is next to whom, and the operations that change it.
+//! A triangle surface as half-edges: its connectivity, and the operations that change it.
 //!
 //! Face `f` has the half-edges `3f`, `3f + 1` and `3f + 2`, counter-clockwise seen from outside, so that the next and the
 //! previous one follow from the number alone. What is stored is where each half-edge begins, its twin in the face on the

@@ -1,17 +1,17 @@
-//! Every face into four, with a new vertex on the middle of every edge.
+//! Subdivision of every face into four, with a new vertex on the middle of every edge.
 
 use super::{HalfEdges, NONE, next};
 
 /// The stages of a subdivision, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Make room for what follows.
+    /// Make room for the finer surface.
     Room,
     /// Number the vertices of the finer surface.
     Vertices,
-    /// Write its faces.
+    /// Write the faces of the finer surface.
     Faces,
-    /// Nothing.
+    /// The subdivision is complete.
     Done,
 }
 
@@ -119,7 +119,7 @@ impl Subdivision {
     ///
     /// # Panics
     ///
-    /// If there is something left to do.
+    /// If the subdivision is not complete.
     #[must_use]
     pub fn finish(self) -> (HalfEdges, Vec<[u32; 2]>) {
         assert!(self.stage == Stage::Done, "the subdivision is not at its end");

@@ -54,7 +54,7 @@ impl ScalarType {
     }
 }
 
-/// Use that is made of a property.
+/// Role of a property for the reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     /// The property is skipped.

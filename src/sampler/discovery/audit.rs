@@ -45,14 +45,14 @@ struct NearParticle {
 pub(crate) struct Audit {
     /// The particles nearest to each witness, nearest first.
     near: Vec<Vec<NearParticle>>,
-    /// Next particle, then next witness.
+    /// Index of the next particle while particles are handed out, then of the next witness.
     next: usize,
     /// Whether all particles have been handed out.
     is_scanned: bool,
     is_done: bool,
     /// Number of witnesses that are neither proven to be on the component of a particle nor named.
     pub(crate) open: u64,
-    /// The first of them.
+    /// The first witness that is neither proven to be on the component of a particle nor named.
     pub(crate) first_open: DVec3,
     /// Components without a particle, each by its first witness.
     pub(crate) without: Vec<Unsampled>,
@@ -226,7 +226,7 @@ fn on_factor(
 pub(crate) struct Piece {
     /// Largest distance from the point.
     pub(crate) reach: f64,
-    /// Whether it goes on beyond the distance to which it was followed.
+    /// Whether the part of the surface goes on beyond the distance to which it was followed.
     pub(crate) goes_on: bool,
 }
 

@@ -18,7 +18,7 @@ pub enum Search {
     /// Interval arithmetic proves that there is a witness on every component, and that each witness is on the component of a
     /// particle or named among the [`Unsampled`].
     Proven,
-    /// By looking at the nodes of a grid, which can miss a component smaller than its cells; or the proof left cells or witnesses
+    /// The nodes of a grid were looked at, which can miss a component smaller than its cells; or the proof left cells or witnesses
     /// open.
     #[default]
     Searched,
@@ -60,9 +60,9 @@ pub enum Doubt {
     Unfinished,
     /// Two sheets are so near each other that single precision may hold them at one place.
     Unresolved {
-        /// A point of one of them.
+        /// A point of one of the sheets.
         position: [f64; 3],
-        /// Distance of the other one from it.
+        /// Distance from that point to the other sheet.
         gap: f64,
         /// Least distance at which sheets are told apart here.
         least: f64,
@@ -71,16 +71,16 @@ pub enum Doubt {
     Cells {
         /// Number of cells.
         count: u64,
-        /// Middle of the first.
+        /// Middle of the first undecided cell.
         position: [f64; 3],
-        /// Length of its longest side.
+        /// Length of the longest side of that cell.
         size: f64,
     },
     /// There are witnesses of which it could not be proven whether a particle lies on their component.
     Witnesses {
         /// Number of witnesses.
         count: u64,
-        /// The first of them.
+        /// Position of the first of these witnesses.
         position: [f64; 3],
     },
 }

@@ -118,7 +118,7 @@ pub(crate) struct Seed {
     pub(crate) normal: Vec3,
     /// The witness itself.
     pub(crate) exact: DVec3,
-    /// The factor of the field that vanishes there.
+    /// The factor of the field that vanishes at the witness.
     pub(crate) factor: usize,
 }
 
@@ -146,7 +146,7 @@ pub(crate) struct Octree {
     batch: CellBatch,
     /// Points where f and its gradient vanish; of curves of them a selection.
     pub(crate) singular: Vec<Singular>,
-    /// At least one on every component of the surface.
+    /// Witnesses, at least one on every component of the surface.
     pub(crate) witnesses: Vec<Witness>,
     /// The cells left undecided.
     pub(crate) undecided: Vec<Bounds>,
@@ -194,9 +194,9 @@ struct CellBatch {
 #[derive(Clone, Copy, Debug)]
 struct Tall {
     cell: Cell,
-    /// By how much each way.
+    /// Length by which the cell is taller at each end.
     room: f64,
-    /// The most that the surface rises over the footprint; none where it may not be a graph.
+    /// Largest rise of the surface over the footprint; none where the surface may not be a graph.
     rise: Option<f64>,
 }
 
@@ -215,10 +215,10 @@ impl Tall {
 struct Line {
     /// Index of the cell.
     tall: usize,
-    /// Lower and upper end.
+    /// Lower and upper end of the line.
     lo: f64,
     hi: f64,
-    /// Present estimate of where it meets the surface.
+    /// Present estimate of the point at which the line meets the surface.
     root: f64,
 }
 
@@ -254,7 +254,7 @@ impl BoxBounds {
 }
 
 impl Octree {
-    /// Starts on a new field.
+    /// Begins the search on a new field.
     pub(crate) fn begin(&mut self, has_bounds: bool, bounds: &Bounds) {
         self.witnesses.clear();
         self.undecided.clear();

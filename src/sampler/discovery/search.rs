@@ -19,14 +19,14 @@ use glam::{DVec3, Vec3};
 /// Units of work that a witness counts for.
 const UNITS: u32 = 16;
 
-/// The search, its witnesses and what became of them.
+/// The search for components, with its witnesses and the audit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ComponentSearch {
     octree: Octree,
     /// The witnesses on the surface as single precision computes it.
     points: Vec<Seed>,
     is_projected: bool,
-    /// The next of them to be tried as a seed.
+    /// Index of the next witness to be tried as a seed.
     next: usize,
     audit: Audit,
     /// Number of witnesses whose projection did not converge, and the first of them.
@@ -37,7 +37,7 @@ pub(crate) struct ComponentSearch {
 }
 
 impl ComponentSearch {
-    /// Begins with a new field.
+    /// Begins the search on a new field.
     pub(crate) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
         self.octree.begin(field.bounded().is_some(), bounds);
         self.points.clear();
@@ -217,8 +217,8 @@ impl ComponentSearch {
         if self.unwitnessed() == Some(0) { Search::Proven } else { Search::Searched }
     }
 
-    /// Why it is not proven that there is a witness on every component, and of each witness that it is on the component of a
-    /// particle or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have
+    /// The doubts that there is a witness on every component, or that each witness is on the component of a particle or named; empty
+    /// where both are proven. Sheets nearer than `least_gap` are not told apart, of which the survey may have
     /// seen one.
     pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
         let nearness = [surveyed, self.unresolved].into_iter().flatten();

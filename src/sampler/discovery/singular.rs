@@ -49,11 +49,11 @@ const SMALL: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Singular {
     pub(crate) position: DVec3,
-    /// Distance within which it was searched for.
+    /// Distance within which the point was searched for.
     pub(crate) reach: f64,
-    /// Whether f is 0 there but for rounding.
+    /// Whether f is 0 at the point, up to rounding.
     pub(crate) is_zero: bool,
-    /// Whether it is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
+    /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
     pub(crate) is_alone: bool,
 }
 

@@ -27,13 +27,13 @@ pub(crate) struct Survey {
     pub(crate) double: Option<f64>,
     /// Points of the surface, spread over it, in grid order.
     pub(crate) position: Vec<Vec3>,
-    /// Unit normals there.
+    /// Unit normals at these points.
     pub(crate) normal: Vec<Vec3>,
-    /// Area that each point stands for; together they are about `area`. 0 for points that no crossing of the grid gave.
+    /// Area that each point stands for. The sum is about `area`. 0 for points that no crossing of the grid gave.
     pub(crate) weight: Vec<f32>,
     /// Estimated area inside the box.
     pub(crate) area: f64,
-    /// Median |∇f| over those points.
+    /// Median |∇f| over the points of the survey.
     pub(crate) gradient_scale: f32,
     /// Distance by which rounding can move the computed surface.
     pub(crate) resolution: f32,
@@ -46,7 +46,7 @@ pub(crate) struct Survey {
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
     pub(crate) touches: bool,
-    /// Why there is no point, where there is none.
+    /// Why the survey has no points, where it has none.
     pub(crate) absence: Absence,
     /// Whether the points come from another search.
     pub(crate) is_adopted: bool,
@@ -194,7 +194,7 @@ impl Candidates {
         self.dips.clear();
     }
 
-    /// Why there is no point of the surface, where no place led to one.
+    /// The reason why no candidate has led to a point of the surface.
     fn absence(&self) -> Absence {
         if self.defined == 0 {
             Absence::Undefined

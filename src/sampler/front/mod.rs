@@ -49,7 +49,7 @@ impl Front {
         }
     }
 
-    /// The front that works, to be changed.
+    /// The front that works, for changes.
     pub(crate) fn active_mut(&mut self) -> &mut dyn LevelFront {
         match self.sampling {
             Sampling::Uniform => &mut self.uniform,

@@ -37,7 +37,7 @@ impl Travel {
 /// The state of all neighbour lists, and the grid from which they are renewed.
 #[derive(Clone, Default)]
 pub(crate) struct NeighbourLists {
-    /// For each particle, how far it has travelled since its list was made.
+    /// Distance that each particle has travelled since its list was made.
     travel: Vec<Travel>,
     has_stale: bool,
     /// Numbers of the sheets of the particles, if only particles of the same one are listed.
@@ -53,7 +53,7 @@ pub(crate) struct NeighbourLists {
     group: Vec<u32>,
     /// All particles around the group.
     found: Vec<u32>,
-    /// Their positions x, y, z, normals x, y, z and radii, by chunks.
+    /// Positions x, y, z, normals x, y, z and radii of the particles in `found`, by chunks.
     chunks: Vec<[[f32; CHUNK]; 7]>,
     /// Neighbours of one particle of the group.
     near: Vec<u32>,

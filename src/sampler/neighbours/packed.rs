@@ -23,7 +23,7 @@ pub(crate) struct PackedNeighbours {
     /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose
     /// indices are far apart.
     far: Vec<[u32; 2]>,
-    /// For each block of particles, whether one may have a pair of a weight below 1.
+    /// Whether a particle of each block may have a pair of a weight below 1.
     is_weighted: Vec<bool>,
 }
 

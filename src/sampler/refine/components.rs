@@ -258,7 +258,7 @@ pub(crate) struct Components {
 #[derive(Clone, Debug, Default)]
 struct Joint {
     particles: Particles,
-    /// The component under way, and its first particle that is not there yet.
+    /// The component under way, and its first particle that is not copied yet.
     component: usize,
     next: usize,
 }

@@ -64,14 +64,14 @@ const LEAST_PARTICLES: u32 = 180;
 /// The number of levels, the radius and the count that a refinement is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
-    /// Levels to come after the coarse one, k.
+    /// Number of levels after the coarse one, k.
     pub(crate) halvings: u32,
     /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at which as many of one size would
     /// cover the surface.
     pub(crate) radius: f32,
     /// Largest slope of the radius, where sizes differ.
     pub(crate) grading: Option<f32>,
-    /// Particles of the last level.
+    /// Wanted number of particles of the last level.
     pub(crate) count: Count,
 }
 
@@ -134,17 +134,17 @@ struct Memory {
 /// The task under way in a refinement, with its state.
 #[derive(Clone, Debug)]
 enum Task {
-    /// A pass of the recipe, come to `next` of the particles or half-edges below `end`.
+    /// A pass of the recipe over the particles, half-edges or faces below `end`. The next one is `next`.
     Pass { pass: usize, next: u32, end: u32 },
     /// The finished level is handed on.
     Show(Rings),
     /// Every face is divided into four.
     Divide(Subdivision),
-    /// The particles of the finer level are put onto the surface, come to the number of those in its columns, of which so many have
-    /// a defect.
+    /// The particles of the finer level are put onto the surface and into the columns of the net, in the order of `ends`. `defects`
+    /// counts the particles so far that have a defect.
     Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
-    /// The corners of the finished mesh are named by their particles, come to the corner `next` of those before, of which `kept`
-    /// belong to a face. The particles are handed on with the last one.
+    /// The corners of the finished mesh are named by their particles. The next corner is `next`, and `kept` of the corners before it
+    /// belong to a face. The particles are handed on after the last corner.
     Name { rings: Rings, next: usize, kept: usize },
     /// All levels are finished and handed on.
     Done,
@@ -261,7 +261,7 @@ impl Refinement {
         Ok((done, has_changed))
     }
 
-    /// Takes in what the faces of this level have been measured to be: the wanted numbers follow.
+    /// Computes the wanted number of faces of this level, and the spacing, from the measured faces.
     fn measure(&mut self) {
         let tally = self.tally;
         if self.shape.wanted == 0.0 {
@@ -301,7 +301,7 @@ impl Refinement {
         self.level.spacing = spacing(faces) as f32;
     }
 
-    /// The start of a pass of the recipe, or what follows after the last one.
+    /// The task that begins a pass of the recipe, or the task after the last pass.
     fn begin_pass(&mut self, pass: usize) -> Task {
         let mesh = &self.net.mesh;
         let Some(&kind) = self.level.recipe.passes.get(pass) else {

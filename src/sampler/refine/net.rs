@@ -30,7 +30,7 @@ pub(super) struct Springs {
     pub(super) spacing: f32,
     /// Rest length over spacing, θ.
     pub(super) theta: f32,
-    /// Over-relaxation ω: 1 goes to where the springs of one particle would be at rest, all others held.
+    /// Over-relaxation factor ω. With 1 a particle moves to where its springs would be at rest if all others were held.
     pub(super) omega: f32,
 }
 
@@ -40,7 +40,7 @@ impl Springs {
     }
 }
 
-/// The field, with the memory that it takes to evaluate it at blocks of particles.
+/// The field, with the buffers for evaluating it at blocks of particles.
 pub(super) struct Ground<'a, 'field> {
     pub(super) probe: &'a mut Probe<'field>,
     pub(super) block: &'a mut MovedBlock,
@@ -167,7 +167,7 @@ impl Net {
         });
     }
 
-    /// From `v` to the centre of its Voronoi cell, whose corners are the circumcentres of the faces around it.
+    /// Vector from `v` to the centre of its Voronoi cell, whose corners are the circumcentres of the faces around it.
     fn way_to_centre(&self, v: u32) -> Vec3 {
         let (p, n) = (self.position[v as usize], self.normal[v as usize]);
         let circumcentre = |h: u32| {

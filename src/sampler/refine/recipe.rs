@@ -7,11 +7,11 @@ pub(super) enum Pass {
     Size { is_whole: bool },
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
-    /// Measures the surface: the spacing follows.
+    /// Measures the faces, from which the spacing follows.
     Measure,
     /// A sweep of the springs.
     Sweep,
-    /// Flips to Delaunay's edges.
+    /// Flips the edges that are not Delaunay's.
     Flip,
     /// A round of surgery, which also keeps trials that lose up to `loss`, in units of the spacing squared.
     Mend { loss: f32 },
@@ -23,7 +23,7 @@ pub(super) enum Pass {
     Thin,
     /// A step of Newton's method for every particle, so that positions and normals are those of the surface.
     Land,
-    /// Looks at the finished faces.
+    /// Checks the orientation of the finished faces.
     Inspect,
 }
 

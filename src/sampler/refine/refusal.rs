@@ -10,7 +10,7 @@ use serde::Serialize;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Too few particles are expected.
+    /// The survey leads to expect too few particles for a refinement.
     #[error(
         "The front stands, and is not refined: that takes at least {} particles, and {expected} were expected.",
         4 * LEAST_PARTICLES
@@ -31,19 +31,19 @@ pub enum Refusal {
          may be."
     )]
     Bent {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
     /// The gradient vanishes on the surface.
     #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
     /// The surface has a border that is not at the box.
     #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
     /// The border could not be laid on the faces of the box.
@@ -52,7 +52,7 @@ pub enum Refusal {
          more particles it may be."
     )]
     Cut {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
     /// A component has too few particles.
@@ -60,7 +60,7 @@ pub enum Refusal {
         "The front stands, and is not refined: the part of the surface near {at} has fewer than {LEAST_PARTICLES} particles."
     )]
     Small {
-        /// A place on it.
+        /// Position of a point of the component.
         at: Spot,
     },
     /// The particles could not be joined to a closed surface beyond doubt.
@@ -69,18 +69,18 @@ pub enum Refusal {
          more of them they may be."
     )]
     Doubtful {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
     /// A refinement has left the surface, or has led onto another sheet.
     #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
     Folded {
-        /// A place there.
+        /// Position of such a place.
         at: Spot,
     },
 }
 
-/// A point in space, told to three decimals.
+/// A point in space. `Display` rounds it to three decimals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spot(pub [f32; 3]);
 

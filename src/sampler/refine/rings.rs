@@ -15,13 +15,13 @@ const SLICE: usize = 256;
 pub(super) struct Rings {
     /// Vertices in the order in which they were met.
     order: Vec<u32>,
-    /// Place of each vertex in that order.
+    /// Place of each vertex in `order`.
     place: Vec<u32>,
     next: usize,
     /// Vertices below this one have been met.
     root: u32,
     is_walked: bool,
-    /// The particles in that order, as far as they are there: at first their parents and levels alone.
+    /// The particles in the order of `order`, as far as they are there: at first their parents and levels alone.
     ready: Particles,
 }
 

@@ -111,8 +111,8 @@ impl Surgeon {
         true
     }
 
-    /// Does the operation, relaxes what is around it, and takes all back unless that has paid; whether it has. `size` is that of
-    /// the particles there.
+    /// Does the operation and relaxes the particles around it, and undoes both unless they lower the energy enough. Returns whether they
+    /// stand. `size` is the size of the particles there.
     pub(super) fn attempt(
         &mut self,
         net: &mut Net,
@@ -333,8 +333,9 @@ fn badness(net: &Net, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// Returns what may help at `v`: one particle fewer where its valence is below the wanted one, one more where it is above. Where both are
-/// equal, the number of faces decides if it is far from the wanted one, or else, where sizes differ, the lengths of the edges.
+/// Returns the remedy to be tried at `v`: one particle fewer where its valence is below the wanted one, one more where it is above.
+/// Where both are equal, the number of faces decides if it is far from the wanted one, or else, where sizes differ, the lengths of
+/// the edges.
 fn remedy(net: &Net, aim: Aim, v: u32) -> Option<Remedy> {
     let shortage = 1.0 - net.mesh.faces() as f32 / aim.faces;
     match net.excess(v).cmp(&0) {

@@ -38,7 +38,7 @@ impl Tally {
         }
     }
 
-    /// Looks at some finished faces.
+    /// Checks the orientation of some finished faces.
     pub(super) fn inspect(&mut self, net: &Net, faces: Range<u32>) {
         for face in faces.filter_map(|f| net.mesh.face(f)) {
             let area = net.area_vector(face);
@@ -60,7 +60,7 @@ impl Tally {
         0.5 * (4.0 * self.fine - self.coarse) / 3.0
     }
 
-    /// Equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
+    /// Number of equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
     pub(super) fn cells(&self) -> f64 {
         self.cells * self.area() / self.flat_area()
     }

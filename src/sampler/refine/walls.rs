@@ -34,12 +34,12 @@ impl Planes {
         self.count() > 1
     }
 
-    /// The planes on which both lie.
+    /// The planes that are in both sets.
     pub(super) fn common(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// The planes on which one of them lies.
+    /// The planes that are in either set.
     pub(super) fn joined(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
@@ -48,7 +48,7 @@ impl Planes {
         (0..Self::ALL).filter(move |plane| self.0 >> plane & 1 == 1)
     }
 
-    /// 1 along the axes along which a particle may move, 0 along the others.
+    /// Mask of the axes along which a particle may move: 1 along these, 0 along the others.
     pub(super) fn free(self) -> Vec3 {
         let share = |axis: u32| if self.0 >> (2 * axis) & 3 == 0 { 1.0 } else { 0.0 };
         Vec3::new(share(0), share(1), share(2))
@@ -61,7 +61,7 @@ pub(super) struct Site {
     pub(super) position: Vec3,
     /// Outward unit normal of the surface there.
     pub(super) normal: Vec3,
-    /// The planes of the box on which it lies.
+    /// The planes of the box on which the particle lies.
     pub(super) planes: Planes,
 }
 
@@ -78,8 +78,8 @@ pub(super) struct Walls {
 }
 
 impl Walls {
-    /// The walls around particles none of which lies on a plane yet. It does nothing if none is within a `spacing` of a plane, or beyond
-    /// it.
+    /// The walls around particles none of which lies on a plane yet. They have no effect if no particle is within a `spacing`
+    /// of a plane, or beyond it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
         let at_most = |x: f64| -at_least(-x);

@@ -69,11 +69,11 @@ enum RelaxationStage {
 /// Purpose for which the lists are renewed and the radii graded: the part of the relaxation that follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Purpose {
-    /// A step: the particles have not moved, or were put back.
+    /// The next step: the particles have not moved, or were put back.
     Step,
-    /// The judgement of the step just made, and the next one.
+    /// The judgement of the step just made, and then the next step.
     Judge,
-    /// The end.
+    /// The end of the relaxation.
     #[default]
     End,
 }
@@ -81,9 +81,9 @@ enum Purpose {
 /// A law of repulsion, with the tolerance for particles on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RepulsionLaw {
-    /// For particles of this radius.
+    /// Gaussian repulsion, for particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
-    /// For particles of many radii.
+    /// Overlap of discs, for particles of many radii.
     Overlap { residual_limits: ResidualLimits, min_gradient: f32 },
 }
 
@@ -110,7 +110,7 @@ impl RepulsionLaw {
 /// Limits on the moves of particles, which keep them in the box and on their sheets.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MoveLimits {
-    /// The box.
+    /// The box that is sampled.
     pub(crate) bounds: Bounds,
     /// Lift of a move above which a particle has left its sheet; infinite where no others are near.
     pub(crate) largest_lift: f32,

@@ -18,7 +18,7 @@ use crate::sampler::settings::{LawKind, Settings};
 /// The paper scales κ₁ + κ₂; see [`SumOfCurvatures`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChordError {
-    /// ε, a length.
+    /// Chord error ε, a length.
     pub error: f64,
 }
 
@@ -26,7 +26,7 @@ pub struct ChordError {
 /// direction of the largest curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaxCurvature {
-    /// s, a pure number.
+    /// Factor s of the law, a pure number.
     pub scale: f64,
 }
 
@@ -34,7 +34,7 @@ pub struct MaxCurvature {
 /// symmetric saddles, which get the largest radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SumOfCurvatures {
-    /// s, a pure number.
+    /// Factor s of the law, a pure number.
     pub scale: f64,
 }
 

@@ -134,20 +134,20 @@ pub(crate) struct PredictedChild {
     pub(crate) largest: f32,
     /// Change of the radius per length in this direction.
     pub(crate) slope: f32,
-    /// Position from the parent's.
+    /// Offset from the parent.
     pub(crate) offset: Vec3,
     /// Unit normal.
     pub(crate) normal: Vec3,
 }
 
-/// A free arc: between two angles, from the particle before it to the one behind it.
+/// A free arc of the circle around a parent, between the particle before it and the particle behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
     /// Angle at which a child touches the particle before the arc.
     pub(crate) from: f32,
     /// Angle at which a child touches the particle behind the arc; less than `from` where it does not fit between them.
     pub(crate) to: f32,
-    /// No child has room before this angle.
+    /// Smallest angle at which a child has room.
     pub(crate) start: f32,
     /// Whether no particle is near and the arc is the whole circle.
     pub(crate) whole: bool,
@@ -160,11 +160,11 @@ struct NeighbourLanes {
     y: Lanes,
     z: Lanes,
     radius: Lanes,
-    /// 1 where the radius enters the fit of its gradient, else 0.
+    /// 1 for a neighbour whose radius enters the fit of the gradient of the radius, else 0.
     weight: Lanes,
     /// Direction in the tangent plane.
     angle: Lanes,
-    /// Angles within which it blocks a child, towards smaller and larger angles.
+    /// Angles within which a neighbour blocks a child, towards smaller and larger angles.
     before: Lanes,
     behind: Lanes,
     /// Angles within which no child has room even if it is pressed in.

@@ -79,7 +79,7 @@ struct FrontRules {
     grading: f32,
     /// Least distance of two particles, as a share of r_i + r_j.
     match_tolerance: f32,
-    /// Distance from a parent within which others are gathered, in its radii.
+    /// Distance from a parent within which particles are gathered, in radii of the parent.
     reach: f32,
     residual_limits: ResidualLimits,
     gradient_scale: f32,

@@ -61,9 +61,9 @@ impl Proposal {
 /// The solution of a proposal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum DirectLanding {
-    /// On the surface, touching the parent.
+    /// A place on the surface at which the child touches its parent.
     On(SurfacePoint),
-    /// No such place was found.
+    /// No place on the surface was found at which the child touches its parent.
     NotConverged,
     /// The field has no value there, or its gradient vanishes.
     Undefined,

@@ -36,11 +36,11 @@ impl OccupantKind {
 /// The surroundings of the parent that places its children.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Vicinity {
-    /// The particles of its sheet.
+    /// The particles of the sheet of the parent.
     pub(super) ring: Ring,
     /// Numbers in the ring of those that touch the parent, but for the one that placed it.
     touching: Vec<u32>,
-    /// In the order of their angles.
+    /// Particles and children on the circle around the parent, in the order of their angles.
     pub(super) occupants: Vec<Occupant>,
 }
 

@@ -52,6 +52,16 @@ struct UniformChild {
     clearance: f32,
 }
 
+/// A predicted child, on the circle around its parent.
+struct Prediction {
+    /// Offset from the parent.
+    offset: Vec3,
+    /// Normal, of any length.
+    normal: Vec3,
+    /// cos θ and sin θ on the circle.
+    turn: [f32; 2],
+}
+
 /// The front of particles of one radius.
 #[derive(Clone, Default)]
 pub(crate) struct UniformFront {
@@ -89,9 +99,8 @@ impl UniformFront {
         self.match_radius + DRIFT_ROOM * self.radius
     }
 
-    /// Predicts the child of a parent in the direction (cos, sin) of its frame, on the circle of radius 2r around it: its offset
-    /// from the parent, its normal, of any length, and the angle θ on the circle as (cos θ, sin θ).
-    fn predict(&self, frame: &SlotFrame, form: &SecondForm, [cos, sin]: [f32; 2]) -> (Vec3, Vec3, [f32; 2]) {
+    /// Predicts the child of a parent in the direction (cos, sin) of its frame, on the circle of radius 2r around it.
+    fn predict(&self, frame: &SlotFrame, form: &SecondForm, [cos, sin]: [f32; 2]) -> Prediction {
         let &SlotFrame { n, u, w, .. } = frame;
         let distance = 2.0 * self.radius;
         // The surface falls away by κ d²/2 in a distance d, hence sin θ = −κ_V r at d = 2r.
@@ -101,7 +110,8 @@ impl UniformFront {
         let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
         let offset = ((u * cos + w * sin) * cos_theta + n * sin_theta) * distance;
         // The turn is tangential, so the sum is never shorter than n.
-        (offset, n + (u * su + w * sw) * (distance * cos_theta), [cos_theta, sin_theta])
+        let normal = n + (u * su + w * sw) * (distance * cos_theta);
+        Prediction { offset, normal, turn: [cos_theta, sin_theta] }
     }
 
     /// Copies the particles `found` around `parent` to the surroundings, and those before it that repel it to its neighbour list.
@@ -219,7 +229,7 @@ impl LevelFront for UniformFront {
         self.children.list.len()
     }
 
-    /// Paper §4.2 and §4.4.
+    // Paper §4.2 and §4.4.
     fn place_children(&mut self, context: &mut FrontContext, parent: usize) {
         let parent = self.parents.start + parent;
         let FrontContext { probe, neighbours, particles, .. } = context;
@@ -244,7 +254,7 @@ impl LevelFront for UniformFront {
         let mut is_seam = false;
         // Slot 0 of every particle but a seed is its parent.
         for (k, &direction) in SLOT_DIRECTION.iter().enumerate().skip(usize::from(!is_seed)) {
-            let (offset, normal, guess) = self.predict(&frame, &form, direction);
+            let Prediction { offset, normal, turn } = self.predict(&frame, &form, direction);
             let (nearest_sq, any_sq) = self.around.nearest_sq(offset, normal, slack_sq);
             let is_matched = nearest_sq <= self.match_radius * self.match_radius;
             if is_matched || particles.len() >= self.level.max_particles {
@@ -260,7 +270,7 @@ impl LevelFront for UniformFront {
             particles.push(position, normal, self.radius, parent as u32, level, initial_slots());
             let direction = u * direction[0] + w * direction[1];
             self.children.list.push(UniformChild {
-                circle: ChildCircle { centre: p, normal: n, direction, radius: distance, guess },
+                circle: ChildCircle { centre: p, normal: n, direction, radius: distance, guess: turn },
                 slot: k as u32,
                 handle: self.grid.insert(position, index),
                 // The distances to the particles that were dropped are not known.
@@ -310,7 +320,7 @@ impl LevelFront for UniformFront {
         landings.extend_from_slice(solutions);
     }
 
-    /// Paper §4.4, Algorithm 2.
+    // Paper §4.4, Algorithm 2.
     fn settle_child(&mut self, context: &mut FrontContext, child: usize) {
         let FrontContext { probe, particles, .. } = context;
         let UniformChild { slot, handle, clearance, .. } = self.children.list[child];
