@@ -87,10 +87,11 @@ export function childMarks({ fate, landed, start, particle, iterates }, plane, a
 
 /** @param {Opened} opened @param {Moment} moment */
 function tangentWords({ subject }, { frame, gathered, children }) {
-  if (!frame) return `Tangent plane of particle ${formatCount(subject.particle)}, not laid yet`;
+  const plane = `Tangent plane of particle ${formatCount(subject.particle)}`;
+  if (!frame) return `${plane}, not laid yet`;
   const fates = children.filter(({ fate }) => fate !== 'open').map(({ slot, fate }) => `slot ${slot} ${FATES[fate]}`);
   const around = gathered ? `, ${formatCount(gathered.neighbours.length)} particles around` : '';
-  return `Tangent plane of particle ${formatCount(subject.particle)}: six slots${around}${fates.length > 0 ? `; ${fates.join(', ')}` : ''}`;
+  return `${plane}: six slots${around}${fates.length > 0 ? `; ${fates.join(', ')}` : ''}`;
 }
 
 /**

@@ -107,8 +107,11 @@ export function tell({ event, slot, children, evaluations }, subject) {
       return tellIterate(event);
     case 'landed':
       return `Child ${event.slot} lands on the surface, ${inRadii(event.distance, radius)} from its parent.`;
-    case 'gathered':
-      return `${plural(event.neighbours.length, 'particle')} within ${inRadii(event.reach, radius, 0)}: the children are compared with ${event.neighbours.length === 1 ? 'it' : 'them'}.`;
+    case 'gathered': {
+      const { length } = event.neighbours;
+      const near = `${plural(length, 'particle')} within ${inRadii(event.reach, radius, 0)}`;
+      return `${near}: the children are compared with ${length === 1 ? 'it' : 'them'}.`;
+    }
     case 'compared':
       return tellComparison(event, radius);
     case 'fronts_meet':
@@ -128,7 +131,8 @@ export function tell({ event, slot, children, evaluations }, subject) {
     case 'done': {
       const placed = children.filter(({ fate }) => fate === 'added').length;
       const met = children.filter(({ fate }) => fate === 'matched').length;
-      return `The particle is done: ${placed} of its children added, ${met} matched, after ${plural(evaluations, 'evaluation')} of f.`;
+      const cost = plural(evaluations, 'evaluation');
+      return `The particle is done: ${placed} of its children added, ${met} matched, after ${cost} of f.`;
     }
     default:
       return '';

@@ -96,7 +96,8 @@ export function createMaker({ setup, linkOf }) {
   const told = h('p', { class: 'quiet', role: 'status' });
   const write = () => {
     const { what: id, left, right } = setup();
-    what.textContent = `It compares what stands under “What if”: ${WHAT_IFS.find((known) => known.id === id)?.name ?? id}.`;
+    const name = WHAT_IFS.find((known) => known.id === id)?.name ?? id;
+    what.textContent = `It compares what stands under “What if”: ${name}.`;
     const task = {
       title: title.value,
       setup: { what: id, left, right },

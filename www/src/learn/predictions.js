@@ -60,8 +60,11 @@ const children = {
     const fates = momentAt(events, events.length - 1).children;
     const count = (/** @type {string} */ fate) => fates.filter((child) => child.fate === fate).length;
     const [right, met] = [count('added'), count('matched')];
-    const words = `${plural(right, 'child is', 'children are')} new. One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there.`;
-    return { right, words };
+    const words = [
+      `${plural(right, 'child is', 'children are')} new.`,
+      `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there.`,
+    ];
+    return { right, words: words.join(' ') };
   },
   judge: judgeNumber,
 };
@@ -103,8 +106,11 @@ const average = {
     const count = run.end.radii.length;
     const added = run.chapters.reduce((sum, { fates }) => sum + fates.added, 0);
     const mean = added / count;
-    const words = `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each. It cannot be otherwise, since every particle but a seed is the new child of exactly one other.`;
-    return { right: String(Math.round(mean)), words };
+    const words = [
+      `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
+      'It cannot be otherwise, since every particle but a seed is the new child of exactly one other.',
+    ];
+    return { right: String(Math.round(mean)), words: words.join(' ') };
   },
 };
 
@@ -195,8 +201,11 @@ const sizes = {
         words:
           'On this surface the stronger curvature is nearly the same everywhere, and so are the radii. Nothing is saved here.',
       };
-    const words = `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`;
-    return { right: String(at < 0 ? FACTORS.length : at), words };
+    const words = [
+      `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be`,
+      `about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`,
+    ];
+    return { right: String(at < 0 ? FACTORS.length : at), words: words.join(' ') };
   },
 };
 

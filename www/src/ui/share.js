@@ -11,7 +11,8 @@ export async function copyLink(engine, toast) {
   try {
     const url = location.origin + location.pathname + (await engine.link());
     if (engine.state.peek().surface === FILE_SURFACE) {
-      const text = `A link cannot hold the points of ${engine.model.peek()?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`;
+      const held = `A link cannot hold the points of ${engine.model.peek()?.name ?? 'a file'}`;
+      const text = `${held}: it shows the standard surface with these settings. Send the file along.`;
       toast({ id: 'share-file', kind: 'info', text });
     }
     history.replaceState(null, '', url);

@@ -34,8 +34,10 @@ export function createLoading(engine) {
   });
   const heard = computed(() => {
     const [loading, error] = [engine.loading.value, engine.loadingError.value];
-    if (loading)
-      return `${loading.name}: ${loading.label}, ${formatShare(Math.floor(loading.fraction / SPOKEN_SHARE) * SPOKEN_SHARE, 0)}`;
+    if (loading) {
+      const share = Math.floor(loading.fraction / SPOKEN_SHARE) * SPOKEN_SHARE;
+      return `${loading.name}: ${loading.label}, ${formatShare(share, 0)}`;
+    }
     if (!error) return '';
     const { title, line, text } = describeLoadingError(error);
     return [title, line, text].filter(Boolean).join('. ');

@@ -13,12 +13,11 @@ export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
   if (model) return { name: model.name, facts: plural(model.points, 'point'), text: model.story, credit: model.credit };
   if (id === FILE_SURFACE) {
+    const fitted = !info || info.centres === info.points ? 'the' : `${formatCount(info.centres)} of the`;
     return {
       name: info?.name ?? 'File',
       facts: info ? plural(info.points, 'point') : '',
-      text: info
-        ? `The surface through ${info.centres === info.points ? 'the' : `${formatCount(info.centres)} of the`} points of this file.`
-        : 'The surface through the points of this file.',
+      text: `The surface through ${fitted} points of this file.`,
       credit: info?.credit ?? '',
     };
   }

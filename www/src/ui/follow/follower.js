@@ -255,7 +255,10 @@ export class Follower {
       const sizes = this.engine.columns.adaptive ? 'these sizes' : `the radius ${formatSignificant(radius, 3)}`;
       this.status.value = {
         kind: 'too_many',
-        text: `With ${sizes} about ${plural(excess.expected, 'particle')} are to be expected. The events of at most ${formatCount(excess.limit)} are followed.`,
+        text: [
+          `With ${sizes} about ${plural(excess.expected, 'particle')} are to be expected.`,
+          `The events of at most ${formatCount(excess.limit)} are followed.`,
+        ].join(' '),
         radius: radius * Math.max(LEAST_COARSER, excess.factor),
       };
     } else if (error?.kind === 'refused') {

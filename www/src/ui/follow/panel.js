@@ -284,9 +284,18 @@ function createFoot(follower, engine) {
     if (run.adaptive) {
       const [least, most] = run.end.radii.reduce(([a, b], r) => [Math.min(a, r), Math.max(b, r)], [Infinity, 0]);
       const r = `r from ${formatSignificant(least, 3)} to ${formatSignificant(most, 3)}`;
-      return `§5 of the paper on this surface, child by child and before relaxation: ${count} particles, ${r}, by the radius law of the settings. The picture solves for the places that are found here by pushes, and its sizes change gradually, so that its particles lie elsewhere.`;
+      return [
+        '§5 of the paper on this surface, child by child and before relaxation:',
+        `${count} particles, ${r}, by the radius law of the settings.`,
+        'The picture solves for the places that are found here by pushes, and its sizes change gradually,',
+        'so that its particles lie elsewhere.',
+      ].join(' ');
     }
-    return `Algorithm 2 of the paper on this surface, child by child and before relaxation: ${count} particles with r = ${formatSignificant(run.radius, 3)}. Matched particles stay among the neighbours, as in the picture; the paper removes them.`;
+    return [
+      'Algorithm 2 of the paper on this surface, child by child and before relaxation:',
+      `${count} particles with r = ${formatSignificant(run.radius, 3)}.`,
+      'Matched particles stay among the neighbours, as in the picture; the paper removes them.',
+    ].join(' ');
   });
   /** @param {boolean} turns  whether the camera turns there */
   const mark = (turns) => {

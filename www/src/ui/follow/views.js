@@ -142,8 +142,10 @@ function profileView(opened, moment) {
 }
 
 /** @param {Opened} opened @param {NonNullable<Opened['profiles'][number]>} profile */
-const ideal = ({ subject, events }, { reach }) =>
-  `Where the two searches land: the distances to the particle. The ideal is ${isAdaptive(events) ? `that at which they touch, ${inRadii(reach, subject.radius)}` : '2r'}.`;
+function ideal({ subject, events }, { reach }) {
+  const best = isAdaptive(events) ? `that at which they touch, ${inRadii(reach, subject.radius)}` : '2r';
+  return `Where the two searches land: the distances to the particle. The ideal is ${best}.`;
+}
 
 /** @param {'landed' | 'newton'} kind */
 function mark(kind) {

@@ -115,7 +115,8 @@ function boundWords(report, adaptive) {
   const area = report?.quality?.area ?? 0;
   if (!report || adaptive || !(area > 0)) return '';
   const bound = hexagonalCount(area, report.radius);
-  return `${plural(report.count, 'particle')}. A hexagonal lattice of these discs would have ${formatCount(Math.round(bound))} on this area, A/(2√3 r²): there are ${formatShare(report.count / bound, 1)} of that.`;
+  const lattice = `A hexagonal lattice of these discs would have ${formatCount(Math.round(bound))} on this area, A/(2√3 r²)`;
+  return `${plural(report.count, 'particle')}. ${lattice}: there are ${formatShare(report.count / bound, 1)} of that.`;
 }
 
 /**
@@ -146,6 +147,8 @@ function nearestChart(spread) {
   const { mean, deviation } = statisticsOf(spread?.nearest ?? []);
   const value = spread ? `${formatFixed(mean, 3)} ± ${formatFixed(deviation, 3)}` : '';
   const [low, high] = SPAN;
+  const ends = [formatFixed(low, 1), formatFixed(high, 1)];
+  const bars = `${formatCount(Math.max(...counts))} at most in one of ${BINS} bars from ${ends[0]} to ${ends[1]}`;
   return {
     title: 'Nearest, in 2r',
     kind: 'bars',
@@ -153,11 +156,9 @@ function nearestChart(spread) {
     first: 0,
     at: null,
     value,
-    label: spread
-      ? `Distance of ${spread.words} to their nearest, in 2r: ${value}; ${formatCount(Math.max(...counts))} at most in one of ${BINS} bars from ${formatFixed(low, 1)} to ${formatFixed(high, 1)}`
-      : '',
+    label: spread ? `Distance of ${spread.words} to their nearest, in 2r: ${value}; ${bars}` : '',
     format: formatCount,
-    ends: [formatFixed(low, 1), formatFixed(high, 1)],
+    ends,
     ideal: (1 - low) / (high - low),
     missing: `Known of two to ${formatCount(MOST_MEASURED)} particles, and of all at the end of a run.`,
   };
@@ -168,6 +169,7 @@ function degreeChart(degree) {
   const [least, most] = NEIGHBOURS;
   const counts = degree?.counts ?? [];
   const six = degree ? `six: ${formatShare(degree.six, 1)}` : '';
+  const all = counts.map((n, k) => `${formatCount(n)} with ${k + least}`).join(', ');
   return {
     title: 'Neighbours',
     kind: 'bars',
@@ -175,7 +177,7 @@ function degreeChart(degree) {
     first: least,
     at: degree ? 6 : null,
     value: six,
-    label: `Particles by their neighbours at the end of the run: ${counts.map((n, k) => `${formatCount(n)} with ${k + least}`).join(', ')}; ${six}`,
+    label: `Particles by their neighbours at the end of the run: ${all}; ${six}`,
     format: formatCount,
     ends: [`≤ ${least}`, 'at the end', `≥ ${most}`],
     missing: 'Known once a run has ended and been measured.',

@@ -52,7 +52,10 @@ export function flatCount({ adaptive, seeds }, level) {
 
 /** Returns the short text of a level for the slider. @param {LevelTable} table @param {number} level */
 export const shortOf = ({ last, fresh, total }, level) =>
-  `Level ${formatCount(level)} of ${formatCount(last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
+  `${levelOf(level, last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
+
+/** @param {number} level @param {number} last */
+const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(last)}`;
 
 /**
  * Describes a level: its particles, and the fates of the children proposed.
@@ -64,7 +67,8 @@ export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
-  const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
+  const counts = `${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
+  const title = `${levelOf(level, last)} · ${counts}`;
   const moved =
     relaxSteps === null
       ? ' Drawn as placed, before relaxation.'
@@ -72,10 +76,11 @@ export function describeLevel(table, level, relaxSteps) {
         ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.`
         : '';
   if (level === 0) {
-    return {
-      title,
-      text: `${seeds[0] === 1 ? 'The front starts at one point of the surface.' : `${plural(seeds[0], 'point')} of the surface, a front from each.`}${moved}`,
-    };
+    const starts =
+      seeds[0] === 1
+        ? 'The front starts at one point of the surface.'
+        : `${plural(seeds[0], 'point')} of the surface, a front from each.`;
+    return { title, text: starts + moved };
   }
   const fateOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
   const added = fateOf('added');
@@ -83,11 +88,12 @@ export function describeLevel(table, level, relaxSteps) {
     ([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`,
   );
   const proposed = REST.reduce((sum, [name]) => sum + fateOf(name), added);
+  const became = [`${formatCount(added)} added`, ...rest].join(', ');
   const fillers = fresh[level] - added - seeds[level];
   return {
     title,
     text: [
-      `Level ${formatCount(level - 1)} proposed ${plural(proposed, 'child', 'children')}: ${[`${formatCount(added)} added`, ...rest].join(', ')}.`,
+      `Level ${formatCount(level - 1)} proposed ${plural(proposed, 'child', 'children')}: ${became}.`,
       fillers > 0 ? ` ${plural(fillers, 'particle')} filled ${fillers === 1 ? 'a gap' : 'gaps'} at the end.` : '',
       moved,
     ].join(''),

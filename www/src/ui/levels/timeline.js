@@ -345,7 +345,8 @@ function drawBars({ heights, widths }, places) {
     const x = left + GAP * width;
     left += width;
     // A minimum height keeps a level with few particles visible.
-    return `M${+x.toFixed(3)} 1V${(1 - Math.max(height / most, LEAST)).toFixed(3)}h${+((1 - 2 * GAP) * width).toFixed(3)}V1z`;
+    const top = (1 - Math.max(height / most, LEAST)).toFixed(3);
+    return `M${+x.toFixed(3)} 1V${top}h${+((1 - 2 * GAP) * width).toFixed(3)}V1z`;
   });
   const d = bars.join('');
   return s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none' }, s('path', { d }));
