@@ -22,202 +22,176 @@ const CLOSE = 0.1;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
 
-/** @param {string | number} guess @param {string | number} right */
+/** @type {NonNullable<Prediction['judge']>} */
 const judgeNumber = (guess, right) => {
   if (guess === right) return 'Exactly.';
   const far = Math.abs(Number(guess) - Number(right));
   return far <= Math.max(1, CLOSE * Number(right)) ? 'Close.' : `You said ${formatCount(guess)}.`;
 };
 
-/** @type {Prediction} */
-const cost = {
-  kind: 'choice',
-  choices: [
-    { value: 'placing', label: 'Placing all particles' },
-    { value: 'alike', label: 'Both about the same' },
-    { value: 'resting', label: 'The ten steps of relaxation' },
-  ],
-  async answer(lab) {
-    const { particles, placing, resting } = await costOf(lab);
-    const right = placing > ALIKE * resting ? 'placing' : resting > ALIKE * placing ? 'resting' : 'alike';
-    const [one, ten] = [placing, resting].map((count) => formatSignificant(count / particles, 3));
-    return {
-      right,
-      words: `Placing took ${one} evaluations of f for each of the ${formatCount(particles)} particles, the ten steps ${ten}.`,
-    };
-  },
-};
-
-/** @type {Prediction} */
-const children = {
-  kind: 'number',
-  label: 'New children, 0 to 6',
-  most: 6,
-  async answer(lab) {
-    const run = await lab.coarse();
-    const { events } = await openParticle(run.client, run, 1);
-    if (events.length === 0) throw new NoSurface('On this surface the seed has no children.');
-    const fates = momentAt(events, events.length - 1).children;
-    const count = (/** @type {string} */ fate) => fates.filter((child) => child.fate === fate).length;
-    const [right, met] = [count('added'), count('matched')];
-    const words = [
-      `${plural(right, 'child is', 'children are')} new.`,
-      `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there.`,
-    ];
-    return { right, words: words.join(' ') };
-  },
-  judge: judgeNumber,
-};
-
-/** @type {Prediction} */
-const newton = {
-  kind: 'choice',
-  choices: [
-    { value: 'nearer', label: 'Nearer than 2r' },
-    { value: 'same', label: 'At 2r' },
-    { value: 'farther', label: 'Farther than 2r' },
-  ],
-  async answer(lab) {
-    const { profile, opened, whole, slot } = await openBend(lab);
-    const { radius } = opened.subject;
-    const landed = whole.children[slot].landed?.distance ?? 2 * radius;
-    const own = profile?.newtonDistance ?? null;
-    if (own === null) return { right: 'none', words: 'Here Newton’s method lands nowhere near. The circle does.' };
-    const share = own / (2 * radius);
-    const right = share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : 'same';
-    return {
-      right,
-      words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}.`,
-    };
-  },
-};
-
-/** @type {Prediction} */
-const average = {
-  kind: 'choice',
-  choices: [
-    { value: '1', label: 'About one' },
-    { value: '2', label: 'About two' },
-    { value: '3', label: 'About three' },
-    { value: '6', label: 'Nearly all six' },
-  ],
-  async answer(lab) {
-    const run = await lab.coarse();
-    const count = run.end.radii.length;
-    const added = run.chapters.reduce((sum, { fates }) => sum + fates.added, 0);
-    const mean = added / count;
-    const words = [
-      `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
-      'It cannot be otherwise, since every particle but a seed is the new child of exactly one other.',
-    ];
-    return { right: String(Math.round(mean)), words: words.join(' ') };
-  },
-};
-
-/** @type {Prediction} */
-const ring = {
-  kind: 'number',
-  label: 'Particles in ring 12',
-  async answer(lab) {
-    const rings = ringsOf((await lab.run({}, { keep: true })).placed);
-    const level = Math.min(RING, rings.length - 1);
-    const words = `Ring ${level} of this surface has ${plural(rings[level], 'particle')}; on a plane it would have ${6 * level}.`;
-    return { right: rings[level], words };
-  },
-  judge: judgeNumber,
-};
-
-/** @type {Prediction} */
-const order = {
-  kind: 'choice',
-  choices: [
-    { value: 'a', label: 'Picture A' },
-    { value: 'b', label: 'Picture B' },
-  ],
-  async answer() {
-    return {
-      right: 'b',
-      words:
-        'Picture B is made with a queue: the particle that has waited longest comes next, so a ring is done before the next begins. With a stack, picture A, the newest comes next, and the front runs off like a thread.',
-    };
-  },
-};
-
-/** @type {Prediction} */
-const hole = {
-  kind: 'pick',
-  async answer(lab, guess) {
-    const widest = await widestHole(lab);
-    if (!widest) return { right: -1, words: 'On this surface the rings leave no hole wide enough to count.' };
-    const { placed } = widest.run;
-    const level = placed.levels[widest.particle];
-    const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
-    const words = `The widest hole lies beside the particle with the ring, on level ${level} of ${last}.`;
-    if (typeof guess !== 'number') return { right: widest.particle, words };
-    const far = between(placed.positions, guess, widest.particle) / (2 * widest.radius);
-    return {
-      right: widest.particle,
-      words: `${words} You pressed ${formatFixed(far, 1)} particle distances away from it.`,
-    };
-  },
-  judge: (guess, right) => (guess === right ? 'Exactly there.' : ''),
-};
-
-/** @type {Prediction} */
-const rest = {
-  kind: 'number',
-  label: 'Steps, 1 to 10',
-  most: 10,
-  async answer(lab) {
-    const energies = await energiesOf(await lab.run({}, { keep: true }));
-    if (energies.length < 2) throw new NoSurface('This run has no steps.');
-    const right = stepOfRest(energies);
-    return { right, words: `After ${plural(right, 'step')} nine tenths of the fall in energy were done.` };
-  },
-  judge: judgeNumber,
-};
-
 /** The lower ends of the answers to the last question. */
 const FACTORS = [1.3, 2, 4];
 /** Below this factor all sizes are called alike. */
 const EVEN = 1.05;
-/** @type {Prediction} */
-const sizes = {
-  kind: 'choice',
-  choices: [
-    { value: '0', label: 'About as many' },
-    { value: '1', label: 'Up to twice as many' },
-    { value: '2', label: 'Two to four times as many' },
-    { value: '3', label: 'More than that' },
-  ],
-  async answer(lab) {
-    const { end } = await adaptiveRun(lab, 'max_curvature');
-    const [count, wanted] = [end.radii.length, asFineEverywhere(end.radii)];
-    const factor = wanted / count;
-    const at = FACTORS.findIndex((limit) => factor < limit);
-    if (factor < EVEN)
-      return {
-        right: '0',
-        words:
-          'On this surface the stronger curvature is nearly the same everywhere, and so are the radii. Nothing is saved here.',
-      };
-    const words = [
-      `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be`,
-      `about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`,
-    ];
-    return { right: String(at < 0 ? FACTORS.length : at), words: words.join(' ') };
-  },
-};
 
 /** By the id of the question in the page's markup. @type {Record<string, Prediction>} */
 export const PREDICTIONS = {
-  'predict-cost': cost,
-  'predict-children': children,
-  'predict-newton': newton,
-  'predict-average': average,
-  'predict-ring': ring,
-  'predict-order': order,
-  'predict-hole': hole,
-  'predict-rest': rest,
-  'predict-sizes': sizes,
+  'predict-cost': {
+    kind: 'choice',
+    choices: [
+      { value: 'placing', label: 'Placing all particles' },
+      { value: 'alike', label: 'Both about the same' },
+      { value: 'resting', label: 'The ten steps of relaxation' },
+    ],
+    async answer(lab) {
+      const { particles, placing, resting } = await costOf(lab);
+      const right = placing > ALIKE * resting ? 'placing' : resting > ALIKE * placing ? 'resting' : 'alike';
+      const [one, ten] = [placing, resting].map((count) => formatSignificant(count / particles, 3));
+      return {
+        right,
+        words: `Placing took ${one} evaluations of f for each of the ${formatCount(particles)} particles, the ten steps ${ten}.`,
+      };
+    },
+  },
+  'predict-children': {
+    kind: 'number',
+    label: 'New children, 0 to 6',
+    most: 6,
+    async answer(lab) {
+      const run = await lab.coarse();
+      const { events } = await openParticle(run.client, run, 1);
+      if (events.length === 0) throw new NoSurface('On this surface the seed has no children.');
+      const fates = momentAt(events, events.length - 1).children;
+      const count = (/** @type {string} */ fate) => fates.filter((child) => child.fate === fate).length;
+      const [right, met] = [count('added'), count('matched')];
+      const words = [
+        `${plural(right, 'child is', 'children are')} new.`,
+        `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there.`,
+      ];
+      return { right, words: words.join(' ') };
+    },
+    judge: judgeNumber,
+  },
+  'predict-newton': {
+    kind: 'choice',
+    choices: [
+      { value: 'nearer', label: 'Nearer than 2r' },
+      { value: 'same', label: 'At 2r' },
+      { value: 'farther', label: 'Farther than 2r' },
+    ],
+    async answer(lab) {
+      const { profile, opened, whole, slot } = await openBend(lab);
+      const { radius } = opened.subject;
+      const landed = whole.children[slot].landed?.distance ?? 2 * radius;
+      const own = profile?.newtonDistance ?? null;
+      if (own === null) return { right: 'none', words: 'Here Newton’s method lands nowhere near. The circle does.' };
+      const share = own / (2 * radius);
+      const right = share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : 'same';
+      return {
+        right,
+        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}.`,
+      };
+    },
+  },
+  'predict-average': {
+    kind: 'choice',
+    choices: [
+      { value: '1', label: 'About one' },
+      { value: '2', label: 'About two' },
+      { value: '3', label: 'About three' },
+      { value: '6', label: 'Nearly all six' },
+    ],
+    async answer(lab) {
+      const run = await lab.coarse();
+      const count = run.end.radii.length;
+      const added = run.chapters.reduce((sum, { fates }) => sum + fates.added, 0);
+      const mean = added / count;
+      const words = [
+        `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
+        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other.',
+      ];
+      return { right: String(Math.round(mean)), words: words.join(' ') };
+    },
+  },
+  'predict-ring': {
+    kind: 'number',
+    label: 'Particles in ring 12',
+    async answer(lab) {
+      const rings = ringsOf((await lab.run({}, { keep: true })).placed);
+      const level = Math.min(RING, rings.length - 1);
+      const words = `Ring ${level} of this surface has ${plural(rings[level], 'particle')}; on a plane it would have ${6 * level}.`;
+      return { right: rings[level], words };
+    },
+    judge: judgeNumber,
+  },
+  'predict-order': {
+    kind: 'choice',
+    choices: [
+      { value: 'a', label: 'Picture A' },
+      { value: 'b', label: 'Picture B' },
+    ],
+    async answer() {
+      return {
+        right: 'b',
+        words:
+          'Picture B is made with a queue: the particle that has waited longest comes next, so a ring is done before the next begins. With a stack, picture A, the newest comes next, and the front runs off like a thread.',
+      };
+    },
+  },
+  'predict-hole': {
+    kind: 'pick',
+    async answer(lab, guess) {
+      const widest = await widestHole(lab);
+      if (!widest) return { right: -1, words: 'On this surface the rings leave no hole wide enough to count.' };
+      const { placed } = widest.run;
+      const level = placed.levels[widest.particle];
+      const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
+      const words = `The widest hole lies beside the particle with the ring, on level ${level} of ${last}.`;
+      if (typeof guess !== 'number') return { right: widest.particle, words };
+      const far = between(placed.positions, guess, widest.particle) / (2 * widest.radius);
+      return {
+        right: widest.particle,
+        words: `${words} You pressed ${formatFixed(far, 1)} particle distances away from it.`,
+      };
+    },
+    judge: (guess, right) => (guess === right ? 'Exactly there.' : ''),
+  },
+  'predict-rest': {
+    kind: 'number',
+    label: 'Steps, 1 to 10',
+    most: 10,
+    async answer(lab) {
+      const energies = await energiesOf(await lab.run({}, { keep: true }));
+      if (energies.length < 2) throw new NoSurface('This run has no steps.');
+      const right = stepOfRest(energies);
+      return { right, words: `After ${plural(right, 'step')} nine tenths of the fall in energy were done.` };
+    },
+    judge: judgeNumber,
+  },
+  'predict-sizes': {
+    kind: 'choice',
+    choices: [
+      { value: '0', label: 'About as many' },
+      { value: '1', label: 'Up to twice as many' },
+      { value: '2', label: 'Two to four times as many' },
+      { value: '3', label: 'More than that' },
+    ],
+    async answer(lab) {
+      const { end } = await adaptiveRun(lab, 'max_curvature');
+      const [count, wanted] = [end.radii.length, asFineEverywhere(end.radii)];
+      const factor = wanted / count;
+      const at = FACTORS.findIndex((limit) => factor < limit);
+      if (factor < EVEN)
+        return {
+          right: '0',
+          words:
+            'On this surface the stronger curvature is nearly the same everywhere, and so are the radii. Nothing is saved here.',
+        };
+      const words = [
+        `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be`,
+        `about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`,
+      ];
+      return { right: String(at < 0 ? FACTORS.length : at), words: words.join(' ') };
+    },
+  },
 };

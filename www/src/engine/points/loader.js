@@ -12,13 +12,14 @@ import { PointsClient } from './client.js';
 
 /**
  * @import { State } from '../types.js'
- * @import { LoaderOptions, Order, Refusal, SampleOptions } from './types.js'
+ * @import { LoaderOptions, Refusal, SampleOptions, Wanted } from './types.js'
  */
 
 /**
  * The part of the state that determines the surface.
  * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'centres' | 'bounds' | 'plane'>} Shape
  */
+
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
 
@@ -111,8 +112,7 @@ export class ModelLoader {
     const key = this.key();
     const wanted = this.#wanted();
     if (key === undefined || !wanted || this.orderKey === key) return;
-    const { id, name, order } = wanted;
-    const done = await this.#order(id, name, key, order, () => {
+    const done = await this.#order(wanted, key, () => {
       if (this.key() === key) this.#sample(options);
     });
     if (done || this.key() !== key || this.orderKey === key) return;
@@ -123,7 +123,7 @@ export class ModelLoader {
 
   /**
    * Returns what is to be solved for the state; null for a formula.
-   * @returns {{id: string, name: string, order: Order} | null}
+   * @returns {Wanted | null}
    */
   #wanted() {
     const { surface, centres } = this.#store.state.value;
@@ -150,7 +150,8 @@ export class ModelLoader {
     this.#files += 1;
     const key = `file ${this.#files}`;
     const { state } = this.#store;
-    await this.#order(FILE_SURFACE, file.name, keyOf(key, null), { file, centres: null }, () => {
+    const wanted = { id: FILE_SURFACE, name: file.name, order: { file, centres: null } };
+    await this.#order(wanted, keyOf(key, null), () => {
       this.#opened = { file, key };
       state.value = { ...state.value, ...freshShape(FILE_SURFACE) };
       this.#sample({ grow: true, fit: true });
@@ -158,11 +159,11 @@ export class ModelLoader {
   }
 
   /**
-   * @param {string} id @param {string} name @param {string} key @param {Order} order
+   * @param {Wanted} wanted @param {string} key
    * @param {() => void} done  called once the model is solved
    * @returns whether the model was solved
    */
-  async #order(id, name, key, order, done) {
+  async #order({ id, name, order }, key, done) {
     const { loading, loadingError } = this.#store;
     this.#orderId += 1;
     const mine = this.#orderId;
