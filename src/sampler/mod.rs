@@ -288,9 +288,11 @@ impl Sampler {
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
-            if self.survey.absence == Absence::Undefined && precision::overflows_double(field, &self.bounds) {
-                self.survey.absence = Absence::TooLarge;
-            }
+            self.survey.absence = match self.survey.absence {
+                Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
+                Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,
+                absence => absence,
+            };
         }
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);

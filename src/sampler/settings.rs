@@ -111,8 +111,8 @@ pub struct Settings {
     pub max_particles: u32,
 }
 
-/// More particles than this are not placed.
-const MOST_PARTICLES: f64 = 4e6;
+/// Largest number of particles that may be wanted.
+const MOST_WANTED: f64 = 4e6;
 
 /// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3 %, but an attempt at it may
 /// overshoot.
@@ -127,7 +127,7 @@ type Number = (&'static str, f64, f64, fn(&Settings) -> f64);
 
 const NUMBERS: [Number; 11] = [
     ("radius_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_share),
-    ("count", 1.0, MOST_PARTICLES, |s| s.count.into()),
+    ("count", 1.0, MOST_WANTED, |s| s.count.into()),
     ("chord_error", 1e-7, 0.01, |s| s.chord_error),
     ("curvature_scale", 1e-3, 0.5, |s| s.curvature_scale),
     ("radius_min_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_min_share),
@@ -136,7 +136,7 @@ const NUMBERS: [Number; 11] = [
     ("relax_steps", 0.0, 1000.0, |s| s.relax_steps.into()),
     ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
     ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
-    ("max_particles", 1.0, MOST_PARTICLES, |s| s.max_particles.into()),
+    ("max_particles", 1.0, COUNT_ROOM * MOST_WANTED, |s| s.max_particles.into()),
 ];
 
 impl Default for Settings {

@@ -286,9 +286,30 @@ fn a_run_that_meets_the_limit_prints_what_it_has_and_says_how_many_would_fit() {
 }
 
 #[test]
-fn unwritable_file_is_named() {
-    let message = fails(1, &["sample", "--radius", "5%", "--out", "/nonexistent/points.ply"]);
+fn a_file_that_cannot_be_written_is_named_before_anything_is_sampled() {
+    let message = fails(1, &["sample", "--count", "4000000", "--out", "/nonexistent/points.ply"]);
     assert!(message.contains("/nonexistent/points.ply"), "{message}");
+}
+
+#[test]
+fn one_file_is_not_written_twice() {
+    let [path, again] = ["twice.ply", "./twice.ply"].map(file);
+    let [path, again] = [&path, &again].map(|path| path.to_str().expect("a plain path"));
+    let message = fails(2, &["sample", "--radius", "5%", "--out", path, "--mesh", again]);
+    assert!(message.contains("twice.ply"), "{message}");
+    assert!(!PathBuf::from(path).exists());
+}
+
+#[test]
+fn a_run_that_fails_leaves_the_file_that_is_there() {
+    let directory = file("kept");
+    std::fs::create_dir_all(&directory).expect("the directory can be made");
+    let path = directory.join("kept.csv");
+    std::fs::write(&path, "good").expect("the directory can be written");
+    fails(3, &["sample", "--formula", "x^2+1", "--box", "1", "--out", path.to_str().expect("a plain path")]);
+    assert_eq!(std::fs::read_to_string(&path).expect("the file is there"), "good");
+    let names: Vec<_> = std::fs::read_dir(&directory).expect("the directory is there").collect();
+    assert_eq!(names.len(), 1, "nothing else is left: {names:?}");
 }
 
 #[test]

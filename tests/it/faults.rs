@@ -465,6 +465,10 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
         // Nearly a cube.
         ("x^40+y^40+z^40-1", 15.0, 24.0),
         ("(exp(100*(x^2+y^2+z^2-1))-1)*(exp(100*(x^2+y^2+z^2-0.25))-1)", 1.3, 1.25 * sphere),
+        // The values, but not their differences.
+        ("sqrt(1+1e-5*(x^2+y^2+z^2))-sqrt(1.00001)", 1.5, sphere),
+        ("cos(0.001*sqrt(x^2+y^2+z^2))-cos(0.001)", 1.6, sphere),
+        ("sqrt(x^2+y^2+(z+1000)^2)-1000", 2.0, 16.0),
     ] {
         let share = 0.05 / (2.0 * half * 3.0_f64.sqrt());
         let (_, progress, report) = sampled(formula, half, &settings!(radius_share: share; ..coarse()));
@@ -478,6 +482,10 @@ fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
         let figures = report.measures.quality.expect("there are particles");
         assert!(figures.coverage.cover < 1.6 && figures.accuracy.err_max < 1e-3, "{formula}: {figures:?}");
     }
+    // From 4e8 to 4e8 - 12 there is no number in single precision.
+    let (_, progress, _) = sampled("x^2+y^2+z^2-20000^2", 2.0, &coarse());
+    let message = progress.message.unwrap_or_default();
+    assert!(message.contains("f has no zero in this box"), "{message}");
     // Beyond double precision too.
     let (_, progress, _) = sampled("exp(1000*(x^2+y^2+z^2)+1000)-2", 1.5, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Undefined));

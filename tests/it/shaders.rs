@@ -1,6 +1,7 @@
 //! Tests of the shaders without a GPU: each is valid WGSL, translates to GLSL ES 3.00 as in wgpu's WebGL2 back end, and
 //! has the layout of the data that the Rust side writes.
 
+use marching_particles::Settings;
 use marching_particles::render::chunks::{CHUNK, MOST_RECORDS};
 use marching_particles::render::frame::Frame;
 use marching_particles::render::layout::{
@@ -8,7 +9,6 @@ use marching_particles::render::layout::{
     TINT_ATTRIBUTES,
 };
 use marching_particles::render::shaders::{COMMON, SHADERS, Shader};
-use marching_particles::sampler::{COUNT_ROOM, Settings};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ScalarKind, ShaderStage, TypeInner, VectorSize};
@@ -57,7 +57,7 @@ fn glsl(name: &str, module: &Module, info: &ModuleInfo, entry: &naga::EntryPoint
 fn every_particle_that_a_run_may_place_has_room_on_a_device_that_promises_least() {
     /// Bytes of a buffer that every device takes.
     const LEAST_BUFFER: usize = 256 << 20;
-    let most = COUNT_ROOM * Settings::range("max_particles").expect("it is a number").end();
+    let most = *Settings::range("max_particles").expect("it is a number").end();
     assert!(most < f64::from(MOST_RECORDS), "{most} particles, room for {MOST_RECORDS}");
     let largest = size_of::<FaceRecord>().max(size_of::<FaceTint>()).max(size_of::<Record>());
     assert!(CHUNK as usize * largest <= LEAST_BUFFER / 8, "a chunk takes {} bytes", CHUNK as usize * largest);

@@ -121,7 +121,7 @@ const onlyThePicture = (page) =>
 /**
  * Draws surfaces side by side in both themes.
  * @param {string} name of the files
- * @param {(typeof SIZES | typeof MESHES)[number][]} states
+ * @param {{ zoom: number, surface: string, settings: object, view: { colour: string, camera?: object } }[]} states
  */
 async function strip(name, states) {
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
@@ -135,7 +135,8 @@ async function strip(name, states) {
         async ({ wanted, zoom }) => {
           const mp = /** @type {any} */ (window).marchingParticles;
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-          await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
+          const camera = { ...mp.state.view.camera, fit: true, ...wanted.view.camera };
+          await mp.set({ ...wanted, view: { ...wanted.view, camera } });
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
           mp.engine.zoom(zoom);
         },
@@ -152,34 +153,13 @@ async function strip(name, states) {
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 
-for (const theme of /** @type {const} */ (['light', 'dark'])) {
-  const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
-  await page.goto(base);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
-  await onlyThePicture(page);
-  const frames = [];
-  for (const level of [...LEVELS, null]) {
-    await page.evaluate(
-      async ({ surface, settings, camera, level }) => {
-        const mp = /** @type {any} */ (window).marchingParticles;
-        const insets = { left: 0, right: 0, top: 0, bottom: 0 };
-        mp.engine.setInsets(insets);
-        // The front as it was placed; at the end, as it was relaxed.
-        const relaxed = level === null ? {} : { relax_steps: 0 };
-        await mp.set({
-          surface,
-          settings: { ...settings, ...relaxed },
-          view: { colour: 'level', level, camera: { ...mp.state.view.camera, ...camera } },
-        });
-        mp.engine.setInsets(insets);
-        mp.engine.zoom(1.15);
-      },
-      { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA, level },
-    );
-    await page.waitForTimeout(500);
-    frames.push(await page.screenshot());
-  }
-  await page.close();
-  await write(`levels-${theme}.webp`, await webp(frames, 0.86));
-}
+const LEVEL_STATES = [...LEVELS, null].map((level) => ({
+  zoom: 1.15,
+  surface: LEVEL_SURFACE,
+  // The front as it was placed; at the end, as it was relaxed.
+  settings: level === null ? LEVEL_SETTINGS : { ...LEVEL_SETTINGS, relax_steps: 0 },
+  view: { colour: 'level', level, camera: LEVEL_CAMERA },
+}));
+await strip('levels', LEVEL_STATES);
+
 await browser.close();

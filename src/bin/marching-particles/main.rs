@@ -5,6 +5,7 @@ mod failure;
 mod mesh;
 mod options;
 mod outcome;
+mod output;
 mod points;
 mod sample;
 mod summary;

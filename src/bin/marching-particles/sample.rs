@@ -5,6 +5,7 @@ use crate::failure::{Failure, LIMIT};
 use crate::mesh::Mesh;
 use crate::options::refusal;
 use crate::outcome::{Outcome, Seconds};
+use crate::output::Output;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::field::model::{self, ModelInfo};
@@ -16,9 +17,8 @@ use marching_particles::{
     StopReason, gallery,
 };
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufWriter, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -45,6 +45,8 @@ struct Chosen {
 pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
+    let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
+    let mut outputs = Output::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
     let clock = Stopwatch::start();
     let Chosen { field, name, formula, parameters, model, bounds, has_own_box } =
@@ -79,11 +81,11 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let mesh = (!mesh_formats.is_empty()).then(|| Mesh::new(&sample.mesh().into()));
     seconds.mesh = clock.seconds();
     let clock = Stopwatch::start();
-    for (path, format) in arguments.out.iter().zip(formats) {
-        write_file(path, |out| sample.write(format, out))?;
+    for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
+        output.write(|out| sample.write(format, out))?;
     }
-    for (path, format) in arguments.mesh.iter().zip(mesh_formats) {
-        write_file(path, |out| sample.write_mesh(format, out))?;
+    for (format, output) in mesh_formats.into_iter().zip(outputs) {
+        output.write(|out| sample.write_mesh(format, out))?;
     }
     seconds.writing = clock.seconds();
 
@@ -106,7 +108,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
         seconds,
         peak_mb: peak_mb(),
         peak_sampling_mb,
-        files: arguments.out.iter().chain(&arguments.mesh).map(|path| path.display().to_string()).collect(),
+        files: paths.iter().map(|path| path.display().to_string()).collect(),
     };
     let mut out = std::io::stdout().lock();
     if arguments.json {
@@ -303,15 +305,6 @@ fn bar(quiet: bool) -> ProgressBar {
     }
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
-}
-
-fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
-    let written = File::create(path).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        write(&mut out)?;
-        out.flush()
-    });
-    written.map_err(|error| Failure::File { path: path.to_owned(), error })
 }
 
 struct Stopwatch(Instant);

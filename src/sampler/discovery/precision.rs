@@ -2,6 +2,7 @@
 //! compressed to a scale that is found here.
 
 use super::grid::CELLS;
+use super::survey::ulps;
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
@@ -10,14 +11,21 @@ use glam::{DVec3, Vec3};
 const SIDE: usize = 9;
 /// Share of them that single precision may lose.
 const MOST_LOST: f64 = 0.02;
+/// One of so many nodes is asked for the distance by which single precision moves the level set there.
+const ONE_IN: usize = 7;
+/// Double precision is taken where the median of those distances is more than this times that by which coordinates in single precision
+/// are rounded. On the gallery's formulas it is at most 0.3 times that.
+const MOST_BLUR: f64 = 4.0;
 /// Nodes along each side of the grid on which the gradient at the surface is looked for.
 const FINE_SIDE: usize = 16;
 /// Largest number of points of the surface at which it is taken.
 const MOST_ROOTS: usize = 64;
 /// Halvings of an edge between two nodes.
 const HALVINGS: u32 = 60;
+
 /// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
-/// a value, beyond underflow, at nearly all places where double precision has one.
+/// a value, beyond underflow, at nearly all places where double precision has one, and if its rounding moves level sets by hardly
+/// more than that of the coordinates does.
 pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64> {
     let points: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
@@ -31,12 +39,37 @@ pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64
             lost += usize::from(is_there && (overflows || jet.value != 0.0));
         }
     }
-    (lost as f64 > MOST_LOST * points.len() as f64).then(|| scale(field, bounds))
+    let is_lost = lost as f64 > MOST_LOST * points.len() as f64;
+    (is_lost || is_blurred(field, bounds, &points, &value)).then(|| scale(field, bounds))
+}
+
+/// Whether rounding in single precision, which has given `values`, moves level sets by far more than that of the coordinates does. It
+/// is the whole of a function such as cos 0.001x − 0.999 that is small beside its terms. A field without bounds has one precision.
+fn is_blurred(field: &mut dyn Field, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
+    if field.bounded().is_none() {
+        return false;
+    }
+    let values: Vec<f64> = values.iter().step_by(ONE_IN).map(|&value| value.into()).collect();
+    let points: Vec<Vec3> = points.iter().step_by(ONE_IN).copied().collect();
+    let (mut exact, mut gradient) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
+    field.exact_gradients(&points, &mut exact, &mut gradient);
+    let mut moves: Vec<f64> = (0..points.len())
+        .map(|k| (values[k] - exact[k]).abs() / gradient[k].length())
+        .filter(|distance| distance.is_finite())
+        .collect();
+    sort_numbers(&mut moves);
+    moves.get(moves.len() / 2).is_some_and(|&median| median > MOST_BLUR * f64::from(ulps(bounds)))
 }
 
 /// Whether f is beyond double precision somewhere.
 pub(crate) fn overflows_double(field: &mut dyn Field, bounds: &Bounds) -> bool {
     bounds.spread(SIDE).any(|p| field.jet(p).value.is_infinite())
+}
+
+/// Whether f has different values in a box, which single precision may not tell apart.
+pub(crate) fn varies(field: &mut dyn Field, bounds: &Bounds) -> bool {
+    let mut values = bounds.spread(SIDE).map(|p| field.jet(p).value).filter(|value| value.is_finite());
+    values.next().is_some_and(|first| values.any(|value| value != first))
 }
 
 /// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no surface is seen.

@@ -373,7 +373,7 @@ const SAMPLES: usize = 256;
 const NOISE: f32 = UNRESOLVED[0] as f32;
 
 /// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
-fn ulps(bounds: &Bounds) -> f32 {
+pub(super) fn ulps(bounds: &Bounds) -> f32 {
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
     2.0 * f32::EPSILON * reach
 }
