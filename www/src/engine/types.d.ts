@@ -78,7 +78,9 @@ export type ColourMode = import('./core-types.js').ColourMode;
  * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
  * the camera follows the surface. A zoom or pan by the user ends that, and the fit command starts it again.
  */
-export type CameraState = { target: Vec3; distance: number; yaw: number; pitch: number; fit: boolean };
+export type CameraState = Angles & { target: Vec3; distance: number; fit: boolean };
+/** The side from which the camera looks. */
+export type Angles = { yaw: number; pitch: number };
 /** The options of the view. */
 export type ViewState = import('./share/view.js').ViewState;
 /**

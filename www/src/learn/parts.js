@@ -5,10 +5,11 @@ import { button } from '../ui/button.js';
 import { h, reducedMotion, s, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
+/** @import { RangeOptions, SelectOptions } from './types.js' */
+
 /**
  * A native range with its name and its value in words.
- * @param {{ name: string, max: number, value?: number, say: (value: number) => string, change: (value: number) => void
- *   }} about
+ * @param {RangeOptions} about
  */
 export function createRange({ name, max, value = 0, say, change }) {
   const id = uniqueId('range');
@@ -95,8 +96,7 @@ export function createBars({ values, words }) {
 /**
  * A select with its name.
  * @template {string} T
- * @param {{ name: string, choices: readonly { value: T, label: string }[], value?: NoInfer<T>, change: (value: T) =>
- *   void }} about
+ * @param {SelectOptions<T>} about
  */
 export function createSelect({ name, choices, value, change }) {
   const id = uniqueId('select');

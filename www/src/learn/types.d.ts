@@ -78,6 +78,20 @@ export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
 /** The input of a figure: the runs, and the predictions that were made. */
 export type Context = { lab: Promise<Lab>; stops: Stops };
+export interface RangeOptions {
+  name: string;
+  max: number;
+  value?: number;
+  /** returns a value in words */
+  say: (value: number) => string;
+  change: (value: number) => void;
+}
+export interface SelectOptions<T extends string> {
+  name: string;
+  choices: readonly { value: T; label: string }[];
+  value?: NoInfer<T>;
+  change: (value: T) => void;
+}
 export interface HandoutOptions {
   figures: readonly Figure[];
   lab: Promise<Lab>;

@@ -3,7 +3,7 @@ import { along, cross, distance, dot, vec } from '../engine/vector.js';
 
 /**
  * @import { Columns } from '../engine/columns.js'
- * @import { Bounds, CuttingPlane, Ray, Vec3 } from '../engine/types.js'
+ * @import { Angles, Bounds, CuttingPlane, Ray, Vec3 } from '../engine/types.js'
  */
 
 export const AXES = /** @type {const} */ (['x', 'y', 'z']);
@@ -23,7 +23,7 @@ export const cornerOf = ({ min, max }, index) => vec((k) => ((index >> k) & 1 ? 
 
 /**
  * Returns the direction from the camera's target to its eye.
- * @param {{yaw: number, pitch: number}} camera
+ * @param {Angles} camera
  * @returns {Vec3}
  */
 export const towardEye = ({ yaw, pitch }) => directionOf(yaw, pitch);

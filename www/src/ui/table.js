@@ -1,11 +1,9 @@
 /** Creates tables of figures. */
 import { h } from './dom.js';
 
-/**
- * @param {{ head: readonly string[], rows: readonly (readonly [string, ...string[]])[] | readonly string[][], caption?:
- *   string, class?: string }} about  the first cell of a row is its name; without a first word of the head nothing
- *   stands over those
- */
+/** @import { TableContent } from './types.js' */
+
+/** @param {TableContent} about */
 export const tableOf = ({ head: [first, ...rest], rows, caption, class: kind }) =>
   h(
     'table',

@@ -127,6 +127,14 @@ export interface FollowPanel {
   onKey: (listener: (event: KeyboardEvent) => void) => void;
 }
 
+export interface TableContent {
+  /** an empty first word leaves the place over the names of the rows empty */
+  head: readonly string[];
+  /** the first cell of a row is its name */
+  rows: readonly (readonly [string, ...string[]])[] | readonly string[][];
+  caption?: string;
+  class?: string;
+}
 /** The content of a chart. `first` is the number of the first place. */
 export interface Drawn {
   kind: 'bars' | 'line';

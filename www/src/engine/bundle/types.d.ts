@@ -12,6 +12,13 @@ export interface WorkerLike<Sent, Heard> {
 
 /** Why a bundle could not be loaded. */
 export type LoadFault = 'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init';
+/** The surroundings of a worker's loop, which tests script. */
+export interface WorkerEnv<Message> {
+  nowMs: () => number;
+  /** lets the worker handle its messages */
+  pause: () => Promise<void>;
+  post: (message: Message, transfer?: Transferable[]) => void;
+}
 /** A timer of the browser, or a number of a test's clock. */
 export type Timer = ReturnType<typeof setTimeout> | number;
 export interface Timers {

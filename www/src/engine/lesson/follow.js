@@ -8,6 +8,7 @@ import { nextBudget } from '../bundle/budget.js';
 
 /**
  * @import { Lesson } from '../../wasm/lesson/lesson.js'
+ * @import { WorkerEnv } from '../bundle/types.js'
  * @import { Advanced, FromLesson, Particles, ToLesson } from './types.js'
  */
 
@@ -17,8 +18,7 @@ const FIRST_BUDGET = 64;
 
 /**
  * @param {Lesson} lesson
- * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromLesson, transfer?: Transferable[]) =>
- *   void}} env
+ * @param {WorkerEnv<FromLesson>} env
  */
 export function follow(lesson, env) {
   /** Number of the present run; 0 for none. */

@@ -7,7 +7,10 @@
 import { nextBudget } from '../bundle/budget.js';
 import { words } from '../bundle/load.js';
 
-/** @import { FromPoints, Order, PointsLike } from './types.js' */
+/**
+ * @import { WorkerEnv } from '../bundle/types.js'
+ * @import { FromPoints, Order, PointsLike } from './types.js'
+ */
 
 /** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;
@@ -18,8 +21,7 @@ const USUAL_CENTRES = 0;
 /**
  * @param {PointsLike} points
  * @param {Order} order
- * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) =>
- *   void}} env
+ * @param {WorkerEnv<FromPoints>} env
  */
 export async function solve(points, order, env) {
   /** @param {{kind: string, message: string, line?: number | null}} error */

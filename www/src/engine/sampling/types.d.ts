@@ -1,5 +1,5 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
-import type { Timers } from '../bundle/types.js';
+import type { Timers, WorkerEnv } from '../bundle/types.js';
 import type { Columns, Figures } from '../columns.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
@@ -203,11 +203,7 @@ export interface ClientEvents {
   onSafeMode: (crash: Crash) => void;
   onLoadFailed: (text: string) => void;
 }
-export interface Env {
-  nowMs: () => number;
-  /** lets the worker handle its messages */
-  pause: () => Promise<void>;
-  post: (message: FromWorker, transfer?: Transferable[]) => void;
+export interface Env extends WorkerEnv<FromWorker> {
   interrupt: () => 'stop' | 'replace' | null;
   /** whether the page shows the curvature */
   curvature: () => boolean;

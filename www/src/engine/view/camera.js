@@ -10,12 +10,8 @@
 import { dot, vec } from '../vector.js';
 
 /**
- * @import { CameraState, Spot, Vec3 } from '../types.js'
- * @import { Insets, View } from './types.js'
- */
-
-/**
- * @typedef {{yaw: number, pitch: number}} Angles
+ * @import { Angles, CameraState, Spot, Vec3 } from '../types.js'
+ * @import { Ball, Insets, View } from './types.js'
  */
 
 /** Angle of view across the shorter side of the free part of the picture. A narrow angle keeps the distortion small. */
@@ -44,7 +40,7 @@ export const homeCamera = () => ({ target: [0, 0, 0], distance: 5, yaw: 0.62, pi
 
 /**
  * Returns the unit axes of the eye: right, up, forward.
- * @param {{yaw: number, pitch: number}} camera
+ * @param {Angles} camera
  * @returns {{right: Vec3, up: Vec3, forward: Vec3}}
  */
 export function axes({ yaw, pitch }) {
@@ -57,8 +53,7 @@ export function axes({ yaw, pitch }) {
  * @param {CameraState} camera
  * @param {number} widthPx
  * @param {number} heightPx
- * @param {{centre: Vec3, radius: number}} scene  a ball around everything drawn, which determines the near and far
- *   planes
+ * @param {Ball} scene  a ball around everything drawn, which determines the near and far planes
  * @param {Insets} [insets]  covered margins; the target is drawn in the middle of the free part
  * @returns {View}
  */
@@ -299,7 +294,7 @@ export class Camera {
 
   /**
    * Moves the camera so that the whole ball is visible, with an animation unless `jump` is set.
-   * @param {{centre: Vec3, radius: number}} ball
+   * @param {Ball} ball
    * @param {boolean} [jump]
    */
   fit(ball, jump = false) {
@@ -316,7 +311,7 @@ export class Camera {
 
   /**
    * Eases to where the whole ball is visible, and goes on with a turn under way.
-   * @param {{centre: Vec3, radius: number}} ball
+   * @param {Ball} ball
    */
   glideTo({ centre, radius }) {
     const goal = { target: centre, distance: Math.max(this.#nearLimit, fitDistance(radius)) };
@@ -338,7 +333,7 @@ export class Camera {
 
   /**
    * Moves the camera so that a ball is seen along a normal, at most from as far as now, with an animation.
-   * @param {{centre: Vec3, radius: number}} ball
+   * @param {Ball} ball
    * @param {Vec3} normal  towards the camera
    */
   lookAt({ centre, radius }, [x, y, z]) {

@@ -4,6 +4,8 @@
  * @module
  */
 
+/** @import { Angles } from '../types.js' */
+
 /** @param {number} v @param {number} low @param {number} high */
 const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
 
@@ -14,7 +16,7 @@ const STEEPEST_RAD = 0.9;
 
 /**
  * Returns the camera angles that face a normal, or null if the camera already faces it.
- * @param {{ yaw: number, pitch: number }} camera
+ * @param {Angles} camera
  * @param {Iterable<number>} normal  of length 1
  */
 export function facing({ yaw, pitch }, [x, y, z]) {

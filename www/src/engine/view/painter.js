@@ -13,7 +13,7 @@ import { isBeyond } from './picking.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
- * @import { Style, Target } from './types.js'
+ * @import { PaintedDisc, Style, Target } from './types.js'
  */
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
@@ -66,10 +66,7 @@ function shadeOf(keyward, skyward, edgeOn) {
 
 /**
  * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
- * @param {Target} target
- * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number,
- *   rim: number, coreSq: number}} disc `inv` is the depth at the centre; beyond the squared distance `coreSq` the disc
- *   has the colour of its rim
+ * @param {Target} target @param {PaintedDisc} disc
  */
 function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, depthPerPx, value, rim, coreSq }) {
   const y0 = Math.max(0, Math.ceil(sy - px - 0.5));

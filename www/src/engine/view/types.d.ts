@@ -15,6 +15,7 @@ export interface Device {
 }
 /** pixels covered by panels */
 export type Insets = { left: number; right: number; top: number; bottom: number };
+export type Ball = { centre: Vec3; radius: number };
 /** A picture from an eye: its matrices and vectors, and its size in CSS pixels. */
 export type View = {
   widthPx: number;
@@ -60,6 +61,23 @@ export interface Style {
   box: { min: number[]; max: number[]; colour: number[] } | null;
   /** discs whose centres are beyond it are hidden */
   plane?: CuttingPlane | null;
+}
+/** A disc on the screen, in pixels. */
+export interface PaintedDisc {
+  /** its centre and its longer half axis */
+  sx: number;
+  sy: number;
+  px: number;
+  /** slopes of its plane to the right and down */
+  ka: number;
+  kb: number;
+  /** depth at the centre */
+  inv: number;
+  depthPerPx: number;
+  /** colour within the squared distance `coreSq` from the centre; beyond it the disc has the colour of its rim */
+  value: number;
+  rim: number;
+  coreSq: number;
 }
 /** The pixels of a picture and how near each is. */
 export type Target = { out: Uint32Array; depth: Float32Array; width: number; height: number };

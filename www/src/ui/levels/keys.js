@@ -10,7 +10,7 @@ const ARROWS = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 };
 /**
  * Returns the move of a key; null for one that means nothing here. An arrow alone moves by an event, on the range by
  * what the range goes along, with Shift by a particle, with Alt by a level.
- * @param {{ key: string, shiftKey: boolean, altKey: boolean, ctrlKey: boolean, metaKey: boolean }} event
+ * @param {Pick<KeyboardEvent, 'key' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>} event
  * @param {{ onRange: boolean, isOpen: boolean }} place  `isOpen`: a particle is followed
  * @returns {Move | null}
  */

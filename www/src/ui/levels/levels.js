@@ -8,7 +8,7 @@ import { levelTable, shortOf } from './table.js';
 
 /**
  * @import { Columns } from '../../engine/columns.js'
- * @import { Engine } from '../../engine/types.js'
+ * @import { Angles, Engine } from '../../engine/types.js'
  * @import { Track } from '../types.js'
  */
 
@@ -48,7 +48,7 @@ const SEEN = 0.1;
  * Returns whether every particle up to a level faces away from the camera, so that the faint surface still to come
  * would hide them all.
  * @param {Pick<Columns, 'count' | 'levels' | 'normals'>} particles
- * @param {{ yaw: number, pitch: number }} camera @param {number} level
+ * @param {Angles} camera @param {number} level
  */
 export function isOutOfSight({ count, levels, normals }, { yaw, pitch }, level) {
   const [x, y, z] = [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];

@@ -1,7 +1,10 @@
 /** Returns the caption that describes the state of the run. */
 import { formatCount, formatSeconds, formatShare, lastSteps, plural } from '../format.js';
 
-/** @import { Loading, Progress } from '../../engine/types.js' */
+/**
+ * @import { Loading, Progress } from '../../engine/types.js'
+ * @import { CaptionFacts } from './types.js'
+ */
 
 /** Returns the caption during a reveal. @param {{ level: number, particles: number }} reveal */
 export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
@@ -11,8 +14,7 @@ export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · 
 
 /**
  * @param {Progress} progress
- * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null, steps: number }} facts  `seconds`
- *   are those of the sampling or, with `steps` above 0, of so many relaxation steps after it
+ * @param {CaptionFacts} facts
  */
 export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
   const particles = plural(progress.particles, 'particle');

@@ -7,7 +7,7 @@ import { clamp } from '../scale.js';
 
 /**
  * @import { Engine, Hover } from '../../engine/types.js'
- * @import { Edges } from './types.js'
+ * @import { Edges, Point } from './types.js'
  */
 
 const OFFSET_PX = 16;
@@ -71,7 +71,7 @@ function freeOf(view) {
   return { left, right: toolbar ? Math.min(right, toolbar.left - 4) : right, top, bottom };
 }
 
-/** @param {HTMLElement} card @param {{ x: number, y: number }} at @param {{ host: DOMRect, within: Edges }} room */
+/** @param {HTMLElement} card @param {Point} at @param {{ host: DOMRect, within: Edges }} room */
 function put(card, at, { host, within }) {
   const { width, height } = card.getBoundingClientRect();
   const fits = at.x + OFFSET_PX + width < within.right;

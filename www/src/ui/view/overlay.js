@@ -10,6 +10,7 @@ import { meshWords, NO_MESH } from './mesh-words.js';
 /**
  * @import { ReadonlySignal } from '@preact/signals-core'
  * @import { Engine } from '../../engine/types.js'
+ * @import { OverlayParts } from './types.js'
  */
 
 const HINT_MS = 9000;
@@ -19,9 +20,7 @@ const ANNOUNCE_MS = 3000;
 /**
  * @param {HTMLElement} view
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement, told:
- *   ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` describes
- *   the chosen generation level
+ * @param {OverlayParts} parts
  */
 export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });

@@ -1,5 +1,6 @@
 // Types of what lies over the picture.
-import type { Ray } from '../../engine/types.js';
+import type { ReadonlySignal } from '@preact/signals-core';
+import type { Bounds, Ray } from '../../engine/types.js';
 import type { Motion, Toast } from '../types.js';
 
 export type Edges = { left: number; right: number; top: number; bottom: number };
@@ -47,6 +48,33 @@ export interface Mark {
   draw: (pen: Pen) => void;
   /** elements that the mark places itself */
   handles?: HTMLElement[];
+}
+export interface OverlayParts {
+  stage: HTMLElement;
+  poster: HTMLElement;
+  start: HTMLElement;
+  /** describes the chosen generation level */
+  told: ReadonlySignal<{ title: string; text: string } | null>;
+}
+/** The state of a run beside its progress. */
+export interface CaptionFacts {
+  partial: boolean;
+  empty: boolean;
+  busy: boolean;
+  /** of the sampling or, with `steps` above 0, of so many relaxation steps after it */
+  seconds: number | null;
+  steps: number;
+}
+/** A drag of a face of the clip box. */
+export interface FaceDrag {
+  /** the box and the user's own box when the drag began */
+  box: Bounds | null;
+  own: Bounds | null;
+  /** place of the pointer along the axis then */
+  at: number | null;
+  /** place of the face */
+  value: number;
+  moved: boolean;
 }
 export interface ToolbarOptions {
   hide: () => void;

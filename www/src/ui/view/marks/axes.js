@@ -8,7 +8,7 @@ import { outerEdge, outward } from './edges.js';
 
 /**
  * @import { Bounds, Engine } from '../../../engine/types.js'
- * @import { Edge, Mark, Pen } from '../types.js'
+ * @import { Edge, Mark, Pen, Point } from '../types.js'
  */
 
 /** Smallest distance of ticks, length of a tick, and distances of its figure and of the axis's name from the axis. */
@@ -52,7 +52,7 @@ function drawAxis(pen, engine, edge, axis) {
   const way = outward(edge, centre);
   const [low, high] = [ends[0][axis], ends[1][axis]];
   const lengthPx = Math.hypot(to.x - from.x, to.y - from.y);
-  const away = (/** @type {{x: number, y: number}} */ at, /** @type {number} */ px) => ({
+  const away = (/** @type {Point} */ at, /** @type {number} */ px) => ({
     x: at.x + way.x * px,
     y: at.y + way.y * px,
   });

@@ -9,7 +9,7 @@ import { createHandle } from './handle.js';
 /**
  * @import { ReadonlySignal } from '@preact/signals-core'
  * @import { Bounds, Engine } from '../../../engine/types.js'
- * @import { Mark } from '../types.js'
+ * @import { FaceDrag, Mark } from '../types.js'
  */
 
 /** Step of the arrow keys as a share of the side. */
@@ -62,8 +62,7 @@ export function boxMark(engine, stage) {
  */
 function createFace(engine, stage, box, { name, axis, end }) {
   const vector = axisVector(axis);
-  /** The box and the user's box when the drag began, where the pointer was along the axis, and where the face is. */
-  /** @type {{ box: Bounds | null, own: Bounds | null, at: number | null, value: number, moved: boolean }} */
+  /** @type {FaceDrag} */
   const drag = { box: null, own: null, at: null, value: 0, moved: false };
   const middleOf = (/** @type {Bounds} */ bounds) => {
     const middle = centreOf(bounds);

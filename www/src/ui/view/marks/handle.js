@@ -6,7 +6,7 @@ import { h } from '../../dom.js';
 
 /**
  * @import { Engine, Ray } from '../../../engine/types.js'
- * @import { HandleOptions } from '../types.js'
+ * @import { HandleOptions, Point } from '../types.js'
  */
 
 /** @type {Record<string, number>} */
@@ -60,7 +60,7 @@ export function createHandle(engine, stage, { name, kind, grab, drag, drop, canc
   });
   return {
     knob,
-    /** Puts the knob at a place of the picture, or hides it. @param {{x: number, y: number} | null} spot */
+    /** Puts the knob at a place of the picture, or hides it. @param {Point | null} spot */
     put(spot) {
       knob.hidden = spot === null;
       if (spot) knob.style.transform = `translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
