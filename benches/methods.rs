@@ -31,7 +31,7 @@ models from points, one after the other. This page is written by `cargo bench --
 figures, seed 0, are the same on every machine; README.md says what they mean, and on which machine the times were taken, which are
 processor time, mean of three runs. *Refined 3 ×* means that every edge of the coarse front was halved three times.";
 
-/// What is measured.
+/// Plan of a measurement.
 struct Plan {
     names: Vec<String>,
     counts: Vec<u32>,

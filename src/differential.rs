@@ -17,13 +17,13 @@ use glam::{DVec3, Vec3};
 
 /// Principal curvatures at a point of a surface, in units of 1/length.
 ///
-/// They are positive where the surface bends away from its outward normal, as a sphere does: that of radius R has
+/// The curvatures are positive where the surface bends away from its outward normal, as a sphere does: that of radius R has
 /// κ₁ = κ₂ = 1/R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature<T = f32, V = Vec3> {
-    /// κ₁, the larger one.
+    /// Principal curvature κ₁, the larger one.
     pub k1: T,
-    /// κ₂, the smaller one.
+    /// Principal curvature κ₂, the smaller one.
     pub k2: T,
     /// Unit principal direction of κ₁, of either sign. That of κ₂ is perpendicular to it and to the normal.
     pub direction: V,

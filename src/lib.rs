@@ -46,8 +46,7 @@
 //! | singular point | A point of the surface where ∇f = 0, so that there is no normal. |
 //! | clip box | The axis-aligned box outside of which nothing is sampled. |
 //! | fitted box | A clip box around all bounded components of the surface, with room for particles. |
-//! | reach | Whether the surface lies in its fitted box, goes on beyond it, or is nowhere. |
-//! | border | Where the clip box cuts the surface. |
+//! | border | The curves along which the surface ends: where the clip box cuts it, or f ends. Of a mesh, the edges of one triangle alone. |
 //! | particle | A point of the sample, with position, normal and repulsion radius. |
 //! | repulsion radius, r | Half of the wanted distance between neighbours. |
 //! | radius field | The repulsion radius as a function on the surface, in adaptive sampling. |
@@ -56,7 +55,7 @@
 //! | survey | The first look at the box on a grid: area, scale of the gradient, candidates for seeds. |
 //! | seed | A first particle, from which a front grows. |
 //! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
-//! | completeness | Whether every component is proven to have a witness. |
+//! | completeness | Whether every component is proven to have a witness, and every witness to be on the component of a particle or named. |
 //! | cell | A box of the octree, or of a grid of particles. |
 //! | undecided cell | A cell of the octree that may hold a component and could not be decided. |
 //! | front | The particles of the newest generation level, which grow over the surface. |
@@ -64,7 +63,7 @@
 //! | parent, child | A particle, and one that it proposed. |
 //! | slot | One of a parent's places for children; six of them 60° apart in uniform sampling. |
 //! | arc | An interval of directions around a parent that is free for children, in adaptive sampling. |
-//! | fate | What became of a slot: added, matched, not converged, outside, undefined, capped. |
+//! | fate | The state of a slot: open, the parent's, added, matched, not converged, outside, undefined or capped. |
 //! | match radius | The distance below which a child is identified with an existing particle. |
 //! | provisional | Said of a child that is entered but not yet projected. |
 //! | projection | Moving a point onto the surface: along a circle around its parent, or down the gradient. |
@@ -73,6 +72,8 @@
 //! | gap | A hole at a seam wide enough for a particle. |
 //! | relaxation | Moving all particles against their repulsion, step by step. |
 //! | energy | The sum over neighbour pairs that the relaxation lowers. |
+//! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |
+//! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | neighbour list | The particles within the range of the repulsion and a skin, kept from step to step. |
 //! | Verlet skin | What the lists reach beyond the range, so that they stay complete while particles move. |
 //! | stale list | A list whose particle has travelled half of its skin since the list was made. |
@@ -84,13 +85,13 @@
 //! | fission, death | Splitting and removal of particles, in the system of Witkin and Heckbert. |
 //! | budget | A count of work units after which a step returns. It is never a time. |
 //! | slice | A share of long work between two returns to the caller. |
-//! | tape | A formula compiled to a list of operations in single-assignment form. |
+//! | graph, program | A formula as a list of operations in single-assignment form, and what that is compiled to. |
 //! | jet | A value with its gradient and Hessian. |
 //! | batch, lanes | Points evaluated by one call, and those of them computed by one SIMD instruction. |
 //!
 //! # Modules
 //!
-//! What a program needs stands at the root. The modules behind it are public for the project's own tests, benchmarks and page, without
+//! The items that a program needs stand at the root. The modules behind it are public for the project's own tests, benchmarks and page, without
 //! a promise to stay; ARCHITECTURE.md says what each is for and who may use whom.
 
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! Writes the types of what crosses to the page as TypeScript, and holds the page's file to them.
+//! Writes the types of the values that cross to the page as TypeScript, and holds the page's file to them.
 
 use crate::field::model::SolvedModel;
 use crate::lesson::{self, LessonField};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a module may use of the modules beside it, room by room. A room is a folder of modules, the crate itself the outermost.
+/// The modules that each module of a room may use. A room is a folder of modules, the crate itself the outermost.
 type Room = (&'static str, &'static [(&'static str, &'static [&'static str])]);
 
 /// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not listed has no place in it

@@ -19,7 +19,7 @@ const GROUND: [f32; 2] = [1.6, 0.3];
 pub(crate) struct View {
     /// Middle of the picture.
     pub(crate) target: Vec3,
-    /// Towards the eye.
+    /// Direction towards the eye.
     pub(crate) back: Vec3,
     pub(crate) up: Vec3,
     /// Half the side of what is seen.
@@ -50,7 +50,7 @@ impl View {
     }
 }
 
-/// How a set is coloured.
+/// Colouring of a set.
 #[derive(Clone, Copy)]
 pub(crate) enum Colour {
     Plain,

@@ -42,9 +42,9 @@ impl Surface {
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// By its own rule.
+    /// The run has ended by its own rule.
     Done,
-    /// At the limit of processor time.
+    /// The run was cut off at the limit of processor time.
     CutOff,
 }
 
@@ -75,7 +75,7 @@ pub(crate) struct Outcome {
     /// Relaxation steps, or iterations.
     pub(crate) steps: u32,
     pub(crate) end: End,
-    /// Of all but the relaxation.
+    /// Time of all but the relaxation.
     pub(crate) generation: f64,
     pub(crate) relaxation: f64,
     pub(crate) last_step: f64,
@@ -115,7 +115,7 @@ impl Stopwatch {
     }
 }
 
-/// What is to be sampled, and how finely.
+/// A job: a surface to be sampled, with the sizes of the particles.
 pub(crate) struct Job {
     pub(crate) surface: Surface,
     /// Settings of the sampler: of given size.

@@ -44,21 +44,21 @@ const LEAST_CELLS: usize = 2_048;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
-    /// All of it within ±10⁴ lies in the box.
+    /// The surface within ±10⁴ lies in the box.
     Bounded,
     /// The surface goes on beyond the box.
     Endless,
-    /// There is none within ±10⁴.
+    /// There is no surface within ±10⁴.
     Nowhere,
-    /// Neither intervals nor a grid tell.
+    /// It is not known: neither intervals nor a grid decide it.
     #[default]
     Unknown,
 }
 
-/// The box around a surface, without room, and what it holds.
+/// The box around a surface, without room, and whether the surface is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Around all bounded components; of what goes on for ever a part.
+    /// Box around all bounded components and a part of each endless one.
     pub bounds: Bounds,
     /// Whether the surface is bounded.
     pub reach: Reach,

@@ -1,4 +1,4 @@
-//! The box of a surface of which bounds tell nothing, by the signs of f on grids.
+//! The box of a surface whose field has no useful bounds, by the signs of f on grids.
 
 use super::{Extent, FALLBACK_HALF, HALVES, Reach, placeable};
 use crate::field::Field;

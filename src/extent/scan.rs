@@ -43,7 +43,7 @@ pub(super) enum ScanOutcome {
     Inside,
     /// The surface passes through the faces of the cube: f changes its sign there. The hull is that of its bends, if these are few.
     Crossing,
-    /// The bounds do not tell.
+    /// The bounds do not decide it.
     Undecided,
 }
 
@@ -60,7 +60,7 @@ type Place = [u32; 3];
 #[derive(Clone, Copy)]
 struct OpenCell {
     at: Place,
-    /// The axes along which the surface may have an extreme in it.
+    /// The axes along which the surface may have an extreme in the cell.
     extremes: [bool; 3],
 }
 
@@ -69,9 +69,9 @@ struct OpenCell {
 struct ScanLevel {
     lo: DVec3,
     size: f64,
-    /// Cells along a side.
+    /// Number of cells along a side.
     cells: u32,
-    /// Halvings.
+    /// Number of halvings.
     depth: u32,
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Measuring {
     /// The particles after the front, until they are measured.
     pub(super) front: Option<Arc<ParticleCopy>>,
     pub(super) front_figures: Option<Figures>,
-    pub(super) work: Option<Work<Measured>>,
+    pub(super) work: Option<Work<MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
 }
@@ -73,7 +73,7 @@ impl ParticleCopy {
 }
 
 /// Results of a measurement.
-pub(super) struct Measured {
+pub(super) struct MeasuringResult {
     pub(super) front: Option<Figures>,
     pub(super) now: quality::Measurements,
     /// Number of particles that face another sheet.
@@ -91,23 +91,23 @@ pub(super) struct MeasuringInput {
 // These functions are not generic, so that the measurement is compiled once and not with every type of field.
 impl MeasuringInput {
     /// Measures all at once.
-    pub(super) fn measure(self, field: &mut dyn Field) -> Measured {
+    pub(super) fn measure(self, field: &mut dyn Field) -> MeasuringResult {
         slices::complete(self.in_slices(field))
     }
 
     /// The measurement in slices.
-    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<Measured> {
+    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<MeasuringResult> {
         Box::pin(async move { self.in_slices(&mut *field).await })
     }
 
-    async fn in_slices(self, field: &mut dyn Field) -> Measured {
+    async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
         let Self { front, now, bounds, sampling } = self;
         let front = match front {
             Some(front) => Some(front.measure(field, &bounds, sampling).await.figures),
             None => None,
         };
         let report = now.measure(field, &bounds, sampling).await;
-        Measured { front, now: report, facing: facing_another_sheet(&now).await }
+        MeasuringResult { front, now: report, facing: facing_another_sheet(&now).await }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The report of a run: the counts of the sampler, and the measurements of the particles before and after the relaxation.
 
-use super::measuring::{Measured, MeasuringInput, ParticleCopy};
+use super::measuring::{MeasuringInput, MeasuringResult, ParticleCopy};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
@@ -154,7 +154,7 @@ impl<F: Field> Run<F> {
     }
 
     /// Keeps the measurements and returns the report.
-    fn take(&mut self, Measured { front, now, facing }: Measured) -> Report {
+    fn take(&mut self, MeasuringResult { front, now, facing }: MeasuringResult) -> Report {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }

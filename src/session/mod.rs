@@ -9,7 +9,9 @@ mod setting;
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::BoxMode;
-pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value, settings};
+pub use setting::{
+    Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
+};
 
 use crate::extent::Reach;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, MathNode, Parameter};

@@ -17,11 +17,11 @@ pub struct Setting {
     /// Explanation in one line.
     pub help: &'static str,
     /// Group in which the setting is shown.
-    pub group: Group,
+    pub group: SettingGroup,
     /// Type of the values.
-    pub kind: Kind,
+    pub kind: SettingKind,
     /// Default value.
-    pub default: Value,
+    pub default: SettingValue,
     /// Smallest value; 0 for a choice.
     pub min: f64,
     /// Largest value that the page offers; 0 for a choice.
@@ -32,7 +32,7 @@ pub struct Setting {
     /// Step of a slider; on a logarithmic scale a factor minus one. 0 for a choice.
     pub step: f64,
     /// Scale of a slider.
-    pub scale: Scale,
+    pub scale: SettingScale,
     /// Unit; `%` stands for a share of the diagonal of the box, which is shown times 100.
     pub unit: &'static str,
     /// Values of a choice.
@@ -41,7 +41,7 @@ pub struct Setting {
     pub when: &'static [Condition],
     /// Reads the value of this setting.
     #[serde(skip)]
-    read: fn(&Settings) -> Value,
+    read: fn(&Settings) -> SettingValue,
 }
 
 impl Setting {
@@ -84,7 +84,7 @@ impl Setting {
 
     /// The value of this setting in `settings`.
     #[must_use]
-    pub fn value(&self, settings: &Settings) -> Value {
+    pub fn value(&self, settings: &Settings) -> SettingValue {
         (self.read)(settings)
     }
 }
@@ -92,7 +92,7 @@ impl Setting {
 /// Group of settings that are shown together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
-pub enum Group {
+pub enum SettingGroup {
     /// Settings that everyone uses.
     Sampling,
     /// Settings that few users need.
@@ -103,7 +103,7 @@ pub enum Group {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum SettingKind {
     /// Numbers.
     Number,
     /// Whole numbers.
@@ -116,7 +116,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
-pub enum Scale {
+pub enum SettingScale {
     /// Equal steps add the same.
     Linear,
     /// Equal steps multiply by the same.
@@ -127,7 +127,7 @@ pub enum Scale {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(untagged)]
-pub enum Value {
+pub enum SettingValue {
     /// The value of a setting that is a real number.
     Number(f64),
     /// The value of a setting that is a whole number.
@@ -136,14 +136,14 @@ pub enum Value {
     Choice(&'static str),
 }
 
-impl Value {
+impl SettingValue {
     /// Type of the setting that has such a value.
     #[must_use]
-    pub fn kind(self) -> Kind {
+    pub fn kind(self) -> SettingKind {
         match self {
-            Self::Number(_) => Kind::Number,
-            Self::Integer(_) => Kind::Integer,
-            Self::Choice(_) => Kind::Choice,
+            Self::Number(_) => SettingKind::Number,
+            Self::Integer(_) => SettingKind::Integer,
+            Self::Choice(_) => SettingKind::Choice,
         }
     }
 
@@ -158,19 +158,19 @@ impl Value {
     }
 }
 
-impl From<f64> for Value {
+impl From<f64> for SettingValue {
     fn from(number: f64) -> Self {
         Self::Number(number)
     }
 }
 
-impl From<u64> for Value {
+impl From<u64> for SettingValue {
     fn from(whole: u64) -> Self {
         Self::Integer(whole)
     }
 }
 
-impl From<u32> for Value {
+impl From<u32> for SettingValue {
     fn from(whole: u32) -> Self {
         Self::Integer(whole.into())
     }
@@ -201,7 +201,7 @@ pub struct Condition {
 /// A setting that is a number, with the range that is accepted.
 fn number(
     name: &'static str,
-    read: fn(&Settings) -> Value,
+    read: fn(&Settings) -> SettingValue,
     label: &'static str,
     help: &'static str,
 ) -> Setting {
@@ -211,14 +211,14 @@ fn number(
         name,
         label,
         help,
-        group: Group::Sampling,
+        group: SettingGroup::Sampling,
         kind: default.kind(),
         default,
         min,
         max,
         accepted_max: max,
         step: 0.01,
-        scale: Scale::Linear,
+        scale: SettingScale::Linear,
         unit: "",
         choices: &[],
         when: &[],
@@ -229,7 +229,7 @@ fn number(
 /// A setting that is one of a few named values.
 fn choice(
     name: &'static str,
-    read: fn(&Settings) -> Value,
+    read: fn(&Settings) -> SettingValue,
     label: &'static str,
     help: &'static str,
     choices: &'static [Choice],
@@ -253,7 +253,7 @@ macro_rules! choices {
     ($list:ident of $name:ident: $($variant:ident $value:literal $label:literal),*) => {
         const $list: &[Choice] = &[$(Choice { value: $value, label: $label }),*];
 
-        impl From<$name> for Value {
+        impl From<$name> for SettingValue {
             fn from(choice: $name) -> Self {
                 Self::Choice(match choice { $($name::$variant => $value),* })
             }
@@ -272,10 +272,10 @@ choices!(GAPS of GapPolicy: Fill "fill" "Fill", Leave "leave" "Leave");
 /// Every setting, in the order in which they are shown.
 #[must_use]
 pub fn settings() -> Vec<Setting> {
-    let log = |setting| Setting { scale: Scale::Log, ..setting };
+    let log = |setting| Setting { scale: SettingScale::Log, ..setting };
     let share = |setting| Setting { unit: "%", ..log(setting) };
     let particles = |setting| Setting { unit: "particles", ..log(setting) };
-    let advanced = |setting| Setting { group: Group::Advanced, ..setting };
+    let advanced = |setting| Setting { group: SettingGroup::Advanced, ..setting };
     vec![
         // It acts before a run: a run has the box that it is given.
         choice(
@@ -451,14 +451,14 @@ mod tests {
             for choice in setting.choices {
                 let settings: Settings =
                     serde_json::from_value(json!({ setting.name: choice.value })).expect("settings");
-                assert_eq!(setting.value(&settings), Value::Choice(choice.value), "{}", setting.name);
+                assert_eq!(setting.value(&settings), SettingValue::Choice(choice.value), "{}", setting.name);
             }
         }
     }
 
     #[test]
     fn numbers_have_a_range_and_a_step() {
-        for setting in settings().iter().filter(|setting| setting.kind != Kind::Choice) {
+        for setting in settings().iter().filter(|setting| setting.kind != SettingKind::Choice) {
             assert!(
                 setting.min < setting.max && setting.max <= setting.accepted_max && setting.step > 0.0,
                 "{}",

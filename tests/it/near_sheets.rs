@@ -34,7 +34,7 @@ fn of_radius(radius: f64, half: f64) -> Settings {
     settings!(radius_share: radius / (2.0 * half * 3.0_f64.sqrt()); ..Settings::default())
 }
 
-/// The same with sizes that follow the curvature.
+/// Particles of half to one and a half times this radius, by the curvature, in a cube of half-width `half`.
 fn adaptive(radius: f64, half: f64) -> Settings {
     let share = of_radius(radius, half).radius_share;
     settings!(sampling: Sampling::Adaptive,

@@ -1,7 +1,7 @@
 //! Holds the table of settings in the README to the settings, and the compiler that is promised to the one that is used.
 
 use marching_particles::math::shortest_text;
-use marching_particles::session::{Condition, Setting, Value, settings};
+use marching_particles::session::{Condition, Setting, SettingValue, settings};
 use std::path::Path;
 
 const BEGIN: &str =
@@ -22,7 +22,7 @@ fn values(setting: &Setting) -> String {
     let (min, max) = setting.accepted().into_inner();
     match setting.default {
         _ if setting.is_share() => format!("{} to {} of the box diagonal", percent(min), percent(max)),
-        Value::Integer(_) if max >= u64::MAX as f64 => "any whole number".to_owned(),
+        SettingValue::Integer(_) if max >= u64::MAX as f64 => "any whole number".to_owned(),
         _ => {
             format!("{} to {} {}", shortest_text(min), shortest_text(max), setting.unit).trim_end().to_owned()
         }
@@ -31,10 +31,10 @@ fn values(setting: &Setting) -> String {
 
 fn default(setting: &Setting) -> String {
     match setting.default {
-        Value::Choice(value) => format!("`{value}`"),
-        Value::Integer(whole) => whole.to_string(),
-        Value::Number(share) if setting.is_share() => percent(share),
-        Value::Number(number) => shortest_text(number),
+        SettingValue::Choice(value) => format!("`{value}`"),
+        SettingValue::Integer(whole) => whole.to_string(),
+        SettingValue::Number(share) if setting.is_share() => percent(share),
+        SettingValue::Number(number) => shortest_text(number),
     }
 }
 

@@ -215,7 +215,7 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpo
     Ok(fingerprint.finish())
 }
 
-/// What identifies the steps after the compiler.
+/// Identification of the steps after the compiler.
 fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
     Ok(Fingerprint::default()
         .file(&project.root.join("xtask/src/bundle.rs"))?

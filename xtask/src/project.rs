@@ -1,4 +1,4 @@
-//! Where things are.
+//! Paths of the project and of its tools.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -72,7 +72,7 @@ pub(crate) fn run(label: &str, command: &mut Command, advice: &str) -> Result<St
     }
 }
 
-/// Runs `command` without announcing it. As [`run`] otherwise.
+/// Runs `command` as [`run`] does, without announcing it.
 pub(crate) fn capture(command: &mut Command, advice: &str) -> Result<String> {
     let line = command_line(command);
     let with_advice = |text: String| {

@@ -7,7 +7,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use marching_particles::math::{Bounds, grouped, shortest_text};
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{Kind, Setting, Value, settings};
+use marching_particles::session::{Setting, SettingKind, SettingValue, settings};
 use marching_particles::{Settings, SettingsError};
 use serde_json::{Map, Value as Json};
 
@@ -81,18 +81,18 @@ impl FromArgMatches for SamplingOptions {
                 continue;
             }
             let value: Json = match setting.kind {
-                Kind::Choice if name == SAMPLING => ADAPTIVE.into(),
-                Kind::Choice => {
+                SettingKind::Choice if name == SAMPLING => ADAPTIVE.into(),
+                SettingKind::Choice => {
                     let word: &String = matches.get_one(name).ok_or_else(|| missing(name))?;
                     word.replace('-', "_").into()
                 }
-                Kind::Integer => (*matches.get_one::<u64>(name).ok_or_else(|| missing(name))?).into(),
-                Kind::Number if setting.is_share() => {
+                SettingKind::Integer => (*matches.get_one::<u64>(name).ok_or_else(|| missing(name))?).into(),
+                SettingKind::Number if setting.is_share() => {
                     let length = *matches.get_one(name).ok_or_else(|| missing(name))?;
                     self.lengths.push((name, length));
                     continue;
                 }
-                Kind::Number => (*matches.get_one::<f64>(name).ok_or_else(|| missing(name))?).into(),
+                SettingKind::Number => (*matches.get_one::<f64>(name).ok_or_else(|| missing(name))?).into(),
             };
             if name == COUNT {
                 self.values.insert(SIZE_MODE.to_owned(), COUNT.into());
@@ -121,18 +121,18 @@ fn option(setting: &Setting) -> Arg {
         return arg.action(ArgAction::SetTrue);
     }
     match setting.kind {
-        Kind::Choice => {
+        SettingKind::Choice => {
             let words = setting.choices.iter().map(|choice| choice.value.replace('_', "-"));
             arg.value_name("WORD").value_parser(PossibleValuesParser::new(words.collect::<Vec<_>>()))
         }
-        Kind::Integer => {
+        SettingKind::Integer => {
             let (min, max) = setting.accepted().into_inner();
             // Counts that are too large are refused with what they are counts of, by the settings themselves.
             let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
             arg.value_name("N").value_parser(value_parser!(u64).range(min as u64..=largest))
         }
-        Kind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
-        Kind::Number => arg.value_name("NUMBER").value_parser(number),
+        SettingKind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
+        SettingKind::Number => arg.value_name("NUMBER").value_parser(number),
     }
 }
 
@@ -141,13 +141,13 @@ fn help(setting: &Setting) -> String {
     let help = setting.help.trim_end_matches('.');
     let default = match setting.default {
         _ if setting.name == SAMPLING || setting.name == COUNT => return help.to_owned(),
-        Value::Choice(value) => value.replace('_', "-"),
-        Value::Integer(whole) if setting.name == MAX_PARTICLES => {
+        SettingValue::Choice(value) => value.replace('_', "-"),
+        SettingValue::Integer(whole) if setting.name == MAX_PARTICLES => {
             format!("{}, or a tenth more than --count", grouped(whole as usize))
         }
-        Value::Integer(whole) => grouped(whole as usize),
-        Value::Number(share) if setting.is_share() => percent(share),
-        Value::Number(number) => shortest_text(number),
+        SettingValue::Integer(whole) => grouped(whole as usize),
+        SettingValue::Number(share) if setting.is_share() => percent(share),
+        SettingValue::Number(number) => shortest_text(number),
     };
     format!("{help} [default: {default}]")
 }

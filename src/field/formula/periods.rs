@@ -24,10 +24,10 @@ enum Along {
 
 /// The period of f along an axis: 0 if f does not change along it, none if f is not known to be periodic.
 pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
-    let walk = Walk { axis, parameter };
-    let left = walk.along(&equation.left);
+    let finder = PeriodFinder { axis, parameter };
+    let left = finder.along(&equation.left);
     let whole = match &equation.right {
-        Some(right) => sum(left, negated(walk.along(right))),
+        Some(right) => sum(left, negated(finder.along(right))),
         None => left,
     };
     match whole {
@@ -37,12 +37,13 @@ pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> 
     }
 }
 
-struct Walk<'a> {
+/// Finder of the dependence of expressions on one coordinate.
+struct PeriodFinder<'a> {
     axis: u8,
     parameter: &'a dyn Fn(&str) -> Option<f64>,
 }
 
-impl Walk<'_> {
+impl PeriodFinder<'_> {
     fn along(&self, expr: &Expr) -> Along {
         match &expr.kind {
             ExprKind::Number(value) => Along::Constant(Some(*value)),

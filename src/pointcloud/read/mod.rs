@@ -165,7 +165,7 @@ impl Reader {
         let rows: Box<dyn RowReader> = match format {
             InputFormat::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
             InputFormat::Obj => Box::new(obj::Obj::default()),
-            InputFormat::StlText => Box::new(stl::Text::default()),
+            InputFormat::StlText => Box::new(stl::TextStl::default()),
             InputFormat::StlBinary => Box::new(stl::BinaryStl::new(&mut input)?),
             InputFormat::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
         };

@@ -14,12 +14,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 ///
 /// The normals of the facets are ignored: many programs write zeros, and the order of the corners gives them.
 #[derive(Default)]
-pub(super) struct Text {
+pub(super) struct TextStl {
     table: IndexTable,
     corners: Vec<u32>,
 }
 
-impl RowReader for Text {
+impl RowReader for TextStl {
     fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
         let Some(range) = input.line_with_text() else {
             if self.corners.is_empty() {

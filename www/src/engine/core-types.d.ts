@@ -12,7 +12,7 @@ export type Bounds = {
   max: [number, number, number],
 };
 
-/** One value of a choice. */
+/** A value of a setting that is a choice. */
 export type Choice = {
   /** Value, as it stands in JSON. */
   value: string,
@@ -26,35 +26,35 @@ export type Colour = {
   id: ColourMode,
   /** Name for a person. */
   label: string,
-  /** One line of explanation. */
+  /** Explanation in one line. */
   help: string,
   /** Unit of the legend. */
   unit: string,
 };
 
-/** What the particles are coloured by. */
+/** The quantity that colours the particles. */
 export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "plain";
 
 /** A column of PLY and CSV files, here and on the page. */
 export type Column = {
   /** Name in the file. */
   name: string,
-  /** What its values are. */
+  /** Type of the values. */
   kind: ColumnKind,
-  /** Whether it is known only once the particles are measured. */
+  /** Whether the column is known only once the particles are measured. */
   measured: boolean,
 };
 
-/** What the values of a column are, by the name of the type in PLY. */
+/** Type of the values of a column, by its name in PLY. */
 export type ColumnKind = "coordinate" | "float" | "int" | "uint" | "uchar";
 
-/** What has to hold of another setting. */
+/** Condition on another setting. */
 export type Condition = {
   /** Name of the other setting. */
   name: string,
-  /** One of its choices. */
+  /** A choice of the other setting. */
   value: string,
-  /** Whether it has that value then, or another one. */
+  /** Whether the other setting must have that choice, or must not have it. */
   equal: boolean,
 };
 
@@ -75,7 +75,7 @@ export type Description = {
   settings: Array<Setting>,
   /** Rows of the report. */
   report: Array<ReportRow>,
-  /** What can become of a child. */
+  /** The fates of a child. */
   fates: Array<Fate>,
   /** Functions of the formula language. */
   functions: Array<FunctionInfo>,
@@ -83,57 +83,57 @@ export type Description = {
   colours: Array<Colour>,
   /** Columns of PLY and CSV files. */
   columns: Array<Column>,
-  /** What a new parameter is, but for its name. */
+  /** Template of a new parameter, without its name. */
   new_parameter: Parameter,
   /** Largest and smallest values that the core accepts. */
   limits: Limits,
 };
 
-/** By how much a run would have more particles than are followed. */
+/** Excess of the expected particles of a run over the limit. */
 export type Excess = {
   /** Particles to expect. */
   expected: number,
-  /** The most that are followed. */
+  /** Largest number of particles that a run may have. */
   limit: number,
-  /** By what all radii have to be multiplied. */
+  /** Factor by which all radii have to be multiplied to stay within the limit. */
   factor: number,
 };
 
-/** What can become of a child. */
+/** A fate of a child. */
 export type Fate = {
   /** Name, as in the report's counts. */
   name: string,
   /** Name for a person. */
   label: string,
-  /** One line of explanation. */
+  /** Explanation in one line. */
   help: string,
 };
 
-/** Fates of children, counted. */
+/** Number of children with each fate. */
 export type FateCounts = {
   /** New particles, seeds not counted. */
   added: number,
   /** Slots where an existing particle sits. */
   matched: number,
-  /** No surface met on the circle. */
+  /** Children that met no surface on the circle. */
   not_converged: number,
-  /** Outside the clip box. */
+  /** Children outside the clip box. */
   outside: number,
-  /** No value or no gradient. */
+  /** Children at places where the field has no value or no gradient. */
   undefined: number,
-  /** Not placed because the limit on particles was reached. */
+  /** Children that were not placed because the limit on particles was reached. */
   capped: number,
 };
 
 /** The error with which a command is refused. */
 export type Fault = {
-  /** What it is about. */
+  /** Kind of the error. */
   kind: FaultKind,
-  /** One sentence for a person; plain text. */
+  /** The error as a sentence for the user, in plain text. */
   message: string,
-  /** Where the mistake begins in the formula, in UTF-16 code units, as the selection of a text field counts. */
+  /** Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field counts. */
   start: number,
-  /** Where it ends. */
+  /** End of the mistake in the formula, in UTF-16 code units. */
   end: number,
   /** Text that would mend the span, if there is a good guess. */
   suggestion: string | null,
@@ -141,16 +141,16 @@ export type Fault = {
   mended: Mended | null,
   /** Unknown names that could become sliders. */
   names: Array<string>,
-  /** By how much there would be too many particles, if that is what it is about. */
+  /** The excess of particles, if the error is [`FaultKind::TooMany`]. */
   excess: Excess | null,
 };
 
-/** What a refused command was about. */
+/** Kind of the error with which a command is refused. */
 export type FaultKind = "request" | "settings" | "too_many" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
 
 /** The field as it now is. */
 export type FieldAnswer = {
-  /** What it is made of. */
+  /** Kind of the field. */
   kind: FieldKind,
   /** The model, if it is made of points. */
   model: ModelInfo | null,
@@ -164,16 +164,16 @@ export type FieldAnswer = {
   auto: Array<string>,
   /** Clip box; before [`Session::fit`] or a start it may be that of the formula before. */
   bounds: Bounds,
-  /** How far the surface reaches, if the box was fitted to it. */
+  /** Whether the surface is bounded, if the box was fitted to it. */
   reach: Reach | null,
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
 };
 
-/** What a field is made of. */
+/** Kind of a field, by its source. */
 export type FieldKind = "formula" | "points";
 
-/** What a caller asks of the field; everything is optional. */
+/** Request for a field. All members are optional. */
 export type FieldRequest = {
   /** Identifier of a gallery surface to start from; without one, the present field is changed. */
   surface: string | null,
@@ -187,7 +187,7 @@ export type FieldRequest = {
   bounds: Bounds | null,
 };
 
-/** One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
+/** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
 * side by side. */
 export type Figures = {
   /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units. */
@@ -291,16 +291,13 @@ export type FunctionInfo = {
   help: string,
 };
 
-/** Where a setting is shown. */
-export type Group = "Sampling" | "Advanced";
-
 /** Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
   /** Upper end of the last bin. */
   max: number,
-  /** Counts. */
+  /** Number of distances in each bin. */
   bins: Array<number>,
 };
 
@@ -317,18 +314,15 @@ export type Hole = {
 /** The stage of a job, as the page shows it. */
 export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
 
-/** What the values of a setting are. */
-export type Kind = "number" | "integer" | "choice";
-
 /** A part of a run, before which a snapshot is taken. */
 export type LessonChapter = {
-  /** Number of its first event in the run. */
+  /** Number of the first event of the chapter in the run. */
   first_event: number,
-  /** Number of its events so far. */
+  /** Number of events of the chapter so far. */
   events: number,
-  /** Particles when it begins. */
+  /** Number of particles at the beginning of the chapter. */
   before: number,
-  /** Particles when it ends. */
+  /** Number of particles at the end of the chapter. */
   after: number,
   /** Number of proposed children by fate. */
   fates: FateCounts,
@@ -340,7 +334,7 @@ export type LessonChapter = {
   fissions: number,
   /** Particles that have died. */
   deaths: number,
-  /** Whether it is over. */
+  /** Whether the chapter is over. */
   is_over: boolean, } & ({ "kind": "level",
   /** Number of the front. */
   front: number,
@@ -360,11 +354,11 @@ export type LessonChapter = {
 export type LessonEvent = { "type": "seed",
 /** Index of the seed. */
 particle: number,
-/** Its columns. */
+/** Columns of the particle. */
 data: LessonParticle, } | { "type": "level_begins",
 /** Number of the level. */
 level: number,
-/** Particles that wait. */
+/** Number of particles that wait. */
 waiting: number, } | { "type": "taken",
 /** The particle. */
 particle: number, } | { "type": "frame",
@@ -378,7 +372,7 @@ u: [number, number, number],
 w: [number, number, number],
 /** Second fundamental form [a, b, c] in (u, w), where it was asked for. */
 form: [number, number, number] | null, } | { "type": "slot",
-/** The particle that places it. */
+/** The particle that places the child. */
 parent: number,
 /** Number of the slot, at an angle of slot · π/3 in uniform sampling. */
 slot: number,
@@ -386,7 +380,7 @@ slot: number,
 direction: [number, number, number],
 /** Angle θ₀ on the circle. */
 theta_rad: number,
-/** The place there. */
+/** Position at this angle. */
 place: [number, number, number], } | { "type": "iterate",
 /** The particle that places the child. */
 parent: number,
@@ -396,19 +390,19 @@ slot: number,
 step: number,
 /** Angle θₖ on the circle; none for Newton's method in space. */
 theta_rad: number | null,
-/** The place. */
+/** Position. */
 position: [number, number, number],
-/** f there. */
+/** Value f at the position. */
 value: number,
-/** |∇f| there. */
+/** Length |∇f| of the gradient at the position. */
 slope: number,
 /** Angles between which f changes its sign, where Newton's method has given way to a bracketed search. */
 bracket_rad: [number, number] | null, } | { "type": "landed",
-/** The particle that places it. */
+/** The particle that places the child. */
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** The place. */
+/** Position. */
 position: [number, number, number],
 /** Unit normal there. */
 normal: [number, number, number],
@@ -424,7 +418,7 @@ neighbours: Array<LessonNearby>, } | { "type": "compared",
 parent: number,
 /** Number of the slot. */
 slot: number,
-/** Where the child was compared: as predicted, or where it landed. */
+/** Position at which the child was compared: the predicted one, or that of the landing. */
 position: [number, number, number],
 /** The nearest particle; none if none is near, or if it is a child that still has to be projected. */
 against: number | null,
@@ -432,7 +426,7 @@ against: number | null,
 distance: number | null,
 /** Match radius. */
 limit: number,
-/** Whether the distance is within it. */
+/** Whether the distance is within the match radius. */
 corresponds: boolean, } | { "type": "fronts_meet",
 /** The particle that places the child. */
 parent: number,
@@ -442,9 +436,9 @@ slot: number,
 particle: number,
 /** Whether that particle belongs to the front of another seed. */
 is_other: boolean, } | { "type": "added",
-/** Its index. */
+/** Index of the particle. */
 particle: number,
-/** Its columns. */
+/** Columns of the particle. */
 data: LessonParticle, } | { "type": "fate",
 /** The particle that places the child. */
 parent: number,
@@ -460,11 +454,11 @@ particle: number,
 evaluations: number, } | { "type": "arc",
 /** The particle. */
 parent: number,
-/** The particle before it; none if the whole circle is free. */
+/** The particle before the free space; none if the whole circle is free. */
 before: number | null,
-/** The particle behind it, in the direction of growing angles. */
+/** The particle behind the free space, in the direction of growing angles. */
 behind: number | null,
-/** Their directions in the frame. */
+/** Directions of these two particles in the frame. */
 angles_rad: [number, number], } | { "type": "start",
 /** The particle that places the child. */
 parent: number,
@@ -518,7 +512,7 @@ energy: number, } | { "type": "moved",
 particle: number,
 /** Sum of the repulsion, in the tangent plane; the step size times it is the move. */
 force: [number, number, number],
-/** Where the move leads, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface. */
+/** Target of the move, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface. */
 target: [number, number, number],
 /** The place on the surface. */
 position: [number, number, number],
@@ -536,17 +530,17 @@ energy: number,
 largest_move: number, } | { "type": "iteration_begins",
 /** Number of the iteration, from 1. */
 iteration: number,
-/** Particles. */
+/** Number of particles. */
 particles: number,
-/** Mean of what their neighbours make them feel: an energy, or a sum of squared overlaps. */
+/** Mean energy of the particles, or mean sum of their squared overlaps. */
 energy: number, } | { "type": "divided",
 /** The particle, whose place one child takes. */
 particle: number,
 /** Index of the other child. */
 child: number,
-/** Columns of both. */
+/** Columns of both children. */
 data: [LessonParticle, LessonParticle],
-/** What the particle felt. */
+/** Energy of the particle. */
 energy: number, } | { "type": "died",
 /** The particle. */
 particle: number,
@@ -554,7 +548,7 @@ particle: number,
 energy: number, } | { "type": "iteration_ends",
 /** Number of the iteration, from 1. */
 iteration: number,
-/** Particles. */
+/** Number of particles. */
 particles: number,
 /** Longest move, in radii. */
 largest_move: number,
@@ -573,42 +567,42 @@ export type LessonField = {
 
 /** A step of Newton's method in space. */
 export type LessonIterate = {
-  /** The place. */
+  /** Position. */
   position: [number, number, number],
-  /** f there. */
+  /** Value f at the position. */
   value: number,
-  /** |∇f| there. */
+  /** Length |∇f| of the gradient at the position. */
   slope: number,
 };
 
-/** When a particle was added, was treated and was done: numbers of events. */
+/** The events at which a particle was added, was treated and was done, by their numbers. */
 export type LessonLife = {
-  /** It was added. */
+  /** The event at which the particle was added. */
   born: number | null,
-  /** It was taken from the queue. */
+  /** The event at which the particle was taken from the queue. */
   taken: number | null,
-  /** It was marked as done. */
+  /** The event at which the particle was marked as done. */
   done: number | null,
 };
 
 /** Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4). */
 export type LessonMatched = "leave" | "stay";
 
-/** Which method covers the surface. */
+/** Method that covers the surface. */
 export type LessonMethod = "front" | "witkin_heckbert" | "forces";
 
 /** A particle near another one. */
 export type LessonNearby = {
-  /** Its index. */
+  /** Index of the particle. */
   particle: number,
-  /** Distance to it. */
+  /** Distance to the particle. */
   distance: number,
 };
 
-/** Which of the particles that are not done is treated next (§4.4). */
+/** The order in which the particles that are not done are treated (§4.4). */
 export type LessonOrder = "queue" | "stack";
 
-/** A particle: position p, normal N̂ and repulsion radius r (§4.2), and how it came to be. */
+/** A particle: position p, normal N̂ and repulsion radius r (§4.2), with its parent, level, front and slots. */
 export type LessonParticle = {
   /** Position on the surface. */
   position: [number, number, number],
@@ -616,18 +610,18 @@ export type LessonParticle = {
   normal: [number, number, number],
   /** Repulsion radius. */
   radius: number,
-  /** The particle that placed it; none for a seed and in particle systems, where no index lasts. */
+  /** The particle that placed this one; none for a seed and in particle systems, where no index lasts. */
   parent: number | null,
   /** Generation level; in a particle system the number of fissions since the first particle. */
   level: number,
-  /** Number of the front: that of its seed, from 0. */
+  /** Number of the front, from 0. */
   front: number,
 };
 
-/** When a child is compared with the particles that exist. */
+/** Order of the projection of children and their comparison with the particles that exist. */
 export type LessonPlacing = "one_by_one" | "level_by_level";
 
-/** How far a run has come. */
+/** Progress of a run. */
 export type LessonProgress = {
   /** Chapters so far. */
   chapters: number,
@@ -647,34 +641,34 @@ export type LessonProgress = {
   is_done: boolean,
 };
 
-/** How a child is moved onto the surface (§4.3). */
+/** The method that moves a child onto the surface (§4.3). */
 export type LessonProjection = "circle" | "newton";
 
 /** The repulsion of a particle by one neighbour. */
 export type LessonPush = {
-  /** Its repulsion, along the offset between the two. */
+  /** Repulsion by that particle, along the offset between the two. */
   force: [number, number, number],
   /** Energy of the pair. */
   energy: number,
-  /** Its index. */
+  /** Index of the particle. */
   particle: number,
-  /** Distance to it. */
+  /** Distance to the particle. */
   distance: number,
 };
 
-/** When the fronts of a surface with several components begin. */
+/** Order in which the fronts of a surface with several components begin. */
 export type LessonSeeding = "one_by_one" | "together";
 
 /** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
 export type LessonSettings = {
-  /** Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
+  /** Method that covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
   * `residual`, `max_iterations` and `max_particles`. */
   method: LessonMethod,
   /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
   sampling: 'uniform' | 'adaptive',
   /** Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates. */
   radius: number,
-  /** How the radius of an adaptive particle follows from the curvature. */
+  /** Law for the radius of an adaptive particle, given the curvature. */
   law: 'chord_error' | 'max_curvature' | 'sum_of_curvatures',
   /** The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
   * the other two the radius over the radius of curvature. */
@@ -689,21 +683,21 @@ export type LessonSettings = {
   fit: number,
   /** Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none. */
   seeds: Array<[number, number, number]>,
-  /** Chooses the first seed where none is given. */
+  /** Seed of the random choice of the first seed point, where no seed points are given. */
   seed: number,
-  /** How the fronts of several seeds begin. */
+  /** Order in which the fronts of several seeds begin. */
   seeding: LessonSeeding,
-  /** How a child comes to the surface. */
+  /** Method that moves a child onto the surface. */
   projection: LessonProjection,
-  /** Where that begins. */
+  /** Start of the search on the circle. */
   start: LessonStart,
-  /** Which particle is treated next. */
+  /** Order in which waiting particles are treated. */
   order: LessonOrder,
   /** Whether matched particles leave the neighbours. */
   matched: LessonMatched,
   /** A child is identified with a particle within this distance, in 2r. */
   match_tolerance: number,
-  /** One particle after the other, or level by level. */
+  /** Order of projection and comparison: particle by particle, or level by level. */
   placing: LessonPlacing,
   /** Whether gaps between fronts are filled. */
   gaps: 'fill' | 'leave',
@@ -719,7 +713,7 @@ export type LessonSettings = {
   max_particles: number,
 };
 
-/** Where the search on the circle begins. */
+/** The start of the search on the circle. */
 export type LessonStart = "tangent" | "curvature";
 
 /** The limits of what the core accepts. */
@@ -772,25 +766,25 @@ export type Mended = {
   places: number,
 };
 
-/** What a mesh adds up to. */
+/** Counts of a mesh: triangles, components and borders. */
 export type MeshAnswer = {
-  /** Triangles. */
+  /** Number of triangles. */
   triangles: number,
   /** Connected components, in the order of their first particles. */
   components: Array<MeshComponent>,
-  /** Border loops where no manifold could be had, other than those where the surface ends. */
+  /** Number of border loops where no manifold could be had, other than those where the surface ends. */
   unfilled: number,
-  /** Particles in no triangle. */
+  /** Number of particles in no triangle. */
   left_out: number,
 };
 
 /** A connected part of a mesh. */
 export type MeshComponent = {
-  /** Triangles. */
+  /** Number of triangles. */
   triangles: number,
-  /** Vertices − edges + triangles: 2 − 2g for a closed surface of genus g. */
+  /** Euler number, vertices − edges + triangles: 2 − 2g for a closed surface of genus g. */
   euler: number,
-  /** Edges with one triangle. */
+  /** Number of edges with one triangle. */
   open_edges: number,
 };
 
@@ -861,7 +855,7 @@ export type Parameter = {
   step: number,
 };
 
-/** What the sampler is doing. */
+/** Phase of a run. */
 export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
 
 /** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
@@ -877,7 +871,7 @@ export type Places = {
 export type PointsFault = {
   /** Kind of error as a word in snake case. */
   kind: string,
-  /** One sentence for the user, in plain text. */
+  /** The error as a sentence for the user, in plain text. */
   message: string,
   /** Number, from 1, of the line of a text file that is in error. */
   line: number | null,
@@ -925,16 +919,16 @@ export type Progress = {
   moved: boolean,
 };
 
-/** How far a surface reaches. */
+/** Whether a surface is bounded. */
 export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 
-/** Everything worth knowing about a run. */
+/** Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings. */
 export type Report = {
   /** Number of particles. */
   count: number,
   /** Particles with a child that fell outside of the box. */
   border: number,
-  /** Why there are such particles. */
+  /** Why particles lie at the border of the box. */
   cut: Cut | null,
   /** Why the run ended. */
   stop_reason: StopReason | null,
@@ -972,35 +966,35 @@ export type Report = {
   /** Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
   * component of a particle or named in `sampled`. */
   search: Search,
-  /** Which of the witnessed components hold particles. */
+  /** The witnessed components that hold particles, and those that do not. */
   sampled: Sampled,
   /** Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
   * attempted. */
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,
-  /** Quality now; none without particles. */
+  /** Quality of the present particles; none if there are none. */
   quality: Figures | null,
-  /** Quality after the front, before the relaxation; none where nothing was relaxed. */
+  /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */
   quality_before: Figures | null,
   /** Nearest-neighbour distances. */
   nearest_histogram: Histogram,
-  /** Where the spacing is worst now. */
+  /** The crowded pairs and wide holes of the present particles. */
   places: Places,
 };
 
 /** A row of the report. */
 export type ReportRow = {
-  /** Path into the report. What is null there has no place in the run. */
+  /** Path of the figure in the report. A figure that is null there does not apply to the run. */
   key: string,
   /** Path of the upper end, if the row is a range that begins at `key`. */
   to: string | null,
-  /** Path of the figure that stands in its place where that one is there: what a lattice of one size is the measure of says
-  * nothing of particles of many. */
+  /** Path of the figure that replaces this one where the report has it: a figure that is relative to the lattice of one size does not
+  * apply to particles of many sizes. */
   unless: string | null,
   /** Name for a person. */
   label: string,
-  /** Group it is shown in. */
+  /** Group in which the row is shown. */
   group: string,
   /** Unit; `%` shows the value times 100. */
   unit: string,
@@ -1008,7 +1002,7 @@ export type ReportRow = {
   digits: number,
   /** The ideal value, in words. */
   ideal: string,
-  /** Which way is better. */
+  /** Direction in which the figure gets better. */
   better: string | null,
   /** Definition and meaning. */
   help: string,
@@ -1016,7 +1010,7 @@ export type ReportRow = {
   places: string | null,
 };
 
-/** Which of the witnessed components hold particles. */
+/** The witnessed components that hold particles, and those that do not. */
 export type Sampled = {
   /** Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
   * is not proven. */
@@ -1024,14 +1018,11 @@ export type Sampled = {
   /** Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
   * two of its witnesses could not be proven to be connected. */
   missing: number | null,
-  /** One witness of each of these components: at most 256. */
+  /** A witness of each component without a particle: at most 256. */
   without: Array<Unsampled>,
 };
 
-/** How values are spread over a slider. */
-export type Scale = "linear" | "log";
-
-/** How the first points of the connected components were found. */
+/** Method by which the first points of the connected components were found. */
 export type Search = "proven" | "searched";
 
 /** A setting of a run. */
@@ -1040,22 +1031,22 @@ export type Setting = {
   name: string,
   /** Name for a person. */
   label: string,
-  /** One line of explanation. */
+  /** Explanation in one line. */
   help: string,
-  /** Group it is shown in. */
-  group: Group,
-  /** What its values are. */
-  kind: Kind,
+  /** Group in which the setting is shown. */
+  group: SettingGroup,
+  /** Type of the values. */
+  kind: SettingKind,
   /** Default value. */
-  default: Value,
+  default: SettingValue,
   /** Smallest value; 0 for a choice. */
   min: number,
   /** Largest value that the page offers; 0 for a choice. */
   max: number,
   /** Step of a slider; on a logarithmic scale a factor minus one. 0 for a choice. */
   step: number,
-  /** How values are spread over a slider. */
-  scale: Scale,
+  /** Scale of a slider. */
+  scale: SettingScale,
   /** Unit; `%` stands for a share of the diagonal of the box, which is shown times 100. */
   unit: string,
   /** Values of a choice. */
@@ -1063,6 +1054,18 @@ export type Setting = {
   /** The setting has an effect, and is shown, while all of these hold; always if there is none. */
   when: Array<Condition>,
 };
+
+/** Group of settings that are shown together. */
+export type SettingGroup = "Sampling" | "Advanced";
+
+/** Type of the values of a setting. */
+export type SettingKind = "number" | "integer" | "choice";
+
+/** Scale of a slider. */
+export type SettingScale = "linear" | "log";
+
+/** The value of a setting. */
+export type SettingValue = number | number | string;
 
 /** Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
 * where radii vary (§5). */
@@ -1076,7 +1079,7 @@ export type SolvedModel = {
   bounds: Bounds,
 };
 
-/** What is known of a run at its start. */
+/** Report on the start of a run: the radius, estimates and warnings. */
 export type Start = {
   /** Repulsion radius of the run, in the units of the field's coordinates. */
   radius: number,
@@ -1107,11 +1110,11 @@ export type SurfaceEntry = {
   degree: number | null,
   /** Genus, where the surface is closed, connected and smooth. */
   genus: number | null,
-  /** Two sentences about it. */
+  /** Two sentences about the surface. */
   story: string,
-  /** A text to read on. */
+  /** Reference to a text about the surface. */
   source: string,
-  /** Name of its group in the gallery. */
+  /** Name of the group of the surface in the gallery. */
   group: string,
 };
 
@@ -1124,6 +1127,3 @@ export type Unsampled = {
   /** Whether the component was followed no further than that, so that it may be larger. */
   goes_on: boolean,
 };
-
-/** The value of a setting. */
-export type Value = number | number | string;
