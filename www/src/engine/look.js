@@ -67,7 +67,7 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     }),
     effect(() => {
       const now = look();
-      // Without a graphics device there are discs.
+      // The 2-D canvas draws only discs.
       const isMesh = ['webgpu', 'webgl2'].includes(store.backend.value) && (now.draw === 'mesh' || now.ghost);
       untracked(() => {
         store.theme.value = now.theme;

@@ -68,7 +68,7 @@ export function createPicture({ host, store, columns, first }) {
       if (!tapped && store.hover.value?.tapped) return;
       const index = viewer.pick(x, y);
       const { measured } = store.state.value.view;
-      // While distances are measured, a press takes an end.
+      // While a distance is measured, a press chooses one of its ends.
       if (index !== null || tapped || store.hover.value) hover(index, x, y, tapped && !measured);
       if (tapped && index !== null && measured) changeView(store, { measured: withEnd(measured, index) });
       if (tapped) store.spot.value = null;

@@ -1,4 +1,4 @@
-/** A relaxation step of one particle (paper §4.5): who pushes it, the sum of that, the move, and where it lands. */
+/** A relaxation step of one particle (paper §4.5): the pushes and their sum, the move, and the landing. */
 import { size } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { inRadii } from './words.js';
@@ -27,7 +27,7 @@ export async function restOf(client, chapters, particle, step) {
   const [begins] = await client.ask('events', { first, count: 1 });
   const [moved] = await client.ask('events', { first: first + 1 + particle, count: 1 });
   if (begins?.type !== 'step_begins' || moved?.type !== 'moved') return null;
-  // The step has begun, and nothing has moved yet. The two are asked at once, so that no other question comes between.
+  // At this event the step has begun and nothing has moved. Both are asked at once, so that no question comes between.
   const [{ positions, normals, radii }, pushes] = await Promise.all([
     client.ask('seek', { event: first + 1 }),
     client.ask('pushes', { particle }),

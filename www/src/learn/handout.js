@@ -50,7 +50,7 @@ export function createHandout(host, { figures, lab, compare, say }) {
     for (const { load } of figures) await load();
     for (const id of ids) await ask(id).catch((error) => known.set(id, reasonOf(error)));
     await compare();
-    // Not on the screen, they have not been asked for.
+    // An image that was never on the screen is not loaded yet.
     for (const image of document.querySelectorAll('.what-if-stills img')) {
       if (!(image instanceof HTMLImageElement)) continue;
       image.loading = 'eager';

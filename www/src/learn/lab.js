@@ -31,7 +31,7 @@ const MOST_TRIALS = 4;
  */
 export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', relax_steps: 10, residual: RESIDUAL };
 
-/** Why a surface has no figures. */
+/** The error of a surface that has no figures. */
 export class NoSurface extends Error {}
 
 export class Lab {

@@ -20,7 +20,7 @@ export function lockParts(root, locks) {
   const apply = () => {
     for (const part of root.querySelectorAll(selector)) part.toggleAttribute('inert', true);
   };
-  // Figures come to life later, and make some of their controls anew.
+  // Figures are made later than this, and make some of their controls anew.
   new MutationObserver(apply).observe(root, { childList: true, subtree: true });
   apply();
   if (!locks.includes('questions')) return;

@@ -170,7 +170,7 @@ class Course {
     try {
       const settings = await settingsOf(this.#lab, kind);
       const { end } = await this.#lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES });
-      // Meanwhile the race may have been given up, or paused.
+      // The race may have been given up or paused during the run.
       if (isOver()) return;
       orbit.fitTo(end);
       const done = own.start(this.#lab.surface, [settings, opponentOf(settings)]);

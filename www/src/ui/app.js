@@ -137,7 +137,7 @@ async function loadTimeline(engine, { shell, stage, told }, toast) {
 }
 
 /**
- * Has the link to the learn page carry the surface over. Without that it leads there all the same.
+ * Puts the surface into the link to the learn page. If that fails, the link leads there without it.
  * @param {Engine} engine
  */
 function linkLearn(engine) {

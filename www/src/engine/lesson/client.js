@@ -21,9 +21,9 @@
  */
 
 /**
- * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's
- * `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error;
- * `bundle`: it did not load.
+ * The reason for which a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with
+ * the core's `fault`; `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an
+ * error; `bundle`: it did not load.
  * @typedef {'refused' | 'given_up' | 'crashed' | 'bundle'} LessonErrorKind
  */
 

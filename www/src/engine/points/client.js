@@ -11,7 +11,7 @@
  */
 
 /**
- * How an order ended. `givenUp`: the page cancelled it.
+ * The end of an order. `givenUp`: the page cancelled it.
  * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Ending
  */
 

@@ -70,9 +70,9 @@ export const VIEW = {
     valid: (raw) => within(raw, DISC_SIZE.min, DISC_SIZE.max),
     exact: true,
   },
-  /** How the particles are drawn. */
+  /** The way of drawing the particles. */
   draw: choice('way of drawing', ['discs', 'mesh']),
-  /** How the faces of a mesh are lit and coloured. */
+  /** The lighting and colours of the faces of a mesh. */
   faces: choice('faces of the mesh', ['smooth', 'flat']),
   /** Whether the edges of a mesh are drawn. */
   edges: flag(true, 'edges of the mesh'),

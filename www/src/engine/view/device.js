@@ -86,7 +86,7 @@ export class DeviceKeeper {
           this.#take(device);
           return;
         }
-        // One that comes too late is not needed any more.
+        // A device that opens too late is closed again.
         opening.then(
           (late) => late.dispose(),
           () => {},

@@ -70,7 +70,7 @@ export async function opening(context) {
   return [picture.element, h('div', { class: 'controls' }, play.element, range.element, count)];
 }
 
-/** With a bar for each ring, once its prediction is out. @param {Context} context */
+/** Creates the figure of the rings, with a bar for each once its prediction was made. @param {Context} context */
 export async function rings(context) {
   const { placed, picture, range, play } = await growth(context, 'The rings of the front around the seed');
   const sizes = ringsOf(placed);

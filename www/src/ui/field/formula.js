@@ -180,7 +180,7 @@ const excerptElement = ({ excerpt }) =>
 /** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
   const math = computed(() => engine.field.value?.mathml ?? null);
-  // Beside a formula that cannot be read, the last one that could stays. What it is must be said.
+  // While the formula cannot be read, the last readable one stays, with a caption that says so.
   const isLast = computed(() => engine.fieldError.value !== null && math.value !== null);
   const id = uniqueId('preview');
   const last = h('p', { class: 'quiet', id, hidden: () => !isLast.value }, 'The last formula that could be read:');

@@ -190,7 +190,7 @@ export class Follower {
       await this.client.start(surface, settingsOf(engine, about));
       const end = await this.client.ask('seek', { event: Infinity });
       if (mine !== this.asked) return null;
-      // Sizes that are graded lead to other particles.
+      // With graded sizes the picture's particles differ from those of the run from the start.
       const alike = about.adaptive ? 0 : alikeIn(engine.columns, end, 0.5 * about.radius);
       this.run.value = { ...about, end, alike };
       return this.run.value;

@@ -58,7 +58,7 @@ export class Relaxation {
       this.#asked += 1;
       const mine = this.#asked;
       if (place === null) this.status.value = null;
-      // On the way to a place the timeline may stand at another for a moment.
+      // While the timeline moves, it may pass another place for a moment.
       else setTimeout(() => mine === this.#asked && void this.#show(place));
     });
   }

@@ -33,14 +33,14 @@ const OWN = '.panel-levels, .panel-follow';
 const NEUTRAL = 'body, .canvas-host';
 
 /**
- * Whether a key is meant for the timeline: it has the focus, or nothing that needs keys has it.
+ * Returns whether a key is meant for the timeline: the focus is there, or on nothing that needs keys.
  * @param {KeyboardEvent} event
  */
 export function isMeant(event) {
   const { target, key, defaultPrevented } = event;
   if (defaultPrevented || !(target instanceof Element) || target.matches(BUSY)) return false;
   if (document.querySelector('dialog[open], [popover]:popover-open:not(.explain)')) return false;
-  // Space presses what has the focus.
+  // Space belongs to the control that has the focus.
   if (key === ' ' && target.matches('button, summary, a, label')) return false;
   return target.matches(NEUTRAL) || target.closest(OWN) !== null;
 }

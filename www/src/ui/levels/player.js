@@ -33,7 +33,7 @@ export class Player {
     this.playing = signal(false);
     this.speed = 1;
     this.#timer = 0;
-    // Another grain, or another run, is not played on by itself.
+    // Playback ends where the grain changes or a run begins or ends.
     effect(() => {
       void this.grain.value;
       void engine.busy.value;
@@ -112,7 +112,7 @@ export class Player {
     const panel = this.panel.peek();
     if (grain === 'level' && chosen !== 'level' && panel) {
       if (typeof to === 'string') return this.seekLevel(to === 'first' ? 0 : this.levels.last.peek());
-      // Between the events a level begins with its first particle.
+      // A step by a level among events leads to the first particle of that level.
       const level = panel.level.peek();
       if (level !== null) panel.goToLevel(level + to);
       return;

@@ -1,6 +1,6 @@
 /**
- * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer
- * than a level open the panel that follows a particle.
+ * The timeline: the choice of its grain, one set of buttons, a range under bars, and the present place. The grains that
+ * are finer than a level open the panel that follows a particle.
  */
 import { computed, signal } from '@preact/signals-core';
 import { button } from '../button.js';

@@ -30,7 +30,7 @@ export async function printPage(engine) {
 /** @param {Engine} engine */
 async function createSheet(engine) {
   const { theme } = engine.state.peek().view;
-  // Paper is light.
+  // A print is drawn in the light theme, for white paper.
   engine.setView({ theme: 'light' });
   const png = await engine.savePng({ ...PICTURE_PX, transparent: true }).finally(() => engine.setView({ theme }));
   const url = URL.createObjectURL(png);

@@ -33,7 +33,7 @@ export function createTiming({ timing }, report) {
 
 /** @param {Timing} timing */
 function tableOfTimes({ steps, sampling, seconds }) {
-  // Relaxation steps that are made after the sampling have no other phase.
+  // Steps that were made after the sampling have only the phase of relaxation.
   const phases = PHASES.filter(([key]) =>
     steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
   );
