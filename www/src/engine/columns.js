@@ -6,7 +6,7 @@
  */
 
 import { vec } from './vector.js';
-/** @import { Bounds, Mesh } from './types.js' */
+/** @import { Bounds, ColumnRange, Figures, Mesh } from './types.js' */
 
 /** Parent index of a seed, as the core writes it. */
 export const NO_PARENT = 0xffffffff;
@@ -19,21 +19,6 @@ export const NO_LEVEL = 0xffffffff;
 
 /** The columns of a report, one value per particle. A core has a method of each name. */
 export const MEASURED = /** @type {const} */ (['valence', 'nearest', 'residual', 'energy', 'component']);
-
-/** @typedef {{[K in (typeof MEASURED)[number]]: NonNullable<Columns[K]>}} Figures */
-
-/**
- * A range of the columns, as the worker posts it: the attributes of particles `first … first + n`.
- * @typedef {object} ColumnRange
- * @property {number} first
- * @property {number} total  number of particles after this range is written
- * @property {Float32Array} positions
- * @property {Float64Array} [exact]  the positions in double precision, in a box far from the origin; else empty
- * @property {Float32Array} normals
- * @property {Float32Array} radii
- * @property {Uint32Array} levels
- * @property {Uint32Array} parents
- */
 
 export class Columns {
   constructor() {

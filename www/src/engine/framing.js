@@ -7,8 +7,8 @@
 import { effect } from '@preact/signals-core';
 
 /**
- * @import { Columns } from './columns.js'
  * @import { Store } from './store.js'
+ * @import { Columns } from './types.js'
  * @import { Viewer } from './view/viewer.js'
  */
 

@@ -1,11 +1,10 @@
 // The parts of the engine, as its own files know them.
-import type { Columns } from './columns.js';
 import type { Framing } from './framing.js';
 import type { SampleOptions } from './points/types.js';
 import type { Runs } from './runs.js';
 import type { PictureLike } from './sampling/types.js';
 import type { Store } from './store.js';
-import type { BackendKind, Settings, State } from './types.js';
+import type { BackendKind, Columns, Settings, State } from './types.js';
 import type { Viewer } from './view/viewer.js';
 
 /** The parts of the engine, on which its commands act. */

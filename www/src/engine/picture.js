@@ -13,9 +13,9 @@ import { attachControls } from './view/controls.js';
 import { Viewer } from './view/viewer.js';
 
 /**
- * @import { Columns } from './columns.js'
  * @import { Picture, PictureOptions } from './parts.js'
  * @import { Store } from './store.js'
+ * @import { Columns } from './types.js'
  * @import { Device } from './view/types.js'
  */
 

@@ -6,10 +6,7 @@
 import { signal } from '@preact/signals-core';
 import { emptyState } from './share/state.js';
 
-/**
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
- * @import { EngineSignals, Progress, State, ViewState } from './types.js'
- */
+/** @import { EngineSignals, Progress, ReadonlySignal, Signal, State, ViewState } from './types.js' */
 
 /** @returns {Progress} */
 export const idleProgress = () => ({

@@ -1,7 +1,7 @@
 // Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands.
 // Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
 // otherwise.
-import type { Columns } from './columns.js';
+import type { Columns, MEASURED } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
 import type { LessonClientOptions, Surface } from './lesson/types.js';
 
@@ -56,6 +56,23 @@ export type PointsAnswer = SolverAnswer<PointsProgress>;
 export type SolvedAnswer = SolverAnswer<SolvedModel>;
 
 // ---- what the page adds to it
+
+export type { Columns };
+/** The columns of a report. */
+export type Figures = { [K in (typeof MEASURED)[number]]: NonNullable<Columns[K]> };
+/** A range of the columns, as the worker posts it: the attributes of particles `first … first + n`. */
+export interface ColumnRange {
+  first: number;
+  /** number of particles after this range is written */
+  total: number;
+  positions: Float32Array;
+  /** the positions in double precision, in a box far from the origin; else empty */
+  exact?: Float64Array;
+  normals: Float32Array;
+  radii: Float32Array;
+  levels: Uint32Array;
+  parents: Uint32Array;
+}
 
 /** `points` names a solved model; with it only the clip box counts. */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };

@@ -3,8 +3,7 @@ import { PARTICLES } from './lab.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
- * @import { Lab } from './lab.js'
- * @import { LabRun, Law } from './types.js'
+ * @import { Lab, LabRun, Law } from './types.js'
  */
 
 /** The laws in words. @type {readonly { value: Law, label: string }[]} */

@@ -12,11 +12,7 @@ import { figuresOf } from './pair.js';
 import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.js';
 import { WHAT_IFS } from './whatifs.js';
 
-/**
- * @import { Lab } from './lab.js'
- * @import { Stops } from './predict.js'
- * @import { Control, LabRun, Setup, Task, Work } from './types.js'
- */
+/** @import { Control, Lab, LabRun, Setup, Stops, Task, Work } from './types.js' */
 
 /** A run as plain numbers. @param {string} label @param {LabRun} run */
 const recordOf = (label, run) => ({

@@ -6,10 +6,7 @@ import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
 import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
-/**
- * @import { Lab } from './lab.js'
- * @import { Control, Setup } from './types.js'
- */
+/** @import { Control, Lab, Setup } from './types.js' */
 
 /** Stops of the bench in the address: one for each choice. */
 export const STOP = 'what-if';

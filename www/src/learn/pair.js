@@ -9,10 +9,7 @@ import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 
-/**
- * @import { Lab } from './lab.js'
- * @import { Colouring, LabRun, Side } from './types.js'
- */
+/** @import { Colouring, Lab, LabRun, Side } from './types.js' */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];

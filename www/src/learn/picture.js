@@ -10,8 +10,7 @@ import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live } from '../ui/dom.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
- * @import { Bounds, LessonParticles } from '../engine/types.js'
+ * @import { Bounds, LessonParticles, Signal } from '../engine/types.js'
  * @import { Palette, View } from '../engine/view/types.js'
  * @import { Mark, Scene } from './types.js'
  */

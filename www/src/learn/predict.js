@@ -9,9 +9,8 @@ import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
- * @import { Lab } from './lab.js'
- * @import { Guessed, Prediction } from './types.js'
+ * @import { Signal } from '../engine/types.js'
+ * @import { Guessed, Lab, Prediction } from './types.js'
  */
 
 /** The predictions that were made. A figure shows what would give an answer away only after its prediction. */

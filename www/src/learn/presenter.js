@@ -5,7 +5,7 @@ import { h } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
+ * @import { Signal } from '../engine/types.js'
  * @import { PresenterOptions } from './types.js'
  */
 

@@ -16,10 +16,9 @@ import { createSelect } from './parts.js';
 import { byValue, Orbit, Picture } from './picture.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
  * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
- * @import { LessonParticles } from '../engine/types.js'
- * @import { Lab } from './lab.js'
+ * @import { LessonParticles, Signal } from '../engine/types.js'
+ * @import { Lab } from './types.js'
  */
 
 /** Particles of the front: enough to see the difference, few enough to wait for the other. */

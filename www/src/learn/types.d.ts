@@ -6,6 +6,8 @@ import type { FormulaSurface } from '../ui/types.js';
 import type { Lab } from './lab.js';
 import type { Stops } from './predict.js';
 
+export type { Lab, Stops };
+
 /** The controls that an assignment may lock: those of its bench, then those of the rest of the page. */
 export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
 /** The comparison on the bench. */

@@ -3,8 +3,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
- * @import { Lab } from './lab.js'
- * @import { Setup, Side, WhatIf } from './types.js'
+ * @import { Lab, Setup, Side, WhatIf } from './types.js'
  */
 
 /**

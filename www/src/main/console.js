@@ -8,8 +8,7 @@ import { MEASURED } from '../engine/columns.js';
 import { createEngine } from '../engine/index.js';
 
 /**
- * @import { Columns } from '../engine/columns.js'
- * @import { Engine, Report } from '../engine/types.js'
+ * @import { Columns, Engine, Report } from '../engine/types.js'
  * @import { Console, Measured, Particles } from './types.js'
  */
 

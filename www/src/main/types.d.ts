@@ -1,6 +1,5 @@
 // Types of the console.
-import type { Columns, Figures } from '../engine/columns.js';
-import type { Engine, EngineOptions, Report, State } from '../engine/types.js';
+import type { Columns, Engine, EngineOptions, Figures, Report, State } from '../engine/types.js';
 
 export interface Console {
   /** of the core; empty until the core has loaded */

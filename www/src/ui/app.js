@@ -20,8 +20,7 @@ import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
 /**
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
- * @import { Description, Engine } from '../engine/types.js'
+ * @import { Description, Engine, ReadonlySignal, Signal } from '../engine/types.js'
  * @import { Told } from './levels/types.js'
  * @import { Dialog, Motion, Shortcut, ShortcutTargets, Toast } from './types.js'
  */

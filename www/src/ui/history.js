@@ -5,10 +5,7 @@
  */
 import { effect, signal } from '@preact/signals-core';
 
-/**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine, Shape, State } from '../engine/types.js'
- */
+/** @import { Engine, ReadonlySignal, Shape, State } from '../engine/types.js' */
 
 export const MOST_ENTRIES = 100;
 /** Largest pause between changes of the same value that are recorded as one. */

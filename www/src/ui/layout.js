@@ -7,7 +7,7 @@ import { live } from './dom.js';
 import { explain } from './explain.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
+ * @import { Signal } from '../engine/types.js'
  * @import { LayoutOptions } from './types.js'
  */
 

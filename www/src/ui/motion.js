@@ -6,8 +6,7 @@ import { signal } from '@preact/signals-core';
 import { snap } from './scale.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
- * @import { Engine } from '../engine/types.js'
+ * @import { Engine, Signal } from '../engine/types.js'
  * @import { Course, Range } from './types.js'
  */
 

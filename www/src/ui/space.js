@@ -1,10 +1,7 @@
 /** Computes directions, extents and sections in the space of the surface, for controls and for marks on the picture. */
 import { along, cross, distance, dot, vec } from '../engine/vector.js';
 
-/**
- * @import { Columns } from '../engine/columns.js'
- * @import { Angles, Bounds, CuttingPlane, Ray, Vec3 } from '../engine/types.js'
- */
+/** @import { Angles, Bounds, Columns, CuttingPlane, Ray, Vec3 } from '../engine/types.js' */
 
 export const AXES = /** @type {const} */ (['x', 'y', 'z']);
 

@@ -12,8 +12,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { Figures } from '../columns.js'
- * @import { CoreProgress, CoreReport, Seconds } from '../types.js'
+ * @import { CoreProgress, CoreReport, Figures, Seconds } from '../types.js'
  * @import { ColumnsMessage, DoneMessage, Env, Job, Memory, Mesh } from './types.js'
  */
 

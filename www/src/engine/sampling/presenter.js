@@ -10,9 +10,8 @@ import { timingOf, timingOfReport } from './pace.js';
 import { MOST_REMEMBERED } from './protocol.js';
 
 /**
- * @import { Columns } from '../columns.js'
  * @import { Store } from '../store.js'
- * @import { CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
+ * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
  * @import { ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, Run, RunRequest } from './types.js'
  */
 

@@ -1,15 +1,17 @@
 // Messages between the page and the sampler's worker, and the record of the runs.
 import type { Timers, WorkerEnv } from '../bundle/types.js';
-import type { Columns, Figures } from '../columns.js';
 import type { Solved } from '../points/types.js';
 import type { Store } from '../store.js';
 import type {
   Bounds,
+  ColumnRange,
+  Columns,
   CoreProgress,
   Description,
   FieldAnswer,
   FieldOk,
   FieldRequest,
+  Figures,
   MeshFormat,
   Report,
   Seconds,
@@ -63,18 +65,9 @@ export type Fault = 'panic' | 'hang' | 'overflow';
  * job that is replaced ends without a message.
  */
 export type Outcome = 'complete' | 'stopped' | 'refused' | 'ask' | 'lost';
-export interface ColumnsMessage {
+export interface ColumnsMessage extends ColumnRange {
   type: 'columns';
   id: number;
-  first: number;
-  total: number;
-  positions: Float32Array;
-  /** the positions in double precision, in a box far from the origin; else empty */
-  exact?: Float64Array;
-  normals: Float32Array;
-  radii: Float32Array;
-  levels: Uint32Array;
-  parents: Uint32Array;
   slotsFrom: number;
   slots: Uint32Array;
   curvatureFrom: number;

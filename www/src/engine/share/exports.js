@@ -6,10 +6,7 @@
  */
 import { NO_PARENT, SINGULAR } from '../columns.js';
 
-/**
- * @import { Columns } from '../columns.js'
- * @import { Description } from '../types.js'
- */
+/** @import { Columns, Description } from '../types.js' */
 
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;

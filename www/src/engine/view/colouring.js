@@ -8,8 +8,7 @@ import { hexFromPacked } from './oklab.js';
 import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
 
 /**
- * @import { Columns } from '../columns.js'
- * @import { ColourMode, Legend, LegendEntry } from '../types.js'
+ * @import { ColourMode, Columns, Legend, LegendEntry } from '../types.js'
  * @import { Colouring, Palette, Theme } from './types.js'
  */
 

@@ -10,8 +10,7 @@ import { PALETTES } from './palettes.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
- * @import { Columns } from '../columns.js'
- * @import { Mesh } from '../types.js'
+ * @import { Columns, Mesh } from '../types.js'
  * @import { Look, Theme } from './types.js'
  */
 

@@ -6,8 +6,7 @@
  */
 
 /**
- * @import { Columns } from '../columns.js'
- * @import { CuttingPlane, Ray } from '../types.js'
+ * @import { Columns, CuttingPlane, Ray } from '../types.js'
  * @import { PickOptions } from './types.js'
  */
 

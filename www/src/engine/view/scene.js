@@ -5,10 +5,7 @@
  */
 import { ballOf } from './camera.js';
 
-/**
- * @import { Columns } from '../columns.js'
- * @import { Bounds, Vec3 } from '../types.js'
- */
+/** @import { Bounds, Columns, Vec3 } from '../types.js' */
 
 /**
  * Radius of the ball in which a surface probably lies, as a share of the box's circumscribed ball. Surfaces seldom

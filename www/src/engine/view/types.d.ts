@@ -1,7 +1,16 @@
 // Types of the picture: its devices, its camera, its colours and what the pointer does to it.
 import type { Renderer } from '../../wasm/render-webgpu/render.js';
-import type { Columns } from '../columns.js';
-import type { BackendKind, Bounds, CameraState, CuttingPlane, Legend, Reveal, Vec3, ViewState } from '../types.js';
+import type {
+  BackendKind,
+  Bounds,
+  CameraState,
+  Columns,
+  CuttingPlane,
+  Legend,
+  Reveal,
+  Vec3,
+  ViewState,
+} from '../types.js';
 import type { openDevice } from './backends.js';
 import type { Camera } from './camera.js';
 import type { Painter } from './painter.js';

@@ -9,7 +9,7 @@ import { Glide, MOST_GLIDING } from './glide.js';
 import { PALETTES } from './palettes.js';
 
 /**
- * @import { Columns } from '../columns.js'
+ * @import { Columns } from '../types.js'
  * @import { Reveal } from './reveal.js'
  * @import { Device, Look, View } from './types.js'
  */

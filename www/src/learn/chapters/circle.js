@@ -9,10 +9,7 @@ import { NoSurface } from '../lab.js';
 import { sharpestBend } from '../measure.js';
 import { createRange, facts } from '../parts.js';
 
-/**
- * @import { Lab } from '../lab.js'
- * @import { Context } from '../types.js'
- */
+/** @import { Context, Lab } from '../types.js' */
 
 /**
  * Opens the particle around which the surface bends most, at the slot of the child beyond the bend.

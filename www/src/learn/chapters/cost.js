@@ -2,10 +2,7 @@
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 
-/**
- * @import { Lab } from '../lab.js'
- * @import { Context } from '../types.js'
- */
+/** @import { Context, Lab } from '../types.js' */
 
 /** Steps of Witkin and Heckbert's system for 10,633 particles on an ellipsoid, as Table 1 of the paper has it. */
 const STEPS_OF_TABLE_1 = 373;

@@ -7,10 +7,7 @@ import { energiesOf, nearestDistances } from '../measure.js';
 import { createBars, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
-/**
- * @import { Lab } from '../lab.js'
- * @import { Context, LabRun, Mark } from '../types.js'
- */
+/** @import { Context, Lab, LabRun, Mark } from '../types.js' */
 
 const STEP_MS = 400;
 /** Colours span this range of distances, in 2r. */

@@ -5,10 +5,7 @@ import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { formatSignificant } from '../format.js';
 
-/**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Bounds, Engine } from '../../engine/types.js'
- */
+/** @import { Bounds, Engine, ReadonlySignal } from '../../engine/types.js' */
 
 const AXES = /** @type {const} */ (['x', 'y', 'z']);
 /** Step of the number boxes, as a share of the box's side. It is rounded to a power of ten. */

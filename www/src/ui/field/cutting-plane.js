@@ -9,10 +9,7 @@ import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 import { AXES, anglesOf, axisOf, axisVector, centreOf, directionOf, extentOf, towardEye } from '../space.js';
 
-/**
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
- * @import { Bounds, CuttingPlane, Engine } from '../../engine/types.js'
- */
+/** @import { Bounds, CuttingPlane, Engine, ReadonlySignal, Signal } from '../../engine/types.js' */
 
 /**
  * The present plane, and the axis that it lies across, if there is one.

@@ -11,8 +11,7 @@ import { icon } from '../icons.js';
 import { filesOf } from './files.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
- * @import { Description, Engine } from '../../engine/types.js'
+ * @import { Description, Engine, Signal } from '../../engine/types.js'
  * @import { Entry, Finding } from './types.js'
  */
 

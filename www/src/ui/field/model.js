@@ -9,10 +9,7 @@ import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
 import { factsOf, fittedOf } from './facts.js';
 
-/**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Description, Engine, ModelInfo, Shape } from '../../engine/types.js'
- */
+/** @import { Description, Engine, ModelInfo, ReadonlySignal, Shape } from '../../engine/types.js' */
 
 /**
  * @param {Engine} engine

@@ -8,8 +8,7 @@ import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine, Parameter } from '../../engine/types.js'
+ * @import { Engine, Parameter, ReadonlySignal } from '../../engine/types.js'
  * @import { Motion } from '../types.js'
  */
 

@@ -15,8 +15,7 @@ import { Relaxation } from './rest.js';
 import { alikeIn, settingsOf, surfaceKey } from './run.js';
 
 /**
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
- * @import { Engine, LessonClient, Vec3 } from '../../engine/types.js'
+ * @import { Engine, LessonClient, ReadonlySignal, Signal, Vec3 } from '../../engine/types.js'
  * @import { FollowedRun, Opened, Status } from './types.js'
  */
 

@@ -8,8 +8,7 @@ import { tangentsOf } from '../../figures/geometry.js';
 /**
  * @import { Engine } from '../../engine/types.js'
  * @import { Child } from '../../figures/types.js'
- * @import { Follower } from './follower.js'
- * @import { Pen } from './types.js'
+ * @import { Follower, Pen } from './types.js'
  */
 
 /** Corners of a disc and of the circle. */

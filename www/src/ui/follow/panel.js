@@ -22,8 +22,7 @@ import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine } from '../../engine/types.js'
+ * @import { Engine, ReadonlySignal } from '../../engine/types.js'
  * @import { FollowPanel, Track } from '../types.js'
  * @import { FollowOptions } from './types.js'
  */

@@ -13,12 +13,10 @@ import { formatCount, formatSignificant } from '../format.js';
 import { settingOf, settingsOf } from './run.js';
 
 /**
- * @import { Signal } from '@preact/signals-core'
- * @import { LessonChapter, LessonClient } from '../../engine/types.js'
+ * @import { LessonChapter, LessonClient, Signal } from '../../engine/types.js'
  * @import { Rest } from '../../figures/types.js'
  * @import { Children } from '../types.js'
- * @import { Follower } from './follower.js'
- * @import { Opened } from './types.js'
+ * @import { Follower, Opened } from './types.js'
  */
 
 /**

@@ -2,7 +2,7 @@
 import { tell } from '../../figures/words.js';
 import { h, live } from '../dom.js';
 
-/** @import { Follower } from './follower.js' */
+/** @import { Follower } from './types.js' */
 
 /** Shortest interval between announcements to assistive technology, and the rest before one. */
 const ANNOUNCE_MS = 1500;

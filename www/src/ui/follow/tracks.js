@@ -9,7 +9,7 @@ import { formatCount } from '../format.js';
 /**
  * @import { LessonEvent } from '../../engine/types.js'
  * @import { Track } from '../types.js'
- * @import { Follower } from './follower.js'
+ * @import { Follower } from './types.js'
  */
 
 /** A place that stands for itself, not for the whole. */

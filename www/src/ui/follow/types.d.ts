@@ -4,6 +4,7 @@ import type { Opened as Drawn, Moment } from '../../figures/types.js';
 import type { Children } from '../types.js';
 import type { childrenMark } from './mark.js';
 
+export type { Follower } from './follower.js';
 /**
  * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a
  * step to another one.

@@ -12,8 +12,7 @@ import { createRestViews } from './rest.js';
 
 /**
  * @import { Child, Moment } from '../../figures/types.js'
- * @import { Follower } from './follower.js'
- * @import { Opened, ViewContent } from './types.js'
+ * @import { Follower, Opened, ViewContent } from './types.js'
  */
 
 /** @param {Follower} follower */

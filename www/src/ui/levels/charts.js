@@ -15,10 +15,8 @@ import { fatesOf, movesOf } from './figures.js';
 import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
 
 /**
- * @import { Columns } from '../../engine/columns.js'
- * @import { Engine, Report } from '../../engine/types.js'
- * @import { Player } from './player.js'
- * @import { Chart, LevelTable } from './types.js'
+ * @import { Columns, Engine, Report } from '../../engine/types.js'
+ * @import { Chart, LevelTable, Player } from './types.js'
  */
 
 /**

@@ -7,8 +7,7 @@ import { formatCount, plural } from '../format.js';
 import { levelTable, shortOf } from './table.js';
 
 /**
- * @import { Columns } from '../../engine/columns.js'
- * @import { Angles, Engine } from '../../engine/types.js'
+ * @import { Angles, Columns, Engine } from '../../engine/types.js'
  * @import { Track } from '../types.js'
  */
 

@@ -5,8 +5,7 @@
 import { computed, effect, signal } from '@preact/signals-core';
 
 /**
- * @import { ReadonlySignal, Signal } from '@preact/signals-core'
- * @import { Engine, Grain } from '../../engine/types.js'
+ * @import { Engine, Grain, ReadonlySignal, Signal } from '../../engine/types.js'
  * @import { FollowPanel, Track } from '../types.js'
  * @import { Levels, Move } from './types.js'
  */

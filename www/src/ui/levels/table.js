@@ -3,7 +3,7 @@ import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
 /**
- * @import { Columns } from '../../engine/columns.js'
+ * @import { Columns } from '../../engine/types.js'
  * @import { LevelTable } from './types.js'
  */
 

@@ -6,6 +6,7 @@ import type { Drawn, FollowPanel } from '../types.js';
 import type { createLevels } from './levels.js';
 import type { createTimeline } from './timeline.js';
 
+export type { Player } from './player.js';
 /** `value`: of the place that is shown, or of all; `label`: the chart in words; `missing`: why nothing is known. */
 export type Chart = Drawn & { title: string; value: string; label: string; missing?: string };
 /** A move: `by` one place of a grain, or to its first or last place. The grain `chosen` is that of the timeline. */

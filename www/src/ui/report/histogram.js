@@ -6,8 +6,7 @@ import { formatCount, formatFixed } from '../format.js';
 import { coarsen, overDiameters, trim } from './bins.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine, Report } from '../../engine/types.js'
+ * @import { Engine, ReadonlySignal, Report } from '../../engine/types.js'
  * @import { Drawn } from '../types.js'
  * @import { Bins } from './types.js'
  */

@@ -4,10 +4,7 @@ import { distance, triple } from '../../engine/vector.js';
 import { formatFixed } from '../format.js';
 import { valueAt } from './rows.js';
 
-/**
- * @import { Columns } from '../../engine/columns.js'
- * @import { Place, Report } from '../../engine/types.js'
- */
+/** @import { Columns, Place, Report } from '../../engine/types.js' */
 
 /** @typedef {Report['places']['pairs'][number]} Pair */
 /** @typedef {Report['places']['holes'][number]} Hole */

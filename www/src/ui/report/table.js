@@ -7,8 +7,7 @@ import { listOf } from './places.js';
 import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Report, ReportRow } from '../../engine/types.js'
+ * @import { ReadonlySignal, Report, ReportRow } from '../../engine/types.js'
  * @import { TableOptions } from './types.js'
  */
 

@@ -3,10 +3,7 @@ import { computed } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
 
-/**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine, Timing } from '../../engine/types.js'
- */
+/** @import { Engine, ReadonlySignal, Timing } from '../../engine/types.js' */
 
 const PHASES = /** @type {const} */ ([
   ['seeding', 'Seeding'],

@@ -8,10 +8,7 @@ import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 import { isSegmented, isShown } from './settings.js';
 
-/**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine, SettingInfo } from '../../engine/types.js'
- */
+/** @import { Engine, ReadonlySignal, SettingInfo } from '../../engine/types.js' */
 
 /**
  * @param {Engine} engine

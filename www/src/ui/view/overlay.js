@@ -8,8 +8,7 @@ import { captionOf, loadingOf, revealOf } from './caption.js';
 import { meshWords, NO_MESH } from './mesh-words.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Engine } from '../../engine/types.js'
+ * @import { Engine, ReadonlySignal } from '../../engine/types.js'
  * @import { OverlayParts } from './types.js'
  */
 

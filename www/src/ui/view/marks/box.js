@@ -7,8 +7,7 @@ import { outerEdge, outward } from './edges.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Bounds, Engine } from '../../../engine/types.js'
+ * @import { Bounds, Engine, ReadonlySignal } from '../../../engine/types.js'
  * @import { FaceDrag, Mark } from '../types.js'
  */
 

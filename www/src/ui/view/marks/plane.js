@@ -8,8 +8,7 @@ import { boxOf } from './box.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { ReadonlySignal } from '@preact/signals-core'
- * @import { Bounds, CuttingPlane, Engine, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Bounds, CuttingPlane, Engine, Ray, ReadonlySignal, Vec3 } from '../../../engine/types.js'
  * @import { Mark } from '../types.js'
  */
 
