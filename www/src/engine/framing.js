@@ -30,9 +30,7 @@ export class Framing {
   #timer;
   #effects;
 
-  /**
-   * @param {{ store: Store, columns: Columns, viewer: Viewer }} parts
-   */
+  /** @param {{ store: Store, columns: Columns, viewer: Viewer }} parts */
   constructor({ store, columns, viewer }) {
     this.#store = store;
     this.#columns = columns;

@@ -28,9 +28,7 @@ export class Runs {
    */
   #timer;
 
-  /**
-   * @param {RunsOptions} parts
-   */
+  /** @param {RunsOptions} parts */
   constructor({ store, columns, picture, onReady }) {
     this.store = store;
     this.#timer = undefined;

@@ -10,9 +10,7 @@ import { NoSurface } from './lab.js';
 /** A figure is made once it is this near to the window, in pixels. */
 const AHEAD_PX = 500;
 
-/**
- * @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure}
- */
+/** @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure} */
 export function mountFigure(stage, build) {
   const status = h('p', { class: 'figure-status', role: 'status' });
   stage.after(status);

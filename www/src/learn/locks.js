@@ -11,9 +11,7 @@ const PARTS = {
   race: '#race-box > .controls',
 };
 
-/**
- * @param {HTMLElement} root @param {readonly string[]} locks
- */
+/** @param {HTMLElement} root @param {readonly string[]} locks */
 export function lockParts(root, locks) {
   const selector = locks.flatMap((name) => PARTS[name] ?? []).join(', ');
   if (!selector) return;

@@ -12,9 +12,7 @@ import { formatCount } from '../ui/format.js';
 /** Elements in which a letter is text. */
 const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), textarea, select';
 
-/**
- * @param {PresenterOptions} about
- */
+/** @param {PresenterOptions} about */
 export function createPresenter({ stops, to }) {
   const root = document.documentElement;
   /** Number of the stop that is shown; null while nothing is presented. */

@@ -10,9 +10,7 @@ const PRESENT = 'present';
 /** Height of what stays at the top of the window, in pixels. */
 const HEAD_PX = 60;
 
-/**
- * @param {StopsOptions} about
- */
+/** @param {StopsOptions} about */
 export function mountStops({ stops, others, onBench, say }) {
   const all = [...stops, ...others];
   let isBenchShown = false;

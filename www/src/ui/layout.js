@@ -21,9 +21,7 @@ const COMPACT = '(max-width: 44.95em)';
  * @typedef {'nothing' | 'panels' | 'all'} Hidden
  */
 
-/**
- * @param {LayoutOptions} parts
- */
+/** @param {LayoutOptions} parts */
 export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   const last = panels.findLast(({ head }) => head);
   for (const each of panels)

@@ -57,9 +57,7 @@ export class LessonClient {
   /** The pending promises, by the number of the message. @type {Map<number, Waiting>} */
   #waiting;
 
-  /**
-   * @param {LessonClientOptions} [options]
-   */
+  /** @param {LessonClientOptions} [options] */
   constructor({ spawn = spawnLesson, onProgress = () => {} } = {}) {
     this.#spawn = spawn;
     this.#onProgress = onProgress;

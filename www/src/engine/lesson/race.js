@@ -45,9 +45,7 @@ export class Race {
   #gate;
   #open;
 
-  /**
-   * @param {RaceOptions} [options]
-   */
+  /** @param {RaceOptions} [options] */
   constructor({ spawn = spawnLesson, onLane = () => {} } = {}) {
     this.#onLane = onLane;
     this.#clients = [new LessonClient({ spawn }), new LessonClient({ spawn })];

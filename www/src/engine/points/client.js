@@ -22,9 +22,7 @@ export const LOADING_MS = 30_000;
  * some tenths of a second, and the worker beats while it loads and reads.
  */
 export const SILENCE_MS = 4000;
-/**
- * Delay after a silence before it counts. A tab that was suspended first handles the messages that wait.
- */
+/** Delay after a silence before it counts. A tab that was suspended first handles the messages that wait. */
 const GRACE_MS = 120;
 
 export class PointsClient {
@@ -38,9 +36,7 @@ export class PointsClient {
   /** Ends the current order. @type {((ending: Ending) => void) | null} */
   #end;
 
-  /**
-   * @param {PointsClientOptions} options
-   */
+  /** @param {PointsClientOptions} options */
   constructor({
     spawn,
     onProgress,

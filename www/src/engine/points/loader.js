@@ -48,9 +48,7 @@ export class ModelLoader {
   /** Id of the current order. */
   #orderId;
 
-  /**
-   * @param {LoaderOptions} options
-   */
+  /** @param {LoaderOptions} options */
   constructor({ store, spawn, sample }) {
     this.#store = store;
     this.#sample = sample;

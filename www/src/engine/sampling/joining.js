@@ -8,7 +8,7 @@ import { BEAT_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
- * @import { Mesh } from './types.js'
+ * @import { Mesh, SliceEnv } from './types.js'
  */
 
 /** First budgets, in slices of up to a tenth of a millisecond, and of a millisecond for files. */
@@ -16,15 +16,11 @@ const FIRST_SLICES = 32;
 const FIRST_ROWS = 4;
 
 /**
- * @typedef {Pick<import('./types.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
- */
-
-/**
  * Returns what the slices lead to, or null if another job replaces the particles before they are done.
  * @template T
  * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
  * @param {number} slices  the first budget
- * @param {Env} env
+ * @param {SliceEnv} env
  * @returns {Promise<T | null>}
  */
 async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
@@ -47,7 +43,7 @@ async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
 /**
  * Returns the mesh, or null if another job replaces the particles before it is complete.
  * @param {Pick<Core, 'join' | 'triangles'>} core
- * @param {Env} env
+ * @param {SliceEnv} env
  * @returns {Promise<Mesh | null>}
  */
 export async function join(core, env) {
@@ -60,7 +56,7 @@ export async function join(core, env) {
  * the particles before it is.
  * @param {Pick<Core, 'mesh_file'>} core
  * @param {string} format
- * @param {Env} env
+ * @param {SliceEnv} env
  */
 export const write = (core, format, env) =>
   inSlices(

@@ -40,9 +40,7 @@ export class Sampler {
   #nowMs;
   #pace;
 
-  /**
-   * @param {SamplerOptions} options
-   */
+  /** @param {SamplerOptions} options */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
     this.store = store;
     this.#columns = columns;

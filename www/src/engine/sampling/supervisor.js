@@ -47,9 +47,7 @@ export class Supervisor {
   /** @type {Timer | undefined} */
   #timer;
 
-  /**
-   * @param {SupervisorOptions} options
-   */
+  /** @param {SupervisorOptions} options */
   constructor({ spawn, onMessage, onRestart, onSafeMode, onLoadError, clock = BROWSER_CLOCK }) {
     this.#spawn = spawn;
     this.#onMessage = onMessage;

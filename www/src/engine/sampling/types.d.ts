@@ -205,6 +205,8 @@ export interface Env extends WorkerEnv<FromWorker> {
   /** whether the page has drawn the columns sent so far */
   room: () => boolean;
 }
+/** The part of a job's surroundings that joining uses. */
+export type SliceEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
 /**
  * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page
  * has.

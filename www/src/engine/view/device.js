@@ -36,9 +36,7 @@ export class DeviceKeeper {
   /** Whether dots stand for a device that was lost out of sight. */
   #resting;
 
-  /**
-   * @param {DeviceOptions} options
-   */
+  /** @param {DeviceOptions} options */
   constructor({ host, onOpen, onLost, onFallback, first = null, open = openDevice, clock }) {
     this.#host = host;
     this.#onOpen = onOpen;

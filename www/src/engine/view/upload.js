@@ -14,9 +14,7 @@ import { PALETTES } from './palettes.js';
  * @import { Device, Look, View } from './types.js'
  */
 
-/**
- * @typedef {Device['renderer']} Renderer
- */
+/** @typedef {Device['renderer']} Renderer */
 
 /** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;

@@ -45,9 +45,7 @@ class FormulaInput {
   #engine;
   #functions;
 
-  /**
-   * Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys.
-   */
+  /** Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys. */
   #unfinished;
   #upgrading;
   #fault;

@@ -166,9 +166,7 @@ function drawFront(element, { opened, at, run, stale }, engine) {
   });
 }
 
-/**
- * @param {{ title: HTMLElement, follower: Follower, particles: Track, close: () => void }} parts
- */
+/** @param {{ title: HTMLElement, follower: Follower, particles: Track, close: () => void }} parts */
 function createHead({ title, follower, particles, close }) {
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'left' | 'right'} */ name) => {
     const to = () => particles.at.value + by;

@@ -1,6 +1,4 @@
-/**
- * Records the picture: as a film while it moves, or as a sequence of single pictures of full quality.
- */
+/** Records the picture: as a film while it moves, or as a sequence of single pictures of full quality. */
 import { effect } from '@preact/signals-core';
 import { CROSSING_S, placeAt, TURN_S, valueAt } from '../motion.js';
 import { compose } from './compose.js';
