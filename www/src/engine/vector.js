@@ -1,6 +1,9 @@
-/** Vectors of three numbers. */
+/** Numbers, and vectors of three of them. */
 
 /** @import { Vec3 } from './types.js' */
+
+/** @param {number} value @param {number} low @param {number} high */
+export const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
 /** Returns the vector of f(0), f(1) and f(2). @param {(axis: number) => number} f @returns {Vec3} */
 export const vec = (f) => [f(0), f(1), f(2)];

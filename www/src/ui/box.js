@@ -1,6 +1,5 @@
 /** The clip box: the message and the remedy where it cuts the surface, and the ways in which it changes. */
-import { vec } from '../engine/vector.js';
-import { clamp } from './scale.js';
+import { clamp, vec } from '../engine/vector.js';
 
 /** @import { Bounds, Engine, Report } from '../engine/types.js' */
 

@@ -2,8 +2,8 @@
  * Shows explanations of figures and controls in one shared popover, on hover, on keyboard focus and on tap. Escape
  * dismisses the popover, and it stays while the pointer is on it (WCAG 1.4.13).
  */
+import { clamp } from '../engine/vector.js';
 import { fill, h, usesKeyboard } from './dom.js';
-import { clamp } from './scale.js';
 
 /** @import { Explanation, Side } from './types.js' */
 

@@ -1,10 +1,9 @@
 /** Converts between the position of a slider (0 to 1) and its value, on linear and logarithmic scales. */
+
+import { clamp } from '../engine/vector.js';
 import { decimalsOf } from './format.js';
 
 /** @import { Scale } from './types.js' */
-
-/** @param {number} value @param {number} lo @param {number} hi */
-export const clamp = (value, lo, hi) => Math.min(Math.max(value, lo), hi);
 
 /** Returns whether a scale is logarithmic and its logarithm is defined on the whole range. @param {Scale} scale */
 const isLog = (scale) => scale.scale === 'log' && scale.min > 0 && scale.max > scale.min;

@@ -2,10 +2,12 @@
  * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a
  * double click resets the value. The number can be typed and stepped.
  */
+
 import { untracked } from '@preact/signals-core';
+import { clamp } from '../engine/vector.js';
 import { h, live, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
-import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
+import { nudge, snap, toPlace, toValue } from './scale.js';
 
 /** @import { Scale, Slider, SliderOptions } from './types.js' */
 

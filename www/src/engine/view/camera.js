@@ -7,7 +7,7 @@
  *
  * @module
  */
-import { dot, vec } from '../vector.js';
+import { clamp, dot, vec } from '../vector.js';
 
 /**
  * @import { Angles, CameraState, Spot, Vec3 } from '../types.js'
@@ -31,9 +31,6 @@ const OPENING_PITCH_RAD = 0.9;
 const OPENING_COSINE = 0.5;
 const OPENING_PAUSE_S = 0.5;
 const OPENING_TURN_S = 1.5;
-
-/** @param {number} v @param {number} low @param {number} high */
-const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
 
 /** @returns {CameraState} */
 export const homeCamera = () => ({ target: [0, 0, 0], distance: 5, yaw: 0.62, pitch: 0.42, fit: true });

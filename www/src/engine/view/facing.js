@@ -4,10 +4,9 @@
  * @module
  */
 
-/** @import { Angles } from '../types.js' */
+import { clamp } from '../vector.js';
 
-/** @param {number} v @param {number} low @param {number} high */
-const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
+/** @import { Angles } from '../types.js' */
 
 /** Cosine of the angle to the normal below which a point counts as hidden. */
 const FACING = 0.3;

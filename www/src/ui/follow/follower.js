@@ -4,11 +4,10 @@
  */
 
 import { batch, computed, signal } from '@preact/signals-core';
-import { triple } from '../../engine/vector.js';
+import { clamp, triple } from '../../engine/vector.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
-import { clamp } from '../scale.js';
 import { surfaceWords } from '../surface-link.js';
 import { nearest, standIn } from './find.js';
 import { Relaxation } from './rest.js';

@@ -2,12 +2,13 @@
  * Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded
  * when asked for.
  */
+
 import { computed, signal } from '@preact/signals-core';
+import { clamp } from '../../engine/vector.js';
 import { draw, footOf, scaleOf } from '../chart.js';
 import { h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { spread as statisticsOf } from '../neighbours.js';
-import { clamp } from '../scale.js';
 import { loadSheet } from '../sheet.js';
 import { tableOf } from '../table.js';
 import sheet from './charts.css?url';

@@ -2,12 +2,13 @@
  * The timeline: the choice of its grain, one set of buttons, a range under bars, and the present place. The grains that
  * are finer than a level open the panel that follows a particle.
  */
+
 import { computed, signal } from '@preact/signals-core';
+import { clamp } from '../../engine/vector.js';
 import { button } from '../button.js';
 import { fill, h, live, s } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
-import { clamp } from '../scale.js';
 import { createSegmented } from '../segmented.js';
 import { isMeant, moveOf } from './keys.js';
 import { createLevels } from './levels.js';

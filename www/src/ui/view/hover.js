@@ -1,9 +1,9 @@
 /** Shows a card for the particle under the pointer or the tapped one. */
 
+import { clamp } from '../../engine/vector.js';
 import { button } from '../button.js';
 import { h, live, query } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../format.js';
-import { clamp } from '../scale.js';
 
 /**
  * @import { Engine, Hover } from '../../engine/types.js'

@@ -1,8 +1,7 @@
 /** Marks of the cutting plane: its outline in the clip box, a knob that moves it and one that turns it. */
-import { along, dot } from '../../../engine/vector.js';
+import { along, clamp, dot } from '../../../engine/vector.js';
 import { live } from '../../dom.js';
 import { formatSignificant } from '../../format.js';
-import { clamp } from '../../scale.js';
 import { centreOf, directionOnSphere, extentOf, placeAlong, sectionOf } from '../../space.js';
 import { boxOf } from './box.js';
 import { createHandle } from './handle.js';
