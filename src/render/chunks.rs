@@ -14,7 +14,7 @@ pub struct ChunkSpan {
     pub chunk: usize,
     /// Index within the chunk of the first of these records.
     pub start: u32,
-    /// These records, counted from the first record that is split.
+    /// Range of these records, counted from the first record that is split.
     pub records: Range<usize>,
 }
 

@@ -95,7 +95,7 @@ pub(crate) struct SampleArguments {
     pub(crate) quiet: bool,
 }
 
-/// What is sampled.
+/// Arguments that choose the surface.
 #[derive(Debug, Args)]
 pub(crate) struct SurfaceArguments {
     /// Named surface (see `surfaces`); the first one of them by default
@@ -133,7 +133,7 @@ pub(crate) struct SurfaceArguments {
     pub(crate) bounds: Option<BoxChoice>,
 }
 
-/// Which box is sampled in.
+/// Choice of the box that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum BoxChoice {
     Fit,

@@ -166,7 +166,7 @@ const END_ENERGY: f32 = 0.011_108_997;
 
 /// Returns exp(−x) for 0 ≤ x ≤ 4.5, with a relative error below 2·10⁻⁵. The result has no meaning outside that range.
 ///
-/// It is exp(−x/16)¹⁶ by the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
+/// The result is computed as exp(−x/16)¹⁶ by the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
 pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
