@@ -1,9 +1,12 @@
-//! Writes the types of the values that cross to the page as TypeScript, and holds the page's file to them.
+//! Writes the types of what crosses to the page as TypeScript and the numbers by which it reads columns as JavaScript, and holds
+//! the page's files to them.
 
 use crate::field::model::SolvedModel;
 use crate::lesson::{self, LessonField};
 use crate::paper::Push;
+use crate::particles::{Particles, SlotFate, Slots};
 use crate::pointcloud::job;
+use crate::quality::Measurements;
 use crate::run::{MeshAnswer, Report, Start};
 use crate::sampler::Progress;
 use crate::session::{Description, Fault, FieldAnswer, FieldRequest};
@@ -91,14 +94,52 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Push>();
     let text: String = std::iter::once(HEAD.to_owned()).chain(declarations.found.into_values()).collect();
 
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/src/engine/core-types.d.ts");
+    hold("core-types.d.ts", &text);
+}
+
+#[test]
+fn numbers_of_the_page_are_those_of_the_core() {
+    let fates = SlotFate::ALL.map(|fate| {
+        let name = serde_json::to_string(&fate).expect("a fate has a name");
+        format!("{}: {}", name.trim_matches('"'), fate as u32)
+    });
+    let text = format!(
+        "\
+// The numbers by which the page reads the columns of the core. Written from the Rust constants by a test:
+// UPDATE_GOLDEN=1 cargo test --lib page_types
+
+/** Parent index of a seed. */
+export const NO_PARENT = {};
+/** Component of a particle that the report leaves out. */
+export const NO_COMPONENT = {};
+/** Largest number of slots of a particle, and the bits of each: slot `k` has those from `SLOT_BITS * k` on. */
+export const MOST_SLOTS = {};
+export const SLOT_BITS = {};
+/** Bit of `slots` that is set where a singular point of the surface lies within 2r of the particle. */
+export const SINGULAR = {};
+/** Fates of a slot. */
+export const FATE = {{ {} }};
+",
+        Particles::NO_PARENT,
+        Measurements::NO_COMPONENT,
+        Slots::COUNT,
+        Slots::BITS,
+        Slots::SINGULAR,
+        fates.join(", "),
+    );
+    hold("core-numbers.js", &text);
+}
+
+/// Holds a file of the page's engine to `text`, or writes it if that is asked for.
+fn hold(name: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/src/engine").join(name);
     if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        std::fs::write(&path, &text).expect("the file can be written");
+        std::fs::write(&path, text).expect("the file can be written");
     }
     let page = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
-        without_comments(&page) == without_comments(&text),
-        "{} has other types than the core: UPDATE_GOLDEN=1 cargo test --lib page_types",
+        without_comments(&page) == without_comments(text),
+        "{} is not what the core says: UPDATE_GOLDEN=1 cargo test --lib page_types",
         path.display()
     );
 }

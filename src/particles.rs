@@ -72,9 +72,13 @@ pub struct Slots(pub u32);
 impl Slots {
     /// Slots of a particle, at most.
     pub const COUNT: usize = 10;
+    /// Bits of a fate.
+    pub const BITS: usize = 3;
     /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the
     /// slots take the bits below it.
     pub const SINGULAR: u32 = 1 << 30;
+    /// The bits of slot 0.
+    const FATE: u32 = (1 << Self::BITS) - 1;
 
     /// Returns whether the surface has a singular point within 2r of the particle.
     #[must_use]
@@ -85,12 +89,13 @@ impl Slots {
     /// Returns the fate of slot `k` < [`Slots::COUNT`].
     #[must_use]
     pub fn get(self, k: usize) -> SlotFate {
-        SlotFate::ALL[(self.0 >> (3 * k) & 7) as usize]
+        SlotFate::ALL[(self.0 >> (Self::BITS * k) & Self::FATE) as usize]
     }
 
     /// Sets the fate of slot `k` < [`Slots::COUNT`].
     pub fn set(&mut self, k: usize, fate: SlotFate) {
-        self.0 = self.0 & !(7 << (3 * k)) | (fate as u32) << (3 * k);
+        let at = Self::BITS * k;
+        self.0 = self.0 & !(Self::FATE << at) | (fate as u32) << at;
     }
 }
 

@@ -57,7 +57,20 @@ const ROOMS: [Room; 4] = [
             // The lesson shares some words with the sampler, no algorithm.
             ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
             // Compiled for tests alone: the types of the page.
-            ("page_types", &["field", "pointcloud", "paper", "lesson", "run", "sampler", "session"]),
+            (
+                "page_types",
+                &[
+                    "field",
+                    "particles",
+                    "pointcloud",
+                    "paper",
+                    "lesson",
+                    "quality",
+                    "run",
+                    "sampler",
+                    "session",
+                ],
+            ),
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.

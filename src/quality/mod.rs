@@ -87,14 +87,19 @@ pub struct Measurements {
     /// non-finite position.
     pub energy: Vec<f32>,
     /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is
-    /// on the component of the particle that it equals; a non-finite position has `u32::MAX`.
+    /// on the component of the particle that it equals; a non-finite position has [`Self::NO_COMPONENT`].
     pub component: Vec<u32>,
-    /// Histogram of `nearest` / d_hex.
+    /// Histogram of `nearest` over the ideal distances.
     pub histogram: Histogram,
     /// The crowded pairs and the wide holes.
     pub places: Places,
     /// The opening that the triangles of natural neighbours leave in the surface; none if they close it.
     pub(crate) opening: Option<Opening>,
+}
+
+impl Measurements {
+    /// Component of a point that is left out.
+    pub const NO_COMPONENT: u32 = components::NO_LABEL;
 }
 
 /// Places away from the border of a clipped surface where the triangles of natural neighbours do not close it.
@@ -149,7 +154,7 @@ pub(crate) async fn in_slices(
         nearest: (0..n).map(|i| if drop[i] && position[i].is_finite() { 0.0 } else { f32::NAN }).collect(),
         residual: vec![f32::NAN; n],
         energy: vec![f32::NAN; n],
-        component: vec![components::NO_LABEL; n],
+        component: vec![Measurements::NO_COMPONENT; n],
         opening,
         ..Measurements::default()
     };
@@ -165,7 +170,7 @@ pub(crate) async fn in_slices(
         let jet = field.jet(position[i].as_dvec3());
         report.residual[i] = first_order_height(jet.value, jet.gradient.length()).abs() as f32;
         let (_, equal) = points.tree.nearest(position[i], u32::MAX, f32::INFINITY);
-        report.component[i] = component.get(equal as usize).copied().unwrap_or(components::NO_LABEL);
+        report.component[i] = component.get(equal as usize).copied().unwrap_or(Measurements::NO_COMPONENT);
         if let Some(&twin) = points.tree.origin.get(equal as usize) {
             pairs.add(0.0, twin, i as u32);
         }
@@ -173,7 +178,10 @@ pub(crate) async fn in_slices(
     figures.spacing.crowded = (!points.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
     report.places = Places { pairs: pairs.reported(), holes };
-    report.histogram = Histogram::new(&report.nearest, figures.d_hex);
+    report.histogram = Histogram::new(&report.nearest, |i| match options.sizes {
+        Sizes::Given(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),
+        _ => figures.d_hex,
+    });
     report
 }
 

@@ -11,7 +11,8 @@ use serde::Serialize;
 /// Points whose pairs are found in one slice of work.
 const SLICE: usize = 256;
 
-/// Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost.
+/// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
+/// Bins are equal, and values outside fall into the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {
@@ -29,12 +30,12 @@ impl Histogram {
     /// A bin is 0.01 wide.
     const BINS: usize = 120;
 
-    /// Counts the distances `nearest`, of which those that are NaN are left out.
-    pub(super) fn new(nearest: &[f32], d_hex: f64) -> Self {
+    /// Counts the distances `nearest` over the ideal one of each particle. Those that are NaN are left out.
+    pub(super) fn new(nearest: &[f32], ideal: impl Fn(usize) -> f64) -> Self {
         let (min, max) = Self::RANGE;
         let mut bins = vec![0; Self::BINS];
-        for &distance in nearest {
-            let place = (f64::from(distance) / d_hex - min) / (max - min) * Self::BINS as f64;
+        for (i, &distance) in nearest.iter().enumerate() {
+            let place = (f64::from(distance) / ideal(i) - min) / (max - min) * Self::BINS as f64;
             if !place.is_nan() {
                 bins[(place as usize).min(Self::BINS - 1)] += 1;
             }
@@ -101,5 +102,18 @@ pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize
         nn_ratio: distance(0) / moments.mean(),
         rho_1: (below + (above - below) * place.fract()) / d_hex,
         crowded: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distance_counts_by_the_ideal_one_of_its_particle() {
+        let diameters = [0.2, 2.0, 20.0, 20.0, 2.0];
+        let Histogram { bins, .. } = Histogram::new(&[0.2, 1.99, 20.0, 500.0, f32::NAN], |i| diameters[i]);
+        let found: Vec<(usize, u32)> = bins.into_iter().enumerate().filter(|&(_, count)| count > 0).collect();
+        assert_eq!(found, [(99, 1), (100, 2), (119, 1)]);
     }
 }

@@ -116,7 +116,7 @@ pub struct Measures {
     pub quality: Option<Figures>,
     /// Quality of the particles after the front, before the relaxation; none where nothing was relaxed.
     pub quality_before: Option<Figures>,
-    /// Nearest-neighbour distances.
+    /// Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles.
     pub nearest_histogram: Histogram,
     /// The crowded pairs and wide holes of the present particles.
     pub places: Places,

@@ -7,7 +7,14 @@ import { expect, test } from 'vitest';
 const SRC = fileURLToPath(new URL('../src', import.meta.url));
 
 /** What a panel may know of the engine; it is handed the engine itself. */
-const ENGINE_FACE = ['engine/types', 'engine/constants', 'engine/vector', 'engine/columns', 'engine/share/base64url'];
+const ENGINE_FACE = [
+  'engine/types',
+  'engine/constants',
+  'engine/vector',
+  'engine/columns',
+  'engine/core-numbers',
+  'engine/share/base64url',
+];
 
 /**
  * Who may use whom, by path below src/. The longest entry that fits a file counts; every file may use its own room. What is not
@@ -19,14 +26,29 @@ const MAY_USE = {
   'service-worker': [],
   // The words that everything shares.
   'engine/core-types': [],
+  'engine/core-numbers': [],
   'engine/constants': [],
   'engine/vector': ['engine/types'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
-  'engine/columns': ['engine/types', 'engine/vector'],
+  'engine/columns': ['engine/types', 'engine/core-numbers', 'engine/vector'],
   'engine/store': ['engine/types', 'engine/share'],
-  'engine/view': ['engine/types', 'engine/columns', 'engine/vector', 'engine/bundle'],
+  'engine/view': [
+    'engine/types',
+    'engine/constants',
+    'engine/columns',
+    'engine/core-numbers',
+    'engine/vector',
+    'engine/bundle',
+  ],
   // The state holds the camera's.
-  'engine/share': ['engine/types', 'engine/constants', 'engine/columns', 'engine/vector', 'engine/view'],
+  'engine/share': [
+    'engine/types',
+    'engine/constants',
+    'engine/columns',
+    'engine/core-numbers',
+    'engine/vector',
+    'engine/view',
+  ],
   // How a bundle is brought in, and how a worker keeps its pace.
   'engine/bundle': [],
   // The lesson runs beside the sampler and knows nothing of it.

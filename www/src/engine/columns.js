@@ -5,16 +5,19 @@
  * @module
  */
 
+import { SLOT_BITS } from './core-numbers.js';
 import { vec } from './vector.js';
+
 /** @import { Bounds, ColumnRange, Figures, Mesh } from './types.js' */
 
-/** Parent index of a seed, as the core writes it. */
-export const NO_PARENT = 0xffffffff;
-/** Codes of the slot fates, as in the core. */
-export const FATE = { open: 0, parent: 1, added: 2, matched: 3, notConverged: 4, outside: 5, undefined: 6, capped: 7 };
-/** Bit of `slots` that is set where a singular point of the surface lies within 2r of the particle. */
-export const SINGULAR = 1 << 30;
-/** Generation level of discs that are drawn with the particles but are not particles, such as a model's points. */
+/** Number of fates that a slot can have. */
+export const FATES = 1 << SLOT_BITS;
+/** Returns the fate of a slot. @param {number} slots  the fates of a particle @param {number} k  number of the slot */
+export const fateOf = (slots, k) => (slots >>> (SLOT_BITS * k)) & (FATES - 1);
+/**
+ * Generation level of discs that are drawn with the particles but are not particles, such as a model's points, as the
+ * renderer knows it.
+ */
 export const NO_LEVEL = 0xffffffff;
 
 /** The columns of a report, one value per particle. A core has a method of each name. */

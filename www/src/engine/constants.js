@@ -4,5 +4,13 @@
 export const FILE_SURFACE = 'file';
 /** Disc radius as a share of the repulsion radius. */
 export const DISC_SIZE = { initial: 0.92, min: 0.2, max: 1.5, step: 0.01 };
+/**
+ * Largest number of particles of which every relaxation step is kept, glided to and measured. Beyond it the positions
+ * of ten steps take more than 2.4 MB, the uploads of a glide more than a frame, and the distances of a step more than
+ * some hundredths of a second.
+ */
+export const MOST_STEPPED = 20_000;
+/** Largest number of parameters in a state or a link. */
+export const MOST_PARAMETERS = 64;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
 export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.txt';

@@ -5,7 +5,7 @@
  */
 
 import { batch } from '@preact/signals-core';
-import { NO_PARENT } from './columns.js';
+import { NO_PARENT } from './core-numbers.js';
 import { CAMERA_MS } from './debug.js';
 import { changeView } from './store.js';
 import { triple } from './vector.js';

@@ -1,7 +1,7 @@
 /**
  * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
  */
-import { NO_PARENT } from '../engine/columns.js';
+import { NO_PARENT } from '../engine/core-numbers.js';
 import { distance, triple, unit, vec } from '../engine/vector.js';
 import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';

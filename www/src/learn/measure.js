@@ -1,5 +1,5 @@
 /** Measurements of a run for the figures, worked out from its particles. */
-import { NO_PARENT } from '../engine/columns.js';
+import { NO_PARENT } from '../engine/core-numbers.js';
 import { between, createGrid } from '../ui/neighbours.js';
 
 /**

@@ -2,6 +2,7 @@
  * A surface in the address of the learn page: its formula, its parameters and its box, and the way back to the page
  * from which it comes. What is read from an address may be anything, so every part of it is checked.
  */
+import { MOST_PARAMETERS } from '../engine/constants.js';
 import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 
 /** @import { FormulaSurface } from './types.js' */
@@ -18,7 +19,6 @@ export const surfaceWords = ({ formula, parameters }) =>
 
 /** Longest text that is read: more than a formula of the greatest length with all parameters. */
 const LONGEST = 65_536;
-const MOST_PARAMETERS = 64;
 
 /** Writes any plain data for an address. @param {unknown} data */
 export const packed = (data) => toBase64url(new TextEncoder().encode(JSON.stringify(data)));

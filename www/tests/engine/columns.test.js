@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import { Columns, SINGULAR } from '../../src/engine/columns.js';
+import { Columns } from '../../src/engine/columns.js';
+import { SINGULAR } from '../../src/engine/core-numbers.js';
 import { csv, ply } from '../../src/engine/share/exports.js';
 import { Glide } from '../../src/engine/view/glide.js';
 import { pick } from '../../src/engine/view/picking.js';

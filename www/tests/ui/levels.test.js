@@ -1,5 +1,6 @@
 import { beforeAll, describe, expect, test } from 'vitest';
-import { Columns, FATE, NO_PARENT } from '../../src/engine/columns.js';
+import { Columns } from '../../src/engine/columns.js';
+import { FATE, NO_PARENT } from '../../src/engine/core-numbers.js';
 import { facing } from '../../src/engine/view/facing.js';
 import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
@@ -39,7 +40,7 @@ function particles(made, adaptive = false) {
 /** A seed, three children, and a particle that filled a gap at the end. */
 const front = () =>
   particles([
-    { level: 0, slots: slots('added', 'added', 'added', 'outside', 'outside', 'notConverged') },
+    { level: 0, slots: slots('added', 'added', 'added', 'outside', 'outside', 'not_converged') },
     { level: 1, parent: 0, slots: slots('parent', 'matched', 'matched', 'matched', 'undefined', 'capped') },
     { level: 1, parent: 0, slots: slots('parent', 'matched') },
     { level: 1, parent: 0, slots: slots('parent', 'added', 'matched') },
@@ -142,7 +143,7 @@ describe('the figures of the charts', () => {
       ['added', [0, 3, 1]],
       ['matched', [0, 0, 5]],
       ['outside', [0, 2, 0]],
-      ['notConverged', [0, 1, 0]],
+      ['not_converged', [0, 1, 0]],
       ['undefined', [0, 0, 1]],
       ['capped', [0, 0, 1]],
     ]);

@@ -1,6 +1,6 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
-import { coarsen, overDiameters, trim } from '../../src/ui/report/bins.js';
+import { coarsen, trim } from '../../src/ui/report/bins.js';
 import { listOf, placeOf } from '../../src/ui/report/places.js';
 import {
   compare,
@@ -169,18 +169,6 @@ describe('the report', () => {
 });
 
 describe('histogram bins', () => {
-  it('measure every distance of an adaptive run by its own particle', () => {
-    const { min, max, bins } = overDiameters([0.2, 1.99, 20, 500, NaN], [0.1, 1, 10, 10, 1]);
-    const found = bins.flatMap((count, i) =>
-      count ? [[Math.round((min + (i * (max - min)) / bins.length) * 100) / 100, count]] : [],
-    );
-    expect(found).toEqual([
-      [0.99, 1],
-      [1, 2],
-      [1.19, 1],
-    ]);
-  });
-
   it('keep every particle when they are made wider', () => {
     const bins = Array.from({ length: 50 }, (_, i) => (i > 4 && i < 40 ? i : 0));
     const rows = coarsen({ min: 1, max: 2, bins }, 12);

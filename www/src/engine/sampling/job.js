@@ -7,8 +7,9 @@
  */
 import { nextBudget } from '../bundle/budget.js';
 import { MEASURED } from '../columns.js';
+import { MOST_STEPPED } from '../constants.js';
 import { join } from './joining.js';
-import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
+import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
@@ -249,7 +250,7 @@ class JobRun {
   #remember(progress) {
     const { core, job, past } = this;
     if (job.live || progress.phase !== 'relaxation' || this.#stepsOf(progress) !== past.length) return;
-    if (past.length === 0 || core.count() <= MOST_REMEMBERED) past.push(core.positions(0));
+    if (past.length === 0 || core.count() <= MOST_STEPPED) past.push(core.positions(0));
   }
 
   /** Returns the relaxation steps of this run so far. @param {CoreProgress} progress */

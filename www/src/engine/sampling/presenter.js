@@ -4,10 +4,10 @@
  * @module
  */
 import { batch } from '@preact/signals-core';
+import { MOST_STEPPED } from '../constants.js';
 import { idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
 import { timingOf, timingOfReport } from './pace.js';
-import { MOST_REMEMBERED } from './protocol.js';
 
 /**
  * @import { Store } from '../store.js'
@@ -127,7 +127,7 @@ export class Presenter {
     const { columns } = this;
     // Steps that are made afterwards go on from the earlier ones, if those were all kept.
     const earlier = request.kind === 'relax' ? columns.past : [];
-    const isWhole = earlier.length === 0 || columns.count <= MOST_REMEMBERED;
+    const isWhole = earlier.length === 0 || columns.count <= MOST_STEPPED;
     columns.past = isWhole ? [...earlier, ...positions] : earlier;
     this.picture.remembered();
     this.store.revision.value += 1;

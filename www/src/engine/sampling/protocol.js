@@ -10,8 +10,6 @@
 
 /** Interval between progress messages of a job that sends no columns. */
 export const PROGRESS_MS = 60;
-/** Largest number of particles of which the positions are kept at every relaxation step: 2.4 MB in ten steps. */
-export const MOST_REMEMBERED = 20_000;
 /** Largest interval between messages while the worker loads or measures. */
 export const BEAT_MS = 250;
 /** Time without a message after which a busy worker counts as hung. */

@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { NO_PARENT, SINGULAR } from '../columns.js';
+import { NO_PARENT, SINGULAR } from '../core-numbers.js';
 
 /** @import { Columns, Description } from '../types.js' */
 

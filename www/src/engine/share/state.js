@@ -4,7 +4,7 @@
  * @module
  */
 
-import { FILE_SURFACE } from '../constants.js';
+import { FILE_SURFACE, MOST_PARAMETERS } from '../constants.js';
 import { vec } from '../vector.js';
 import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
@@ -15,8 +15,6 @@ import { homeView, validView } from './view.js';
  * } from '../types.js'
  */
 
-/** Largest number of parameters in a state. */
-const MOST_PARAMETERS = 64;
 /** Largest number of a plane, which the graphics card reads in single precision. */
 const LARGEST_SINGLE = 3e38;
 

@@ -3,7 +3,8 @@
  *
  * @module
  */
-import { FATE } from '../columns.js';
+import { fateOf } from '../columns.js';
+import { FATE, MOST_SLOTS, NO_COMPONENT, SLOT_BITS } from '../core-numbers.js';
 import { hexFromPacked } from './oklab.js';
 import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
 
@@ -12,9 +13,8 @@ import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
  * @import { Colouring, Palette, Theme } from './types.js'
  */
 
-/** Number of slots of a particle in a uniform run. In an adaptive run it varies. */
+/** Number of slots of a particle in a uniform run: a hexagon. In an adaptive run it varies. */
 const SLOTS = 6;
-const MOST_SLOTS = 10;
 
 /**
  * Class of a particle by its slots, with the worst fate first: a slot that failed, one that met the limit on particles,
@@ -25,11 +25,11 @@ const MOST_SLOTS = 10;
 /** @param {number} slots @param {boolean} adaptive @returns {SlotsClass} */
 export function classOfSlots(slots, adaptive) {
   let seen = 0;
-  for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << ((slots >>> (3 * k)) & 7);
+  for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << fateOf(slots, k);
   // The number of slots of an adaptive particle is known once the front has processed it. Slots still open then are
   // unused.
-  if (adaptive && slots >>> 3 !== 0) seen &= ~(1 << FATE.open);
-  if (seen & ((1 << FATE.notConverged) | (1 << FATE.undefined))) return 'trouble';
+  if (adaptive && slots >>> SLOT_BITS !== 0) seen &= ~(1 << FATE.open);
+  if (seen & ((1 << FATE.not_converged) | (1 << FATE.undefined))) return 'trouble';
   if (seen & (1 << FATE.capped)) return 'capped';
   if (seen & (1 << FATE.outside)) return 'border';
   return seen & (1 << FATE.open) ? 'front' : 'interior';
@@ -51,9 +51,6 @@ const ENERGY_RANGE = /** @type {const} */ ([0.6, 1.4]);
 
 /** Range of residuals over the radius that the ramp covers, by powers of ten. */
 const RESIDUAL_SHARE = /** @type {const} */ ([1e-8, 1e-2]);
-
-/** Component index of a particle that the report excludes. */
-const NO_COMPONENT = 0xffffffff;
 
 /**
  * Share of the curvatures within the diverging ramp. Without it, a few sharp features would make the rest look flat.

@@ -1,12 +1,10 @@
 /**
  * Animates particles from the positions last drawn to the present ones, so that a relaxation step appears as a motion.
- * It is limited to as many particles as can be uploaded to the graphics card in every frame.
  *
  * @module
  */
+import { MOST_STEPPED } from '../constants.js';
 
-/** Largest number of animated particles. Beyond it the uploads take too long. */
-export const MOST_GLIDING = 20_000;
 /** Duration of the motion: long enough to be seen, and shorter than the usual interval between relaxation steps. */
 const GLIDE_S = 0.1;
 
@@ -60,12 +58,12 @@ export class Glide {
    * @param {number} last
    */
   note(positions, first, last) {
-    if (last > MOST_GLIDING) {
+    if (last > MOST_STEPPED) {
       this.forget();
       return;
     }
     if (this.#shown.length < 3 * last) {
-      const grown = new Float32Array(3 * MOST_GLIDING);
+      const grown = new Float32Array(3 * MOST_STEPPED);
       grown.set(this.#shown);
       this.#shown = grown;
     }

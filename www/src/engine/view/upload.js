@@ -3,9 +3,11 @@
  *
  * @module
  */
+
+import { MOST_STEPPED } from '../constants.js';
 import { coloursOf, rangeOf } from './colouring.js';
 import { dotsOf } from './dots.js';
-import { Glide, MOST_GLIDING } from './glide.js';
+import { Glide } from './glide.js';
 import { PALETTES } from './palettes.js';
 
 /**
@@ -86,7 +88,7 @@ export class ParticleUpload {
     const { count } = columns;
     if (!dirty.empty || !this.#recoloured.empty) this.#followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
-    if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(nowS);
+    if (moved && count <= MOST_STEPPED && !reveal.active && !calm) glide.begin(nowS);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;

@@ -2,7 +2,7 @@
  * Finds the particle that stands for another one: of a run for one of the picture, and of a new picture for an old
  * place.
  */
-import { NO_PARENT } from '../../engine/columns.js';
+import { NO_PARENT } from '../../engine/core-numbers.js';
 
 /**
  * Returns the particle nearest to a place, and its distance; null if there is none.

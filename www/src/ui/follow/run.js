@@ -3,7 +3,7 @@
  * picture.
  */
 
-import { NO_PARENT } from '../../engine/columns.js';
+import { NO_PARENT } from '../../engine/core-numbers.js';
 import { triple } from '../../engine/vector.js';
 import { RESIDUAL } from '../../figures/particle.js';
 import { distanceSq } from './find.js';

@@ -4,6 +4,7 @@
  */
 
 import { computed, signal } from '@preact/signals-core';
+import { MOST_STEPPED } from '../../engine/constants.js';
 import { clamp } from '../../engine/vector.js';
 import { draw, footOf, scaleOf } from '../chart.js';
 import { h } from '../dom.js';
@@ -24,12 +25,6 @@ import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver,
  * Distances of the particles that are shown to their nearest, over 2r, and which they are in words.
  * @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread
  */
-
-/**
- * The most particles whose distances are worked out here, which takes some hundredths of a second. Those of the end of
- * a run are measured by the core.
- */
-const MOST_MEASURED = 20_000;
 
 /** @param {Engine} engine @param {Player} player */
 export async function createCharts(engine, player) {
@@ -131,7 +126,7 @@ function spreadOf(columns, { upTo, step }) {
     return { nearest: nearest.map((far, i) => far / (2 * radii[i])), words: `all ${plural(count, 'particle')}` };
   }
   const chosen = Array.from({ length: count }, (_, i) => i).filter((i) => upTo === null || levels[i] <= upTo);
-  if (chosen.length > MOST_MEASURED || chosen.length < 2) return null;
+  if (chosen.length > MOST_STEPPED || chosen.length < 2) return null;
   const at = upTo === null ? (past[step ?? 0] ?? positions) : placed;
   const words =
     upTo === null
@@ -159,7 +154,7 @@ function nearestChart(spread) {
     format: formatCount,
     ends,
     ideal: (1 - low) / (high - low),
-    missing: `Known of two to ${formatCount(MOST_MEASURED)} particles, and of all at the end of a run.`,
+    missing: `Known of two to ${formatCount(MOST_STEPPED)} particles, and of all at the end of a run.`,
   };
 }
 
@@ -265,8 +260,7 @@ function moveChart(moves, at) {
 /** @param {number} value */
 const inR = (value) => `${formatFixed(value, 3)}\u00a0r`;
 
-const NOTHING =
-  'Not known. The positions of each step are kept of up to 20,000 particles, once a relaxation has ended.';
+const NOTHING = `Not known. The positions of each step are kept of up to ${formatCount(MOST_STEPPED)} particles, once a relaxation has ended.`;
 
 /**
  * @param {() => Chart} read

@@ -1,16 +1,15 @@
 /** The figures of the charts: fates of each level, energy and largest move of each relaxation step. */
-import { FATE } from '../../engine/columns.js';
+import { FATES } from '../../engine/columns.js';
+import { FATE } from '../../engine/core-numbers.js';
 
 /** @import { LevelTable } from './types.js' */
-
-const FATES = 8;
 
 /** Fates of the proposed children in the order in which they are stacked, with their names. */
 const STACKED = /** @type {const} */ ([
   ['added', 'added'],
   ['matched', 'met another'],
   ['outside', 'outside'],
-  ['notConverged', 'not converged'],
+  ['not_converged', 'not converged'],
   ['undefined', 'undefined'],
   ['capped', 'over the limit'],
 ]);

@@ -1,5 +1,6 @@
 /** Counts the particles and slot fates of each generation level, and describes them in words. */
-import { FATE, NO_PARENT } from '../../engine/columns.js';
+import { FATES, fateOf } from '../../engine/columns.js';
+import { FATE, MOST_SLOTS, NO_PARENT } from '../../engine/core-numbers.js';
 import { formatCount, plural } from '../format.js';
 
 /**
@@ -8,10 +9,6 @@ import { formatCount, plural } from '../format.js';
  */
 
 /** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
-
-const FATES = 8;
-/** Largest number of slots in a 32-bit number, at three bits per slot. */
-const MOST_SLOTS = 10;
 
 /** @param {Particles} particles @returns {LevelTable} */
 export function levelTable({ count, levels, parents, slots, adaptive, lastLevel }) {
@@ -24,8 +21,7 @@ export function levelTable({ count, levels, parents, slots, adaptive, lastLevel 
     const level = levels[i];
     fresh[level] += 1;
     if (parents[i] === NO_PARENT) seeds[level] += 1;
-    for (let k = 0, bits = slots[i]; k < MOST_SLOTS && bits !== 0; k += 1, bits >>>= 3)
-      fates[FATES * (level + 1) + (bits & 7)] += 1;
+    for (let k = 0; k < MOST_SLOTS; k += 1) fates[FATES * (level + 1) + fateOf(slots[i], k)] += 1;
   }
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
@@ -36,7 +32,7 @@ export function levelTable({ count, levels, parents, slots, adaptive, lastLevel 
 const REST = /** @type {const} */ ([
   ['matched', 'met an existing particle', 'met existing particles'],
   ['outside', 'fell outside the box', 'fell outside the box'],
-  ['notConverged', 'did not converge', 'did not converge'],
+  ['not_converged', 'did not converge', 'did not converge'],
   ['undefined', 'was undefined', 'were undefined'],
   ['capped', 'was over the limit', 'were over the limit'],
 ]);
@@ -82,12 +78,12 @@ export function describeLevel(table, level, relaxSteps) {
         : `${plural(seeds[0], 'point')} of the surface, a front from each.`;
     return { title, text: starts + moved };
   }
-  const fateOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
-  const added = fateOf('added');
-  const rest = REST.filter(([name]) => fateOf(name) > 0).map(
-    ([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`,
+  const numberOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
+  const added = numberOf('added');
+  const rest = REST.filter(([name]) => numberOf(name) > 0).map(
+    ([name, one, many]) => `${formatCount(numberOf(name))} ${numberOf(name) === 1 ? one : many}`,
   );
-  const proposed = REST.reduce((sum, [name]) => sum + fateOf(name), added);
+  const proposed = REST.reduce((sum, [name]) => sum + numberOf(name), added);
   const became = [`${formatCount(added)} added`, ...rest].join(', ');
   const fillers = fresh[level] - added - seeds[level];
   return {

@@ -42,18 +42,3 @@ export function trim({ min, max, bins }, keep) {
   const to = Math.min(bins.length, Math.max(last, place) + air + 1);
   return { min: min + from * width, max: min + to * width, bins: bins.slice(from, to) };
 }
-
-/**
- * Counts the nearest distances, relative to the particles' diameters, in the bins of the core's histogram.
- * @param {ArrayLike<number>} nearest @param {ArrayLike<number>} radii
- */
-export function overDiameters(nearest, radii) {
-  const [max, n] = [1.2, 120];
-  /** @type {number[]} */
-  const bins = new Array(n).fill(0);
-  for (let i = 0; i < nearest.length; i += 1) {
-    const place = Math.floor((nearest[i] / (2 * radii[i]) / max) * n);
-    if (place >= 0) bins[Math.min(n - 1, place)] += 1;
-  }
-  return { min: 0, max, bins };
-}

@@ -3,7 +3,7 @@ import { computed } from '@preact/signals-core';
 import { draw, footOf } from '../chart.js';
 import { h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
-import { coarsen, overDiameters, trim } from './bins.js';
+import { coarsen, trim } from './bins.js';
 
 /**
  * @import { Engine, ReadonlySignal, Report } from '../../engine/types.js'
@@ -24,10 +24,7 @@ const IDEAL = 1;
  */
 export function createHistogram(report, { columns }) {
   const bins = computed(() => {
-    const current = report.value;
-    // In an adaptive run each distance is relative to the diameter of its particle.
-    const bins =
-      columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
+    const bins = report.value?.nearest_histogram;
     return bins?.bins.length && bins.max > bins.min ? trim(bins, IDEAL) : null;
   });
   const chart = computed(() => bins.value && chartOf(bins.value));
