@@ -53,9 +53,10 @@ impl VoronoiCell {
         self.reach_sq
     }
 
-    /// Cuts off the part that is nearer to `q` than to the origin, and labels the new edge `label`.
+    /// Cuts off the part that is nearer to `q` than to the origin, and labels the new edge `label`. Where there is such a part,
+    /// `is_neighbour` is asked before.
     #[inline]
-    pub(super) fn clip(&mut self, q: DVec2, label: u32) {
+    pub(super) fn clip(&mut self, q: DVec2, label: u32, is_neighbour: impl FnOnce() -> bool) {
         let n = self.count;
         let offset = 0.5 * q.length_squared();
         let mut worst = 0;
@@ -66,7 +67,7 @@ impl VoronoiCell {
             }
         }
         // A full cell stays as it is: its corners are either right or not certain.
-        if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS {
+        if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS || !is_neighbour() {
             return;
         }
         // The corners that are cut off are consecutive, from `first` to `last`, because the cell is convex.
@@ -129,7 +130,7 @@ mod tests {
         let mut cell = VoronoiCell::new();
         cell.start(100.0);
         for (i, &(x, y)) in points.iter().enumerate() {
-            cell.clip(DVec2::new(x, y), i as u32);
+            cell.clip(DVec2::new(x, y), i as u32, || true);
         }
         let mut found: Vec<u32> = cell.edges(f64::INFINITY).map(|edge| edge.0).collect();
         // The cycle is made to start at its smallest label.

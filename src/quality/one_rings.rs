@@ -208,11 +208,8 @@ fn fill(
         if f64::from(distance_sq) > 4.001 * cell.reach_sq() {
             break;
         }
-        if is_stranger(j as usize) {
-            continue;
-        }
         if let Some(q) = unroll(tree.position[j as usize].as_dvec3() - p, u, v) {
-            cell.clip(q, j);
+            cell.clip(q, j, || !is_stranger(j as usize));
         }
     }
     let mut corners = 0;
