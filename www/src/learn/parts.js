@@ -1,9 +1,13 @@
-/** Controls and small charts that several figures have. */
+/** Controls and charts that several figures have. */
 
 import { signal } from '@preact/signals-core';
+import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
-import { h, reducedMotion, s, uniqueId } from '../ui/dom.js';
+import { draw, footOf } from '../ui/chart.js';
+import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
+
+/** @import { Children, Drawn } from '../ui/types.js' */
 
 /** @import { RangeOptions, SelectOptions } from './types.js' */
 
@@ -68,29 +72,24 @@ export function createPlay(range, { label, totalMs }) {
 }
 
 /**
- * Bars of one kind, with the one that is shown in the accent.
- * @param {{ values: readonly number[], words: string }} about  `words`: what they say, for those who do not see them
+ * A chart with what it says below it. It is drawn anew after every change of the signals that `chart` reads.
+ * @param {{ hidden: () => boolean, chart: () => Drawn, label: string, words: Children, press?: (at: number) => void
+ *   }} about  `label`: the chart for those who do not see it; `press`: called with the place that is pressed
  */
-export function createBars({ values, words }) {
-  const most = Math.max(...values, 1e-12);
-  const svg = s('svg', {
-    class: 'bars',
-    viewBox: `0 0 ${values.length} 1`,
-    preserveAspectRatio: 'none',
-    role: 'img',
-    'aria-label': words,
-  });
-  const bars = values.map((value, k) =>
-    s('rect', { x: k + 0.08, y: 1 - value / most, width: 0.84, height: value / most }),
-  );
-  svg.append(...bars);
-  return {
-    element: svg,
-    /** @param {number} at */
-    mark: (at) => {
-      for (const [k, bar] of bars.entries()) bar.toggleAttribute('data-now', k === at);
-    },
+export function createChart({ hidden, chart, label, words, press = () => {} }) {
+  /** @param {MouseEvent & { currentTarget: Element }} event */
+  const click = ({ clientX, currentTarget }) => {
+    const { left, width } = currentTarget.getBoundingClientRect();
+    const { length } = chart().rows[0].counts;
+    press(clamp(Math.floor(((clientX - left) / width) * length), 0, length - 1));
   };
+  return h(
+    'div',
+    { class: 'chart', hidden },
+    h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => draw(chart())),
+    h('div', { class: 'plot-foot', 'aria-hidden': 'true' }, () => footOf(chart())),
+    h('p', { class: 'figure-count' }, words),
+  );
 }
 
 /**

@@ -235,7 +235,10 @@ function resultOf(names, lanes, ends) {
 const axisShare = (ratio) =>
   Math.min(1, Math.max(0, Math.log(ratio / LEAST_RATIO) / Math.log(MOST_RATIO / LEAST_RATIO)));
 
-/** Charts this race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
+/**
+ * Marks this race and those of the paper on an axis of ratios. It is a diagram: a chart has bars or a line.
+ * @param {string} kind @param {number} ratio  of the two clocks
+ */
 function marksOf(kind, ratio) {
   const paper = OF_THE_PAPER[kind];
   const told = [

@@ -14,7 +14,7 @@ export async function costOf(lab) {
   return { particles, placing, resting: evaluations - placing };
 }
 
-/** @param {Context} context */
+/** A table with bars in its cells. @param {Context} context */
 export async function cost({ lab, stops }) {
   const { particles, placing, resting } = await costOf(await lab);
   const rows = [

@@ -9,7 +9,7 @@ import { FATES, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
-import { createRange } from '../parts.js';
+import { createChart, createRange } from '../parts.js';
 
 /**
  * @import { Opened } from '../../figures/types.js'
@@ -101,25 +101,18 @@ export async function sixChildren({ lab, stops }) {
 /** Charts the fates of the children, level by level. @param {LabRun} run @param {() => boolean} hidden */
 function fateChart(run, hidden) {
   const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
-  const rows = levels.map(({ fates }) => [fates.added, fates.matched]);
-  const most = Math.max(1, ...rows.map(([added, matched]) => added + matched));
-  const totals = [0, 1].map((k) => rows.reduce((sum, row) => sum + row[k], 0));
-  const svg = s('svg', {
-    class: 'bars fates',
-    viewBox: `0 0 ${rows.length} 1`,
-    preserveAspectRatio: 'none',
-    role: 'img',
-    'aria-label': `Children of each level: in the whole run ${totals[0]} added and ${totals[1]} matched`,
+  const rows = /** @type {const} */ (['added', 'matched']).map((fate) => ({
+    fate,
+    name: fate,
+    counts: levels.map(({ fates }) => fates[fate]),
+  }));
+  const totals = rows.map(({ counts }) => formatCount(counts.reduce((sum, count) => sum + count, 0)));
+  return createChart({
+    hidden,
+    chart: () => ({ kind: 'bars', rows, first: 0, at: null, format: formatCount }),
+    label: `Children of each level: in the whole run ${totals[0]} added and ${totals[1]} matched`,
+    words: `Children by level: ${totals[0]} added below, ${totals[1]} matched above. Parents are not counted.`,
   });
-  for (const [k, [added, matched]] of rows.entries()) {
-    const [low, high] = [added / most, matched / most];
-    svg.append(
-      s('rect', { class: 'added', x: k + 0.08, y: 1 - low, width: 0.84, height: low }),
-      s('rect', { class: 'matched', x: k + 0.08, y: 1 - low - high, width: 0.84, height: high }),
-    );
-  }
-  const words = `Children by level: ${formatCount(totals[0])} added below, ${formatCount(totals[1])} matched above. Parents are not counted.`;
-  return h('div', { class: 'chart', hidden }, svg, h('p', { class: 'figure-count' }, words));
 }
 
 /** A particle amid the front, and the fates of all children. @param {Context} context */

@@ -4,7 +4,7 @@ import { h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
 import { spread } from '../../ui/neighbours.js';
 import { energiesOf, nearestDistances } from '../measure.js';
-import { createBars, createPlay, createRange, createScale } from '../parts.js';
+import { createChart, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 
 /** @import { Context, Lab, LabRun, Mark } from '../types.js' */
@@ -98,14 +98,8 @@ export async function rest({ lab, stops }) {
   orbit.fitTo(run.end);
   const picture = new Picture(orbit, { name: 'The particles, coloured by the distance to the nearest one' });
   const words = h('p', { class: 'figure-count' });
-  const floor = Math.min(...energies);
-  const bars = createBars({
-    values: energies.map((energy) => energy - 0.98 * floor),
-    words: `Energy per particle: ${energies.map((energy) => formatSignificant(energy, 3)).join(', ')}`,
-  });
   const show = (/** @type {number} */ step) => {
     picture.show({ particles: states[step], colours: colours[step] });
-    bars.mark(step);
     const { mean, deviation } = spread(distances[step]);
     words.textContent = `Nearest neighbour at ${formatFixed(mean, 3)} · 2r on average, ± ${formatFixed(deviation, 3)}.`;
   };
@@ -117,16 +111,19 @@ export async function rest({ lab, stops }) {
   });
   show(0);
   const play = createPlay(range, { label: 'Relax', totalMs: STEP_MS * (states.length - 1) });
-  const chart = h(
-    'div',
-    { class: 'chart', hidden: () => !stops.isOpen('predict-rest') },
-    bars.element,
-    h(
-      'p',
-      { class: 'figure-count' },
-      'Energy per particle, from before the first step on. The scale begins a little below the lowest.',
-    ),
-  );
+  const energy = (/** @type {number} */ value) => formatSignificant(value, 3);
+  const chart = createChart({
+    hidden: () => !stops.isOpen('predict-rest'),
+    chart: () => ({
+      kind: 'line',
+      rows: [{ fate: 'energy', name: 'energy', counts: energies }],
+      first: 0,
+      at: range.place.value,
+      format: energy,
+    }),
+    label: `Energy per particle: ${energies.map(energy).join(', ')}`,
+    words: `Energy per particle: ${energy(energies[0])} before the first step, ${energy(energies[energies.length - 1])} after the last.`,
+  });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),

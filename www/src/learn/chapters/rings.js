@@ -1,8 +1,8 @@
 /** The front that grows ring by ring: the opening picture, and the chapter on rings. */
-import { h, live, reducedMotion } from '../../ui/dom.js';
+import { h, reducedMotion } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { ringsOf } from '../measure.js';
-import { createBars, createPlay, createRange } from '../parts.js';
+import { createChart, createPlay, createRange } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 
 /**
@@ -74,26 +74,23 @@ export async function opening(context) {
 export async function rings(context) {
   const { placed, picture, range, play } = await growth(context, 'The rings of the front around the seed');
   const sizes = ringsOf(placed);
-  const bars = createBars({
-    values: sizes,
-    words: `New particles on each level: ${sizes.slice(0, 8).join(', ')}; at most ${Math.max(...sizes)}`,
-  });
   const words = () => {
     const level = range.place.value;
     const flat = level === 0 ? '' : ` On a plane: ${formatCount(6 * level)}.`;
     return `Level ${formatCount(level)}: ${plural(sizes[level] ?? 0, 'new particle')}.${flat}`;
   };
-  const chart = h(
-    'div',
-    { class: 'chart', hidden: () => !context.stops.isOpen('predict-ring') },
-    bars.element,
-    h('p', { class: 'figure-count' }, words),
-  );
-  live(chart, () => bars.mark(range.place.value));
-  bars.element.addEventListener('click', ({ clientX }) => {
-    const box = bars.element.getBoundingClientRect();
-    const at = Math.floor(((clientX - box.left) / box.width) * sizes.length);
-    range.set(Math.min(sizes.length - 1, Math.max(0, at)));
+  const chart = createChart({
+    hidden: () => !context.stops.isOpen('predict-ring'),
+    chart: () => ({
+      kind: 'bars',
+      rows: [{ fate: 'new', name: 'new particles', counts: sizes }],
+      first: 0,
+      at: range.place.value,
+      format: formatCount,
+    }),
+    label: `New particles on each level: ${sizes.slice(0, 8).join(', ')}; at most ${Math.max(...sizes)}`,
+    words,
+    press: range.set,
   });
   return [picture.element, h('div', { class: 'controls' }, play.element, range.element), chart];
 }
