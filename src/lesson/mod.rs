@@ -11,10 +11,10 @@
 //!
 //! ```
 //! use marching_particles::field::gallery;
-//! use marching_particles::lesson::{Event, Lesson, Settings};
+//! use marching_particles::lesson::{Event, Lesson, LessonSettings};
 //!
 //! let sphere = gallery::find("sphere").expect("a surface of the gallery");
-//! let settings = Settings { radius: 0.1, relax_steps: 2, ..Settings::default() };
+//! let settings = LessonSettings { radius: 0.1, relax_steps: 2, ..LessonSettings::default() };
 //! let mut lesson = Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
 //! while !lesson.step(1_000).is_done {}
 //!

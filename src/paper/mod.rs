@@ -15,11 +15,11 @@
 //!
 //! ```
 //! use marching_particles::field::gallery;
-//! use marching_particles::paper::{ImplicitSurface, Rules, Run, Sizes};
+//! use marching_particles::paper::{ImplicitSurface, PaperRun, RadiusRule, Rules};
 //!
 //! let sphere = gallery::find("sphere").expect("a surface of the gallery");
 //! let surface = ImplicitSurface::new(Box::new(sphere.field()), &sphere.bounds);
-//! let mut run = Run::new(surface, Rules::with_sizes(Sizes::Same(0.1)), ());
+//! let mut run = PaperRun::new(surface, Rules::with_sizes(RadiusRule::Same(0.1)), ());
 //! run.begin_at([0.0, 0.0, 1.0].into(), 0);
 //! run.sample(10);
 //! // About as many as hexagons of this width fit on the unit sphere, 4π / (2√3 r²) = 363, and some more where fronts meet.

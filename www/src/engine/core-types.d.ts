@@ -676,7 +676,7 @@ export type LessonSettings = {
   /** Smallest radius of an adaptive particle, a length. */
   radius_min: number,
   /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius
-  * at which a particle divides whatever it feels; 0 has it measured. */
+  * at which a particle divides whatever its energy; 0 has it measured. */
   radius_max: number,
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
   * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
