@@ -90,30 +90,23 @@ test('a question is answered from the keyboard alone, by a press on the picture,
   await expect(hole.getByRole('status')).toContainText(/particle distances away|Exactly there/);
 });
 
-test('one camera turns both pictures of a comparison', async ({ page }) => {
-  await openLesson(page, { hash: '#what-if-tolerance' });
-  const bench = page.locator('#bench');
-  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-  await expect(bench.getByLabel('What changes')).toHaveValue('tolerance');
-  const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
-  const before = [await fingerprint(left), await fingerprint(right)];
-  expect(before[0]).not.toBe(before[1]);
-  await left.focus();
-  await page.keyboard.press('ArrowRight');
-  await expect.poll(() => fingerprint(right)).not.toBe(before[1]);
-  await expect.poll(() => fingerprint(left)).not.toBe(before[0]);
-  await bench.getByLabel('What changes').selectOption('steps');
-  await expect(bench.getByRole('columnheader', { name: 'Ten steps' })).toBeVisible({ timeout: 60_000 });
-});
-
-test('a press on a picture sets the seed of the one on the right', async ({ page }) => {
+test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: `#what-if-seed&surface=${TORUS}` });
   const bench = page.locator('#bench');
   await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.getByLabel('What changes')).toHaveValue('seed');
   await expect(bench.getByRole('columnheader', { name: 'Seed 1' })).toBeVisible();
-  const right = bench.locator('.picture').last();
+  const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
+  const unturned = [await fingerprint(left), await fingerprint(right)];
+  expect(unturned[0]).not.toBe(unturned[1]);
+  await left.focus();
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(() => fingerprint(right)).not.toBe(unturned[1]);
+  await expect.poll(() => fingerprint(left)).not.toBe(unturned[0]);
   const before = await fingerprint(right);
-  const box = await bench.locator('.picture').first().boundingBox();
+  const box = await left.boundingBox();
   if (!box) throw new Error('the picture has no box');
   // A particle of the near side of the torus.
   await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.62 * box.height);
@@ -126,14 +119,11 @@ test('a press on a picture sets the seed of the one on the right', async ({ page
   await expect(bench.getByRole('columnheader', { name: 'One size for all' })).toBeVisible({ timeout: 60_000 });
   await expect(bench.getByRole('row', { name: /^Nearest neighbour, over the sum of both radii/ })).toBeVisible();
   await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
-  clean();
-});
-
-test('a card shows what the paper says and what the program does', async ({ page }) => {
-  await openLesson(page, { hash: '#differences' });
+  // A card shows what the paper says and what the program does.
   await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
   const card = page.locator('.card', { hasText: 'Who comes next' });
   await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  clean();
 });
 
 test('an unknown stop leads to the nearest one, and the page says so', async ({ page }) => {
