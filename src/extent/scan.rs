@@ -12,26 +12,28 @@ use glam::DVec3;
 
 /// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would run along the faces of cells.
 const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
-/// What the cube is larger by, so that it still reaches to its half-width.
+/// What the cube is larger by, so that it still reaches to its half-width: one and the largest of these, rounded up.
 const LARGER: f64 = 1.02;
-/// The extremes are known to this share of the longest side of their box: less than the room that is left around it.
+/// The extremes are known to this share of the longest side of their box: a third of the room that is left around it.
 const FINE: f64 = 1.0 / 64.0;
-/// Where there are many cells, this share will do.
+/// Where no cells are left to visit, this share will do. With [`FINE`] in its place 2 of 68 random surfaces have a box that is a tenth
+/// larger.
 const COARSE: f64 = 1.0 / 16.0;
-/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts as passing through them.
+/// Halvings after which what is still in the cells at the faces, a 128th of the cube wide, counts as passing through them: a test holds a
+/// scan to a fiftieth of its half-width. With 6, 11 of 68 random surfaces have another box, with 8, 2.
 const FACE_LEVEL: u32 = 7;
-/// Halvings at most: for an isolated point, or a surface of less than 1e-7 of the cube.
+/// Halvings at most, for an isolated point: places are counted in 32 bits. With 15, 24 of 68 random surfaces have another box.
 const DEPTH: u32 = 30;
-/// Cells of a level that are many, while some lie at the faces and when none does: shares of the cells that a scan may visit,
-/// which leave room for the next levels.
+/// Cells of a level that are many while some lie at the faces: eighths of them are a third of the cells that a scan may visit. Half of it
+/// gives 7 of 68 random surfaces another box, twice as much none, for 1.06 times the cells.
 const MANY_AT_FACES: usize = 1_500;
-const MANY_INSIDE: usize = 4_000;
-/// Where a level of this depth drops less than a tenth of its cells, the bounds say nothing.
+/// Where a level of this depth, which has 512 cells, drops less than a tenth of them, the bounds say nothing. Without this rule 136 random
+/// surfaces take 1.1 times the cells, and surfaces of short periods eight times.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
-/// Cells in a batch, after which the scan may be left.
+/// Cells in a batch, after which the scan may be left: as many as a field bounds at once.
 const BATCH: usize = 32;
 
 /// Outcome of a scan.
@@ -136,11 +138,11 @@ async fn outcome(
         let is_crossing = crosses_faces(field, level, kept).await;
         return Some(if is_crossing { ScanOutcome::Crossing } else { ScanOutcome::Undecided });
     }
-    let share = if is_last || kept.len() > MANY_INSIDE { COARSE } else { FINE };
+    let share = if is_last { COARSE } else { FINE };
     if is_fine(level, &hull(level, kept), share) {
         return Some(ScanOutcome::Inside);
     }
-    (is_last || kept.len() > 4 * MANY_INSIDE).then_some(ScanOutcome::Undecided)
+    is_last.then_some(ScanOutcome::Undecided)
 }
 
 /// Whether the cells of a level are at most this share of a box.

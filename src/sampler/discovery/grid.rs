@@ -5,10 +5,11 @@ use crate::sampler::discovery::dips::End;
 use crate::sampler::probe::{BATCH, Probe};
 use glam::{DVec3, Vec3};
 
-/// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
+/// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles. Half as many leave a
+/// component without a particle on 3 of 38 random surfaces, and twice as many on 1.
 pub(crate) const CELLS: f64 = 32.0;
 /// Grid cells along the longest side of the box for fields without bounds, of which only the grid shows the surface. It does not
-/// miss a sphere whose radius is 1.4 % of the box's longest side.
+/// miss a sphere whose radius is 1.4 % of the box's longest side: half the diagonal of a cell.
 const DENSE_CELLS: f64 = 64.0;
 
 /// The regular grid at whose nodes the field is evaluated.
@@ -93,7 +94,8 @@ pub(super) struct Dense {
     pub(super) is_near: Vec<bool>,
 }
 
-/// Grid cells along the edge of the first blocks of a dense grid: a power of two.
+/// Grid cells along the edge of the first blocks of a dense grid: a power of two. Each block costs its corners, of which there are 64
+/// times fewer than nodes.
 const COARSEST: usize = 4;
 /// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at them times so many
 /// diagonals. No point of a block is farther than half a diagonal from all corners; between them |∇f| may be somewhat larger.

@@ -54,10 +54,11 @@ use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
 
-/// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed.
+/// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed. With 8, 6 of 43 random
+/// surfaces are no longer proven; with 32 no more are, in 1.2 times the cells.
 const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined. Such cells lie along curves and faces, so there
-/// are many.
+/// are many: with 4, 0.6 times the cells on 46 random surfaces, with 9, 1.2 times, and as many of them proven.
 const IRREGULAR_DEPTH: u8 = 6;
 /// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third
 /// of a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points
@@ -65,31 +66,34 @@ const IRREGULAR_DEPTH: u8 = 6;
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Largest number of cells visited where each level has hardly more of them than the one before it: the search is then near its
-/// end.
+/// end. Without, 8 of 177 random surfaces are no longer proven; where a level may have 2.6 times as many, there are 3.4 times the cells, and
+/// no more are.
 const MOST_AT_THE_END: usize = 65_536;
 const HARDLY_MORE: f64 = 1.3;
-/// Halvings before singular points are searched in a cell, and halvings between two tries.
+/// Halvings before singular points are searched in a cell, and halvings between two tries. One more or one fewer of either proves the
+/// same on 43 random surfaces.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Largest number of cells of a factor in which they are searched. There are more where they form a curve.
+/// Largest number of cells of a factor in which they are searched. There are more where they form a curve, of which half as many cells
+/// name half as many points.
 const MOST_TRIED: usize = 512;
-/// Two singular points count as one if they are nearer to each other than this share of a cell.
+/// Two singular points count as one if they are nearer to each other than this share of a cell: Newton's method ends at 10⁻¹² of it.
 const SAME: f64 = 1e-6;
 /// Number of cells in a batch. The way in which a budget cuts the work does not change the result.
 const BATCH: usize = 32;
 /// Units of work that a cell counts for: on long formulas it takes as long as several particles.
 const UNITS: u32 = 8;
-/// The box is enlarged by this share of its longest side.
+/// The box is enlarged by this share of its longest side: the size of the smallest cell.
 const MARGIN: f64 = 1.0 / 65_536.0;
-/// A taller cell reaches this many times as far as the slopes of the cell itself require, and at least by [`LEAST_RISE`] of its
-/// height.
+/// A taller cell reaches this many times as far as the slopes of the cell itself require: half or twice as far takes 1.00 times the
+/// cells.
 const RISE_ROOM: f64 = 2.0;
+/// A taller cell reaches at least this share of its height, because it may be flat: without, the gallery takes 1.1 times the cells.
 const LEAST_RISE: f64 = 0.02;
-/// A cell that had to be made taller by more than this many times its height, each way, is halved.
-const MOST_RISE: f64 = 2.0;
-/// A cell is halved along the sides that are longer than this share of the longest.
+/// A cell is halved along the sides that are longer than this share of the longest: those nearer to it than to its half. With all sides
+/// there are 1.2 times the cells.
 const LONG: f64 = 0.7;
-/// Largest height difference between a witness and the surface, as a share of the rise over the footprint.
+/// Largest height difference between a witness and the surface, as a share of the rise over the footprint: the longer part of a side.
 const BESIDE: f64 = 1.0 - CUT;
 
 /// The state of the search.
@@ -377,7 +381,7 @@ impl Octree {
             let height = cell.bounds.max[up] - cell.bounds.min[up];
             cell.bounds = left;
             match rise(&cell.bounds, up, &known) {
-                Some(t) if t <= MOST_RISE * height => {
+                Some(t) => {
                     let room = RISE_ROOM * t + LEAST_RISE * height;
                     self.batch.tall.push(Tall { cell, room, rise: None });
                 }

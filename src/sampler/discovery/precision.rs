@@ -7,7 +7,7 @@ use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
 
-/// Nodes along each side of the grid on which both precisions are compared.
+/// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which the share below is 15.
 const SIDE: usize = 9;
 /// Share of them that single precision may lose.
 const MOST_LOST: f64 = 0.02;
@@ -16,11 +16,11 @@ const ONE_IN: usize = 7;
 /// Double precision is taken where the median of those distances is more than this times that by which coordinates in single precision
 /// are rounded. On the gallery's formulas it is at most 0.3 times that.
 const MOST_BLUR: f64 = 4.0;
-/// Nodes along each side of the grid on which the gradient at the surface is looked for.
+/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a tenth of those of the survey.
 const FINE_SIDE: usize = 16;
-/// Largest number of points of the surface at which it is taken.
+/// Largest number of points of the surface at which it is taken, of which the median is wanted.
 const MOST_ROOTS: usize = 64;
-/// Halvings of an edge between two nodes.
+/// Halvings of an edge between two nodes: more than the bits of a number.
 const HALVINGS: u32 = 60;
 
 /// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has

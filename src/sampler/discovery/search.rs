@@ -9,14 +9,14 @@ use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, follow};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
-use crate::sampler::discovery::sheets::{ExactPoint, MOST_TRIED_BY_SEGMENTS, Prover, Segment, TOGETHER};
+use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{MAX_NEWTON_STEPS, Tolerance};
 use crate::sampler::sheet::{PointPair, SheetRule};
 use glam::{DVec3, Vec3};
 
-/// Units of work that a witness counts for.
+/// Units of work that a witness counts for: a proof or two.
 const UNITS: u32 = 16;
 
 /// The search for components, with its witnesses and the audit.
@@ -167,10 +167,7 @@ impl ComponentSearch {
         let segments: Vec<Segment> =
             tried.map(|&j| Segment { from, to: particles.position[j as usize].as_dvec3() }).collect();
         let is_proven = prover.are_connected(&segments, None).contains(&true)
-            || segments
-                .iter()
-                .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&segment| prover.is_connected_by_segments(segment));
+            || segments.iter().any(|&segment| prover.is_connected_by_segments(segment));
         is_proven
             || near.iter().take(TOGETHER).any(|&j| {
                 let j = j as usize;

@@ -19,30 +19,30 @@ use crate::sampler::discovery::interval_newton::ROUNDING;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Largest size of a box around a singular point, as a share of the longest side of the whole box. Every further size is
-/// half the one before.
-const LARGEST: f64 = 0.25;
-/// Number of sizes tried.
+/// Number of sizes of a box around a singular point that are tried: the longest side of the whole box, and each half the one before.
 const SIZES: usize = 10;
-/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes.
+/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes. Without any, a surface of sixteen cone
+/// points is no longer proven, and of 177 random surfaces all that are with them.
 const MOST_LARGER: usize = 2;
-/// Number of sub-boxes.
+/// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
 /// Distances of the sides of such a box from the point, in units of its size. They differ, because in a symmetric box a symmetric
 /// surface has several of its highest points in one place, where they cannot be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Largest number of Newton steps to a singular point. At a cusp each step only halves the distance.
+/// Largest number of Newton steps to a singular point. At a cusp each step only halves the distance, so that it is known to 10⁻⁷.
 const MOST_STEPS: u32 = 24;
 /// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It
-/// is far above rounding.
+/// is far above rounding. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as much 77, some of them
+/// necks.
 const LARGEST_VALUE: f64 = 1e-8;
 /// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search
-/// treats as a singular point.
+/// treats as a singular point. Without, 5 of 24 random surfaces whose cone points have opened are no longer proven; ten times as much
+/// changes nothing.
 const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
-/// curve: the Newton step does not run along it.
+/// curve: the Newton step does not run along it. It is the root of the precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
@@ -158,7 +158,7 @@ pub(crate) fn isolating_box(
     within: &Bounds,
     taken: &[Bounds],
 ) -> Option<Bounds> {
-    let largest = LARGEST * within.size().max_element();
+    let largest = within.size().max_element();
     let boxes: [Bounds; SIZES] = core::array::from_fn(|k| {
         let size = largest / f64::from(1_u32 << k);
         Bounds::new(at - size * BELOW, at + size * ABOVE)
