@@ -14,12 +14,8 @@ use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
 use core::mem;
-use core::ops::RangeInclusive;
 use glam::Vec3;
 
-/// Area that a coarser front finds for a component, over that of the first one. Beyond, it has left something out or has crossed
-/// over to another component.
-const AREA_RATIO: RangeInclusive<f64> = 0.9..=1.1;
 /// Particles copied in one slice of work, and those that count for one unit of work.
 const SLICE: usize = 1_024;
 const COPIES_PER_UNIT: usize = 16;
@@ -28,7 +24,6 @@ const COPIES_PER_UNIT: usize = 16;
 #[derive(Clone, Debug)]
 struct AcceptedComponent {
     refinement: Refinement,
-    area: f64,
     /// Share of the particles that the component should have, relative to the other components.
     weight: f64,
     /// The particles of the last finished level, or of the front.
@@ -160,7 +155,7 @@ impl CoarseFronts {
             let weight = area * sizing.map_or(1.0, |sizing| density(probe, sizing, &part.position));
             // A lone component hands its levels on by itself.
             let particles = if self.are_several { part } else { Particles::default() };
-            self.components.push(AcceptedComponent { refinement, area, weight, particles });
+            self.components.push(AcceptedComponent { refinement, weight, particles });
         }
         self.candidates.reverse();
         if !self.candidates.is_empty() {
@@ -180,12 +175,8 @@ impl CoarseFronts {
     ) {
         let component = &mut self.components[tried.component];
         let known = &component.refinement;
-        let is_same = |refinement: &Refinement| {
-            refinement.shape.euler == known.shape.euler
-                && AREA_RATIO.contains(&(refinement.area() / component.area))
-        };
         if let Ok(refinement) = Refinement::new(probe, particles, &surface.bounds, target)
-            && is_same(&refinement)
+            && refinement.shape.euler == known.shape.euler
         {
             component.refinement = refinement;
             component.particles = particles.clone();
@@ -424,9 +415,8 @@ mod tests {
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
         let refinement = Refinement::new(&mut probe, &known, &bounds, target(1)).expect("a good front");
-        let area = refinement.area();
         let mut fronts = CoarseFronts {
-            components: vec![AcceptedComponent { refinement, area, weight: area, particles: known }],
+            components: vec![AcceptedComponent { refinement, weight: 1.0, particles: known }],
             are_several: true,
             ..CoarseFronts::default()
         };
