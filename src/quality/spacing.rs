@@ -8,7 +8,7 @@ use crate::math::{key, unkey};
 use crate::slices::{pause, ranges};
 use serde::Serialize;
 
-/// Points whose pairs are found in one slice of work.
+/// Points whose pairs are found in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const SLICE: usize = 256;
 
 /// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
@@ -27,7 +27,7 @@ pub struct Histogram {
 impl Histogram {
     /// The range is fixed, so that two runs can be compared; the perfect lattice has 1.
     const RANGE: (f64, f64) = (0.0, 1.2);
-    /// A bin is 0.01 wide.
+    /// A bin is 0.01 wide: a fifth of the standard deviation of the distances on a relaxed surface.
     const BINS: usize = 120;
 
     /// Counts the distances `nearest` over the ideal one of each particle. Those that are NaN are left out.
