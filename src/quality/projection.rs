@@ -4,7 +4,8 @@ use crate::field::Field;
 use crate::field::descent::{BATCH, Descent, descend};
 use glam::Vec3;
 
-/// Largest number of Newton steps of a projection.
+/// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces change in the sixth digit,
+/// with four that of one.
 const STEPS: u32 = 3;
 /// A step shorter than this share of the leash is the last one.
 ///

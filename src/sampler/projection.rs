@@ -10,13 +10,15 @@ use glam::Vec3;
 /// Largest number of evaluations of Newton's method, on a circle or along the gradient, from a good guess, which takes two.
 pub(crate) const MAX_NEWTON_STEPS: u32 = 12;
 
-/// Largest number of steps of the bracketed search, over all brackets of a circle.
+/// Largest number of steps of the bracketed search, over all brackets of a circle: with those of Newton's method 50. Half and
+/// double give the same particles on 34 random surfaces.
 const MAX_BRACKET_STEPS: u32 = 38;
 
 /// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°.
 pub(crate) const MAX_TURN: f32 = 0.2;
 
-/// Smallest cos θ: the circle is searched up to about 100° from the tangent plane.
+/// Smallest cos θ: the circle is searched up to about 100° from the tangent plane, as far as the bracketed search goes. With 95°
+/// or 111° 34 random surfaces get the same particles.
 pub(crate) const MIN_COS: f32 = -0.18;
 
 /// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°.
@@ -25,7 +27,8 @@ pub(crate) const MIN_CROSSING: f32 = 0.1;
 /// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over.
 const MAX_RATIO: f32 = 0.7;
 
-/// Number of intervals into which the bracketed search divides the arc.
+/// Number of intervals into which the bracketed search divides the arc. Two crossings in one of them, of 6.3° or a fifth of the
+/// repulsion radius, are not seen.
 const ARC_SAMPLES: usize = 32;
 
 /// The circle C(p, 2r) in the plane of the parent's normal and one tangent direction.
@@ -327,7 +330,7 @@ impl Probe<'_> {
     }
 }
 
-/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side.
+/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which reach [`MIN_COS`].
 const HALF_TURN: f32 = 0.055;
 
 /// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and exactly up to rounding.

@@ -11,10 +11,11 @@ use crate::sampler::neighbours::grids::{RadiusChains, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
 
-/// Largest number of particles whose lists are renewed together.
+/// Largest number of particles whose lists are renewed together. It limits the candidates of a list; half and double give the
+/// same particles.
 const GROUP: usize = 32;
 
-/// Particles in a chunk.
+/// Particles in a chunk: the lanes of a SIMD register.
 const CHUNK: usize = 4;
 
 /// Distance that a particle has travelled since its list was made, or one of two marks beyond all distances.

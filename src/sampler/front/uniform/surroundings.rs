@@ -12,7 +12,7 @@ const RING: f32 = 2.6;
 /// half of it and twice as much change the evaluations of random surfaces by 0.01 %, and no figure.
 const ISOTROPY: f32 = 0.005;
 
-/// Particles in a chunk.
+/// Particles in a chunk: the lanes of a SIMD register.
 const CHUNK: usize = 4;
 
 /// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the particle is final.
