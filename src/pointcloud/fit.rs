@@ -24,13 +24,14 @@ const MAX_CENTRES: usize = 1000;
 const DUPLICATE_SHARE: f64 = 1e-6;
 /// Condition number from which a solution is refused: fewer than three digits are left in double precision.
 const MAX_CONDITION: f64 = 1e13;
-/// Condition number above which the user is warned.
+/// Condition number above which the user is warned: fewer than six digits are left, as many as single precision shows.
 const WARN_CONDITION: f64 = 1e10;
-/// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box.
+/// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box. Half and twice
+/// as much hold the same surfaces of twelve random clouds.
 const MARGIN: f64 = 0.06;
-/// Number of points at which a slice of work takes the residual.
+/// Number of points at which a slice of work takes the residual. It changes no figure.
 const BATCH: usize = 1024;
-/// Number of centres whose columns a slice of work writes.
+/// Number of centres whose columns a slice of work writes: 32 columns, as many as a panel of the solver has.
 const ASSEMBLY_BATCH: usize = 8;
 /// Fraction of the work at which the elimination begins and ends, for the display of progress.
 const ELIMINATION_SPAN: [f64; 2] = [0.1, 0.9];

@@ -18,10 +18,10 @@ const MIN_DISTANCE_SHARE: f64 = 1e-4;
 /// it. It is above the rounding of coordinates in single precision.
 const FLAT_SHARE: f64 = 1e-5;
 
-/// Points that a column has room for at first; it grows by half.
+/// Points that a column has room for at first: 24 kB of positions. It grows by half.
 const FIRST_POINTS: usize = 1024;
 
-/// Points merged or put into cells in a slice of work.
+/// Points merged or put into cells in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const POINTS: usize = 1000;
 
 /// Smallest and largest corner of the bounding box of `points`; of none infinity and its negative.
@@ -92,11 +92,12 @@ pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudE
     Ok(cloud)
 }
 
-/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse.
+/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse: a surface then meets four times as many cells.
 const FINER: f64 = 0.5;
-/// Ratio of the cell sizes of a grid and the previous one, if that was too fine.
+/// Ratio of the cell sizes of a grid and the previous one, if that was too fine: a surface then meets 1.44 times fewer cells.
 const COARSER: f64 = 1.2;
-/// Share of [`KEPT`] below which a finer grid is tried.
+/// Share of [`KEPT`] below which a finer grid is tried: a quarter and some room, since the finer one has four times as many
+/// cells.
 const ENOUGH: f64 = 0.3;
 /// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single precision.
 const MAX_PASSES: u32 = 24;

@@ -3,7 +3,7 @@
 use crate::math::{LANES, Lanes};
 use glam::DVec3;
 
-/// Degree of the Taylor polynomials.
+/// Degree of the Taylor polynomials: the powers of y, from 0 up, fill the eight lanes.
 pub(super) const DEGREE: usize = 7;
 
 /// Rows of a polynomial: one for each pair of powers of z and x whose sum is at most [`DEGREE`].

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub(super) const TERMS: usize = below(DEGREE + 1);
 /// Number of coefficients for one degree more, which ∇φ needs.
 const MORE_TERMS: usize = below(DEGREE + 2);
-/// Centres that are expanded together.
+/// Centres that are expanded together: one for each lane.
 const TOGETHER: usize = 8;
 /// Powers along each axis of the cube that holds a polynomial while it is shifted.
 const POWERS: usize = DEGREE + 1;

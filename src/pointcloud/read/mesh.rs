@@ -5,7 +5,7 @@ use crate::pointcloud::{Cloud, NormalSource};
 use crate::slices::{pause, ranges};
 use glam::DVec3;
 
-/// Faces summed in a slice of work.
+/// Faces summed in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const FACES: usize = 2000;
 
 /// Points and faces as they are in a file.

@@ -8,7 +8,8 @@ use glam::DVec3;
 /// Names of the components of a point, in headers and messages.
 const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Lengths at which a vector may be a unit normal that was written with few digits.
+/// Lengths at which a vector may be a unit normal that was written with few digits: with one digit after the point each component
+/// is off by 0.05 at most, and the length by 0.087.
 const UNIT: core::ops::Range<f64> = 0.9..1.1;
 
 /// Share of the rows with such a vector from which on columns 4 to 6 are normals.
@@ -55,7 +56,7 @@ pub(super) struct Xyz {
 impl Xyz {
     /// Allocates memory for as many points as there are lines, if there is enough: growing would take twice the memory.
     pub(super) fn new(input: &Input, mesh: &mut FileMesh) -> Self {
-        /// Minimum number of bytes of a line with a point.
+        /// Minimum number of bytes of a line with a point: three digits, two spaces and the end of the line.
         const SHORTEST: usize = 6;
         let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.remaining() / SHORTEST + 1));
         Self::default()
@@ -83,7 +84,7 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// Whether the commas of a line are decimal commas: at least three words are separated otherwise, and one has a comma
 /// between digits.
 fn has_decimal_commas(line: &[u8]) -> bool {
-    /// Number of words that are looked at.
+    /// Number of words that are looked at. A point has three to six, with colours and other columns some more.
     const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')
