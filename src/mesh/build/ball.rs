@@ -5,15 +5,17 @@ use crate::spatial::LANES_OF;
 use crate::spatial::tree::Tree;
 use glam::{Vec3, Vec4};
 
-/// Most points of a ball.
+/// Most points of a ball: the first one that is searched holds some 18 of a lattice.
 pub(super) const MOST: usize = 64;
-/// Numbers that are worked on at once.
+/// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;
 const BLOCKS: usize = MOST / WIDTH;
-/// Two points are on one sheet if the sine squared of the line between them to the normal is at least this …
+/// Two points are on one sheet only if the sine squared of the angle between their line and the normal is at least this: the line
+/// rises by 63° at most. Half of it gives the same meshes of 46 unrelaxed random runs, twice as much changes two.
 const MIN_FLAT: f32 = 0.2;
-/// … and the line rises from one tangent plane as it sinks below the other, up to this share of its length. It tells sheets
-/// that face the same way apart.
+/// Two points are on one sheet only if their line rises from one tangent plane as it sinks below the other, up to this share of
+/// its length: that tells sheets apart that face the same way. With half of it 492 instead of 154 particles of 46 unrelaxed
+/// random runs are in no triangle; with twice as much 81, but a surface that crosses itself has a hole more.
 pub(super) const MAX_LIFT: f32 = 0.35;
 
 /// The points of a tree in a box.

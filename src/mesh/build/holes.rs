@@ -4,12 +4,14 @@ use super::patch::{Gap, Patch};
 use crate::math::{Bounds, sort_few};
 use crate::slices::pause;
 
-/// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their
-/// mean where there is no other way.
+/// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their mean
+/// where there is no other way. Half of it changes 3 of 46 unrelaxed random runs, twice as much 4, by a few triangles.
 const AGREEMENT: f64 = 0.2;
-/// A vertex is at the box if it is nearer to one of the faces than this many spacings.
+/// A vertex is at the box if it is nearer to one of the faces than this many spacings. With twice as much 5 of 46 unrelaxed
+/// random runs have borders that were holes; half of it changes one.
 const AT_BOX: f64 = 1.5;
-/// Rounds in which holes are filled and, where that fails, made larger by a vertex.
+/// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46 unrelaxed random runs takes more
+/// than six; with twice as many it has 11 particles fewer in triangles.
 const ROUNDS: u32 = 12;
 
 /// Rule that tells a hole of the mesh from a border of the surface.
