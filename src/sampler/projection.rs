@@ -7,24 +7,29 @@ use crate::math::sort_few;
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
 
-/// Largest number of evaluations of Newton's method, on a circle or along the gradient, from a good guess, which takes two.
+/// Largest number of evaluations of Newton's method, on a circle or along the gradient, from a good guess, which takes two. With
+/// half of them 5 of 33 random surfaces get other particles, and one another number of components; twice as many change the
+/// particles of 3, and no figure beyond scatter.
 pub(crate) const MAX_NEWTON_STEPS: u32 = 12;
 
 /// Largest number of steps of the bracketed search, over all brackets of a circle: with those of Newton's method 50. Half and
 /// double give the same particles on 34 random surfaces.
 const MAX_BRACKET_STEPS: u32 = 38;
 
-/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°.
+/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°. Half and double change the particles
+/// of 8 and 2 of 33 random surfaces, and no figure beyond scatter.
 pub(crate) const MAX_TURN: f32 = 0.2;
 
 /// Smallest cos θ: the circle is searched up to about 100° from the tangent plane, as far as the bracketed search goes. With 95°
 /// or 111° 34 random surfaces get the same particles.
 pub(crate) const MIN_COS: f32 = -0.18;
 
-/// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°.
+/// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°. Half and double change
+/// the particles of 1 of 33 random surfaces, and no figure.
 pub(crate) const MIN_CROSSING: f32 = 0.1;
 
-/// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over.
+/// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over. Half and double change
+/// the particles of 1 and 2 of 33 random surfaces, and no figure.
 const MAX_RATIO: f32 = 0.7;
 
 /// Number of intervals into which the bracketed search divides the arc. Two crossings in one of them, of 6.3° or a fifth of the
@@ -330,7 +335,8 @@ impl Probe<'_> {
     }
 }
 
-/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which reach [`MIN_COS`].
+/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side, which reach [`MIN_COS`]. With half
+/// of it, and so half of the arc, 681 instead of 631 children of 33 random surfaces find no place.
 const HALF_TURN: f32 = 0.055;
 
 /// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and exactly up to rounding.

@@ -8,7 +8,8 @@
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
 
-/// Smallest |d| that is divided by, in local units, so that nothing is divided by zero at a centre.
+/// Smallest |d| that is divided by, in local units, so that nothing is divided by zero at a centre: far below the rounding of
+/// positions, 10⁻⁷.
 const LEAST_DISTANCE: f32 = 1e-12;
 /// Eight near centres, in lanes.
 #[derive(Clone, Copy, Debug)]

@@ -17,23 +17,25 @@ use super::taylor::{Polynomial, TERMS, Taylor};
 use crate::math::{LANES, Lanes, Sym3};
 use glam::{DVec3, Vec3};
 
-/// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1. The field
-/// outside of the root cell is evaluated in double precision.
+/// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1: the box of a fit with its
+/// margin needs at most a third of it. The field outside of the root cell is evaluated in double precision.
 const ROOT: f64 = 4.0;
 
 /// Largest bound on the remainder of a far centre's Taylor series, without its coefficient of about 1/300. On the
 /// surface of the bunny, half of the series then have an error below 10⁻⁷ of the model's size, which is that of
 /// rounding in the near terms.
 const MAX_REMAINDER: f64 = 3e-4;
-/// Minimum distance of a far centre, in radii of the cell.
+/// Minimum distance of a far centre, in radii of the cell: the series converges beyond 1. With half of it 2 of 4 random clouds
+/// give other particles in the same time; twice as much takes 1.1 times as long.
 const MIN_DISTANCE: f64 = 1.5;
 /// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes evaluation cheaper and
 /// the cells costlier: with 32, the cells of a model of 200 centres pay off after about 10,000 evaluations.
 const MAX_NEAR: usize = 32;
-/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little of the surface is
-/// there.
+/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little of the surface is there. With
+/// half of it four random clouds take 1.9 times as long, with twice as much they give the same particles.
 const CLOSE: f64 = 1.0;
-/// Half-width at which a cell is not split, even in a cluster of centres.
+/// Half-width at which a cell is not split, even in a cluster of centres. Half and double give the same particles on four random
+/// clouds.
 const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 
 /// Minimum number of consecutive points of a cell that are evaluated together: eight together cost less than three

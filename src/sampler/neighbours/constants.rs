@@ -25,11 +25,12 @@ pub(crate) const OVERLAP_SKIN: f32 = 0.8;
 /// whose weight is computed in every step, a smaller one has more lists renewed.
 pub(crate) const STALE_TURN: f32 = 0.1;
 
-/// Pairs whose normals have a cosine above this have the weight 1 until one of their lists is stale.
+/// Pairs whose normals have a cosine above this have the weight 1 until one of their lists is stale: the weight falls from 60°
+/// on, and both normals may turn.
 pub(crate) const FULL_COSINE: f32 = 0.5 + 2.0 * STALE_TURN;
 
-/// Pairs whose normals have a cosine below this have the weight 0 until one of their lists is stale, and are not
-/// listed.
+/// Pairs whose normals have a cosine below this have the weight 0 until one of their lists is stale, and are not listed: the
+/// weight ends at 120°, and both normals may turn.
 pub(crate) const LISTED_COSINE: f32 = -0.5 - 2.0 * STALE_TURN;
 
 /// Side of a grid's cells over the radius of the usual query. Instruction counts hardly change from 1.2 to 2.5; larger
