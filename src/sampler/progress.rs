@@ -7,8 +7,8 @@ use crate::sampler::phase::{Phase, PhaseState};
 use crate::sampler::refine::{self, Refusal};
 use serde::Serialize;
 
-/// Cost of a relaxation step per particle, as a share of what it costs to place the particle: more than the 0.07 to 0.2 of random
-/// formulas natively, so that the display does not slow down at the end.
+/// Cost of a relaxation step per particle, as a share of what it costs to place the particle, for the display of progress. On
+/// sixteen random formulas it is 0.07 to 0.2 natively, so that the display goes faster towards the end.
 const RELAXATION_STEP_COST: f64 = 0.25;
 
 /// Result of [`Sampler::start`]: the radius, and estimates for the run.

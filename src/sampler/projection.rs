@@ -189,9 +189,11 @@ impl Probe<'_> {
     /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the
     /// centre where others are near.
     pub(crate) fn walk(&mut self, circle: &ChildCircle, tolerance: Tolerance) -> CircleLanding {
-        /// Steps from the centre to the circle.
+        /// Steps from the centre to the circle. One fewer or one more changes the particles of 7 of 16 random surfaces of two to
+        /// four near shells, and hardly a figure beyond scatter.
         const STEPS: u32 = 8;
-        /// Newton steps in the plane of the circle after each.
+        /// Newton steps in the plane of the circle after each. With one 16 random surfaces of near shells take 0.97 times the
+        /// evaluations, with three 1.03 times; no figure changes beyond scatter.
         const LANDINGS: u32 = 2;
         let &ChildCircle { centre, normal, direction, radius, .. } = circle;
         let plane = |v: Vec3| direction * v.dot(direction) + normal * v.dot(normal);

@@ -204,8 +204,8 @@ impl Sampler {
 
     /// Whether the last particle, a witness, is the only one on a small piece of the surface that is closed in itself.
     fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
-        /// The reach of a piece is measured along a few paths. With half of it 1 of 34 random surfaces has a second seed on a
-        /// small component, with twice as much none changes.
+        /// The reach of a piece is measured along a few paths. With half of it 1 of 34 random surfaces has crowded particles on a
+        /// tiny component, with twice as much none changes.
         const ROOM: f64 = 1.05;
         let last = self.output.particles.len() - 1;
         let Some(field) = probe.field.bounded() else { return false };

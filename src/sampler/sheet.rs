@@ -157,7 +157,8 @@ impl SheetRule {
 
     /// Whether the field shows that two points which face the same way, the first at `position`, lie on one sheet.
     pub(crate) fn is_one_sheet(self, probe: &mut Probe, position: Vec3, pair: PointPair) -> bool {
-        /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time.
+        /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time. Two
+        /// and four give the same particles on 16 random surfaces of near shells, none other ones on 2.
         const HALVINGS: u32 = 3;
         let Some(least) = self.resolved else {
             return is_one_sheet(probe, position, pair);
@@ -228,11 +229,14 @@ fn is_one_sheet_between(
     halvings: u32,
 ) -> bool {
     /// Share of the lift within which the surface has to be of the curve. The curve of two sheets is at least 5/32 away from both
-    /// at each of the three places.
+    /// at each of the three places. Half of it takes 1.02 times the evaluations on 16 random surfaces of near shells, twice as
+    /// much 0.96 times; they change the particles of 1 and 3.
     const NEAR: f32 = 0.05;
-    /// Newton steps to the surface.
+    /// Newton steps to the surface. With one fewer 7,356 instead of 7,235 children of 16 random surfaces of near shells find no
+    /// place, with one more 7,210; no figure changes beyond scatter.
     const STEPS: u32 = 4;
-    /// Longest of these steps, as a share of the way.
+    /// Longest of these steps, as a share of the way. Half and double give the same particles on 16 random surfaces of near
+    /// shells.
     const LONGEST: f32 = 0.25;
     let (pair, facing) = (from.pair(to.position - from.position, to.normal), from.normal + to.normal);
     if !pair.faces_one_way() {

@@ -12,8 +12,8 @@ const NEAR: usize = 32;
 /// Largest distance of a point outside a triangle that still counts as inside, as a share of the triangle's height. Half and
 /// double give the same meshes of 46 unrelaxed random runs.
 const OUTSIDE: f64 = 0.25;
-/// Least cosine of the angle between the normals of a point and of the triangle below it. Half and double give the same meshes of
-/// 46 unrelaxed random runs.
+/// Least cosine of the angle between the normals of a point and of the triangle below it: that of 78°. Half and double give the
+/// same meshes of 46 unrelaxed random runs.
 const FACING: f64 = 0.2;
 /// Most triangles that a point may replace: it then has 18 neighbours, three times those in a lattice.
 const MOST: usize = 16;
