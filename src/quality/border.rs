@@ -7,7 +7,7 @@ use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
 /// Points nearer to the border than this many d_hex are left out of the figures per point: their neighbourhood is cut. With half
-/// of it `cover` of 7 of 13 random cut surfaces is larger, by up to 0.12; with twice as much that of 11 is smaller, by 0.05 in
+/// of it `cover` of 7 of 13 random cut surfaces is larger, by up to 0.12; with twice as much that of 11 is smaller, by 0.06 in
 /// the mean, over far fewer points.
 const MARGIN: f64 = 4.0;
 /// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 % farther away than
