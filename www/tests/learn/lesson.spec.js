@@ -112,7 +112,7 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.62 * box.height);
   await expect(bench.getByLabel('Right', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
   await expect(bench.getByRole('columnheader', { name: /^at / })).toBeVisible({ timeout: 60_000 });
-  expect(await fingerprint(right)).not.toBe(before);
+  await expect.poll(() => fingerprint(right)).not.toBe(before);
   // Elsewhere a press chooses nothing.
   await bench.getByLabel('What changes').selectOption('law');
   await bench.getByLabel('Right', { exact: true }).selectOption('one_size');
