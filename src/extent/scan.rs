@@ -12,7 +12,8 @@ use glam::DVec3;
 
 /// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would run along the faces of cells.
 const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
-/// What the cube is larger by, so that it still reaches to its half-width: one and the largest of these, rounded up.
+/// Factor by which the cube is enlarged, so that it reaches its half-width on every side although its centre is moved: 1 plus the largest
+/// component of [`OFF_CENTRE`], rounded up.
 const LARGER: f64 = 1.02;
 /// The extremes are known to this share of the longest side of their box: a third of the room that is left around it.
 const FINE: f64 = 1.0 / 64.0;

@@ -19,7 +19,7 @@ pub struct Iterate {
     pub slope: f64,
 }
 
-/// Most cells of a section along a side.
+/// Largest number of cells along a side of a section.
 const MAX_CELLS: u32 = 200;
 
 impl Lesson {

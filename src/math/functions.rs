@@ -218,7 +218,7 @@ pub fn tan(a: f32) -> f32 {
     above / below
 }
 
-/// What single precision cuts off π/2.
+/// Difference between π/2 and its value in single precision.
 const HALF_PI_REST: f32 = -4.371_139e-8;
 
 /// For 0 ≤ a ≤ 1: asin of a where a ≤ ½, and of √((1 − a)/2), half of acos a, elsewhere.

@@ -199,7 +199,7 @@ impl Bounds {
             && (0..3).all(|k| self.min[k] < self.max[k])
     }
 
-    /// What [`Bounds::is_valid`] asks for, as the end of a sentence about the box.
+    /// Conditions of [`Bounds::is_valid`], as the end of a sentence about the box.
     pub const REQUIREMENT: &str = "must have a positive size on every axis, a diagonal between 1e-12 and 1e12, and lie within \
         1,000 diagonals of the origin";
 }

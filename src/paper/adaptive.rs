@@ -32,7 +32,7 @@ const PUSH: f64 = 1.0 / 16.0;
 /// Angle of a push along the circle, in radians.
 const TURN_RAD: f64 = 1.0 / 32.0;
 
-/// Most pushes in each direction.
+/// Largest number of pushes in each direction.
 const MAX_PUSHES: u32 = 200;
 
 /// Slots of a particle, at most.

@@ -24,7 +24,7 @@ const MIN_DECREASE: f64 = 0.7;
 /// Intervals into which the bracketed search divides the arc.
 const ARC_SAMPLES: u32 = 32;
 
-/// Most steps in a bracket.
+/// Largest number of steps in a bracket.
 const MAX_BRACKET: u32 = 40;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).

@@ -7,7 +7,7 @@ use glam::DVec3;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Most evaluations of Newton's method; a good guess takes two.
+/// Largest number of evaluations in Newton's method. From a good guess it takes two.
 pub(super) const MAX_NEWTON: u32 = 12;
 
 /// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their evaluations apart.

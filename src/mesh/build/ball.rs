@@ -5,7 +5,7 @@ use crate::spatial::LANES_OF;
 use crate::spatial::tree::Tree;
 use glam::{Vec3, Vec4};
 
-/// Most points of a ball: the first one that is searched holds some 18 of a lattice.
+/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds some 18.
 pub(super) const MOST: usize = 64;
 /// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;

@@ -6,8 +6,8 @@ use super::patch::Patch;
 use crate::math::unkey;
 use crate::spatial::tree::Tree;
 
-/// How many of the nearest points are looked at for the triangle below a point. Half and double give the same meshes of 46
-/// unrelaxed random runs.
+/// Number of nearest points among whose triangles the one below a point is searched for. Half and double give the same meshes of
+/// 46 unrelaxed random runs.
 const NEAR: usize = 32;
 /// Largest distance of a point outside a triangle that still counts as inside, as a share of the triangle's height. Half and
 /// double give the same meshes of 46 unrelaxed random runs.
@@ -15,7 +15,7 @@ const OUTSIDE: f64 = 0.25;
 /// Least cosine of the angle between the normals of a point and of the triangle below it: that of 78°. Half and double give the
 /// same meshes of 46 unrelaxed random runs.
 const FACING: f64 = 0.2;
-/// Most triangles that a point may replace: it then has 18 neighbours, three times those in a lattice.
+/// Largest number of triangles that a point may replace. It then has 18 neighbours, three times as many as in a lattice.
 const MOST: usize = 16;
 
 /// Inserts the point `v`, which is in no triangle, if there is one below it.

@@ -14,7 +14,7 @@ use glam::Vec3;
 /// Radius of the first ball that is searched, over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d
 /// spans 3 to 5 d, so the ball reaches 1.4 to 2.2 d, and few stars need a second one.
 const BALL: f32 = 0.45;
-/// Most neighbours of a point, half of those that a ball holds; one with more gets none.
+/// Largest number of neighbours of a point: half of the points that a ball may hold. A point with more of them gets an empty star.
 const MOST_NEIGHBOURS: usize = 32;
 /// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336 instead of 154 particles of 46
 /// unrelaxed random runs are in no triangle; with twice as much gaps of the surface are closed: 8 of 91 borders go.

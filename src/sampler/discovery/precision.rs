@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 const SIDE: usize = 9;
 /// Share of them that single precision may lose.
 const MOST_LOST: f64 = 0.02;
-/// One of so many nodes is asked for the distance by which single precision moves the level set there.
+/// Ratio of all nodes to those at which the distance is measured by which single precision moves the level set.
 const ONE_IN: usize = 7;
 /// Double precision is taken where the median of those distances is more than this times that by which coordinates in single precision
 /// are rounded. On the gallery's formulas it is at most 0.3 times that.
@@ -43,8 +43,8 @@ pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64
     (is_lost || is_blurred(field, bounds, &points, &value)).then(|| scale(field, bounds))
 }
 
-/// Whether rounding in single precision, which has given `values`, moves level sets by far more than that of the coordinates does. It
-/// is the whole of a function such as cos 0.001x − 0.999 that is small beside its terms. A field without bounds has one precision.
+/// Whether the rounding of `values`, which are in single precision, moves level sets by far more than the rounding of the coordinates
+/// does: f is small beside its terms, as cos(0.001 x) − 0.999999 is. A field without bounds has one precision only.
 fn is_blurred(field: &mut dyn Field, bounds: &Bounds, points: &[Vec3], values: &[f32]) -> bool {
     if field.bounded().is_none() {
         return false;

@@ -21,7 +21,7 @@ pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 /// front of the paper. What it is off by is made up for at the first level.
 pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
-/// Most levels: a million particles come from 240.
+/// Largest number of halvings: with it a million particles come from 240.
 const MAX_LEVELS: u32 = 6;
 /// Largest product of coarse spacing and curvature: 0.89 has worked wherever it was tried, 1.45 once, 1.54 nowhere.
 const MAX_BEND: f64 = 0.9;

@@ -16,12 +16,13 @@ const SWEEPS: u32 = 4;
 /// Their over-relaxation: less than in sweeps over all particles, since the patch must come to rest within a few.
 const OMEGA: f32 = 1.3;
 /// Where no loss is accepted, a trial is kept if it gains more than this, in units of the spacing squared: less is noise of the sweeps.
-/// None and twice as much give the figures of 57 random surfaces but for that noise.
+/// Without this limit and with twice as much, the figures of 57 random surfaces differ by that noise only.
 const LEAST_GAIN: f32 = 5e-4;
-/// What a particle costs, in units of the spacing squared, for each share of faces above the wanted number. On 57 random surfaces the count
-/// is 0.10 % off, with nothing 0.61 %, with half 0.13 %, and with twice as much 0.08 % where 0.15 points fewer have six neighbours.
+/// Price of a particle, in units of the spacing squared, over the share by which the faces exceed the wanted number. On 57 random surfaces
+/// the count is 0.10 % off; without a price it is 0.61 % off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles
+/// with six neighbours is 0.15 points smaller.
 const COUNT_PRICE: f32 = 20.0;
-/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. Without,
+/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. Without that,
 /// the distances on 22 random surfaces spread by 0.084 in place of 0.074, and the mean smallest angle is 0.6° smaller.
 const CROWDED: f32 = 0.96;
 const SPARSE: f32 = 1.04;
