@@ -23,6 +23,14 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
+    /// Patch of the surface on which the row lies, by the number of its branch: see [`Field::branch_at`]. Empty if the surface has no
+    /// creases.
+    ///
+    /// [`Field::branch_at`]: crate::field::Field::branch_at
+    pub patch: Vec<u32>,
+    /// For each of the first rows, the first row of the same particle. A particle on a crease has a row for each patch that meets
+    /// there: all with its position, each with the normal of its patch. These rows come before all others and do not move.
+    pub twins: Vec<u32>,
 }
 
 /// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
@@ -130,6 +138,9 @@ impl Particles {
         self.parent.reserve_exact(more);
         self.level.reserve_exact(more);
         self.slots.reserve_exact(more);
+        if !self.patch.is_empty() {
+            self.patch.reserve_exact(more);
+        }
     }
 
     /// Frees the memory that the particles do not use.
@@ -140,9 +151,29 @@ impl Particles {
         self.parent.shrink_to_fit();
         self.level.shrink_to_fit();
         self.slots.shrink_to_fit();
+        self.patch.shrink_to_fit();
     }
 
-    /// Adds a particle.
+    /// The first row of the particle of row `i`: `i` itself, but for the further rows of a particle on a crease.
+    #[must_use]
+    pub fn first_row(&self, i: usize) -> usize {
+        self.twins.get(i).map_or(i, |&first| first as usize)
+    }
+
+    /// The patch of row `i`; 0 if the surface has no creases.
+    #[must_use]
+    pub fn patch_of(&self, i: usize) -> u32 {
+        self.patch.get(i).copied().unwrap_or(0)
+    }
+
+    /// Returns the number of particles, each counted once, however many rows it has.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        let further = (0..).zip(&self.twins).filter(|&(i, &first)| first != i).count();
+        self.len() - further
+    }
+
+    /// Adds a particle, on the patch of its parent.
     pub fn push(&mut self, position: Vec3, normal: Vec3, radius: f32, parent: u32, level: u32, slots: Slots) {
         self.position.push(position);
         self.normal.push(normal);
@@ -150,6 +181,9 @@ impl Particles {
         self.parent.push(parent);
         self.level.push(level);
         self.slots.push(slots);
+        if !self.patch.is_empty() {
+            self.patch.push(self.patch_of(parent as usize));
+        }
     }
 
     /// Keeps the first `len` particles.
@@ -160,6 +194,8 @@ impl Particles {
         self.parent.truncate(len);
         self.level.truncate(len);
         self.slots.truncate(len);
+        self.patch.truncate(len);
+        self.twins.truncate(len);
     }
 
     /// Returns, for each particle, the index of the seed from which its front grew.
@@ -187,6 +223,9 @@ impl Particles {
             self.normal[kept] = self.normal[i];
             self.radius[kept] = self.radius[i];
             self.slots[kept] = self.slots[i];
+            if !self.patch.is_empty() {
+                self.patch[kept] = self.patch[i];
+            }
             self.parent[kept] = parent;
             self.level[kept] = if parent == Self::NO_PARENT { 0 } else { self.level[parent as usize] + 1 };
             kept += 1;
@@ -204,6 +243,8 @@ impl Particles {
         self.parent.extend_from_slice(&others.parent[..len]);
         self.level.extend_from_slice(&others.level[..len]);
         self.slots.extend_from_slice(&others.slots[..len]);
+        self.patch.extend_from_slice(&others.patch[..len.min(others.patch.len())]);
+        self.twins.extend_from_slice(&others.twins[..len.min(others.twins.len())]);
     }
 
     /// Removes all particles and keeps the memory.
@@ -214,6 +255,8 @@ impl Particles {
         self.parent.clear();
         self.level.clear();
         self.slots.clear();
+        self.patch.clear();
+        self.twins.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,
@@ -243,6 +286,7 @@ impl Particles {
             word(self.level[i]);
             word(self.slots[i].0);
         }
+        self.patch.iter().chain(&self.twins).for_each(|&number| word(number));
         hash
     }
 }

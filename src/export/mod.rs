@@ -294,6 +294,7 @@ mod tests {
             parent: vec![Particles::NO_PARENT, 0],
             level: vec![0, 1],
             slots: vec![Slots::default(), Slots(Slots::SINGULAR)],
+            ..Particles::default()
         }
     }
 

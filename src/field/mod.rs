@@ -173,6 +173,26 @@ pub trait Field: Send {
         None
     }
 
+    /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
+    /// on which f depends. Equal numbers are equal functions. A field that is smooth has the one branch 0, which is the default.
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        let _ = p;
+        0
+    }
+
+    /// The branches that may give f somewhere in the box, each once; none if they are more than can be listed. By default there is
+    /// branch 0 alone.
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        let _ = bounds;
+        Some(vec![0])
+    }
+
+    /// Makes every evaluation of values and derivatives one of the smooth function of `branch`, wherever that gives f or not; or of f
+    /// again. The numbers are those of [`Field::branch_at`]; bounds over boxes stay those of f.
+    fn select_branch(&mut self, branch: Option<u32>) {
+        let _ = branch;
+    }
+
     /// The period of f along each axis: 0 if f does not change along it, none if f is not known to be periodic.
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]
@@ -268,6 +288,21 @@ macro_rules! forward_field {
             fn sampled_as(&self) -> Option<String> {
                 let $this = self;
                 $field.sampled_as()
+            }
+
+            fn branch_at(&mut self, p: ::glam::DVec3) -> u32 {
+                let $this = self;
+                $field_mut.branch_at(p)
+            }
+
+            fn branches_in(&mut self, bounds: &$crate::math::Bounds) -> Option<Vec<u32>> {
+                let $this = self;
+                $field_mut.branches_in(bounds)
+            }
+
+            fn select_branch(&mut self, branch: Option<u32>) {
+                let $this = self;
+                $field_mut.select_branch(branch);
             }
 
             fn periods(&self) -> [Option<f64>; 3] {

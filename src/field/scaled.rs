@@ -139,6 +139,18 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        self.field.branch_at(p)
+    }
+
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        self.field.branches_in(bounds)
+    }
+
+    fn select_branch(&mut self, branch: Option<u32>) {
+        self.field.select_branch(branch);
+    }
+
     fn periods(&self) -> [Option<f64>; 3] {
         self.field.periods()
     }

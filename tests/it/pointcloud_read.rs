@@ -289,6 +289,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
         parent: vec![Particles::NO_PARENT; count],
         level: vec![0; count],
         slots: vec![Slots::default(); count],
+        ..Particles::default()
     };
     for (ending, format) in export::Format::ALL {
         if format == export::Format::Npy {
