@@ -180,8 +180,8 @@ pub trait Field: Send {
         0
     }
 
-    /// The branches that may give f somewhere in the box, each once; none if they are more than can be listed. By default there is
-    /// branch 0 alone.
+    /// The branches that may give a point of the surface in the box, each once; none if they are more than can be listed. By default
+    /// there is branch 0 alone, as in a field without creases, whether the surface meets the box or not.
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let _ = bounds;
         Some(vec![0])

@@ -7,6 +7,7 @@ mod settings;
 mod adaptive;
 mod borders;
 mod box_fit;
+mod branches;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;

@@ -46,6 +46,17 @@ impl Compiled {
         if value_program.operations() > MAX_OPERATIONS {
             return Err(build::too_complex(&equation.left));
         }
+        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+        Ok(Self::from_program(graph, root, value_program, &values))
+    }
+
+    /// Compiles node `root` of `graph` and its gradient, with these values of the parameters.
+    pub(super) fn from_graph(graph: Graph, root: Id, values: &[f64]) -> Self {
+        let value_program = Program::compile(&graph, &[root]);
+        Self::from_program(graph, root, value_program, values)
+    }
+
+    fn from_program(mut graph: Graph, root: Id, value_program: Program, values: &[f64]) -> Self {
         graph.let_zero_annihilate();
         let gradient = derivative::gradient(&mut graph, root);
         let gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
@@ -67,9 +78,13 @@ impl Compiled {
             hessian_program: None,
             factors: Vec::new(),
         };
-        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
-        compiled.set_parameters(&values);
-        Ok(compiled)
+        compiled.set_parameters(values);
+        compiled
+    }
+
+    /// The graph, in which the node of f is the second.
+    pub(super) fn graph(&self) -> (&Graph, Id) {
+        (&self.graph, self.root)
     }
 
     /// Whether f is the same everywhere for any values of the parameters.

@@ -206,6 +206,29 @@ impl Graph {
         id
     }
 
+    /// Index of the operation, simplified as when a formula is built.
+    pub(super) fn built(&mut self, node: Node) -> Id {
+        match node {
+            Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => self.intern(node),
+            Node::Unary(operation, a) => self.unary(operation, a),
+            Node::Binary(operation, a, b) => self.binary(operation, a, b),
+            Node::Power(a, n) => self.power(a, n),
+            Node::Smin(a, b, k) => self.smin(a, b, k),
+            Node::IfLe(a, b, value) => self.if_le(a, b, value),
+            Node::IfGt(a, b, value) => self.if_gt(a, b, value),
+        }
+    }
+
+    /// The graph of node `root` alone, in the same order, with the node's index in it.
+    pub(super) fn part(&self, root: Id) -> (Self, Id) {
+        let mut part = Self::default();
+        let mut map = vec![0; self.len()];
+        for id in self.needed_by(&[root]) {
+            map[id as usize] = part.intern(self.node(id).mapped(|operand| map[operand as usize]));
+        }
+        (part, map[root as usize])
+    }
+
     /// Index of `node`, or of its value if all operands are constants.
     fn folded(&mut self, node: Node) -> Id {
         let mut constant = true;
@@ -381,6 +404,7 @@ impl Graph {
                     return self.power(inner, product);
                 }
             }
+            Node::Unary(Unary::Abs, inner) if n % 2 == 0 => return self.power(inner, n),
             Node::Unary(Unary::Neg, inner) => {
                 let result = self.power(inner, n);
                 return if n % 2 == 0 { result } else { self.neg(result) };
@@ -408,12 +432,29 @@ impl Graph {
                 #[expect(clippy::cast_possible_truncation, reason = "an integer within the range")]
                 return self.power(root, twice as i32);
             }
+            // (u⁴)^¼ is |u|.
+            if let Node::Power(u, n) = self.node(a)
+                && n % 2 == 0
+                && f64::from(n) * exponent == 1.0
+            {
+                return self.unary(Unary::Abs, u);
+            }
         }
         self.folded(Node::Binary(Binary::Pow, a, b))
     }
 
     pub(super) fn unary(&mut self, operation: Unary, a: Id) -> Id {
-        if operation == Unary::Neg { self.neg(a) } else { self.folded(Node::Unary(operation, a)) }
+        match (operation, self.node(a)) {
+            (Unary::Neg, _) => self.neg(a),
+            (Unary::Abs, Node::Unary(Unary::Abs, _)) => a,
+            (Unary::Abs, Node::Unary(Unary::Neg, inner)) => self.unary(Unary::Abs, inner),
+            // √(u²) has a kink at u = 0, which is seen in |u|.
+            (Unary::Sqrt, Node::Power(u, n)) if n % 2 == 0 => {
+                let size = self.unary(Unary::Abs, u);
+                self.power(size, n / 2)
+            }
+            _ => self.folded(Node::Unary(operation, a)),
+        }
     }
 
     pub(super) fn binary(&mut self, operation: Binary, a: Id, b: Id) -> Id {
@@ -428,6 +469,9 @@ impl Graph {
     }
 
     pub(super) fn smin(&mut self, a: Id, b: Id, k: Id) -> Id {
+        if self.as_constant(k).is_some_and(|k| k <= MIN_BLEND_WIDTH) {
+            return self.binary(Binary::Min, a, b);
+        }
         self.folded(Node::Smin(a, b, k))
     }
 

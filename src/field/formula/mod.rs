@@ -21,9 +21,10 @@
 //! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment form. The graph is
 //! evaluated as a second-order jet in double precision, in interval arithmetic over many boxes at a time and, compiled
 //! to a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
-//! from that of f.
+//! from that of f. Where f takes one of two operands, as a maximum does, each of its smooth branches is a graph as well.
 
 mod ast;
+mod branches;
 mod build;
 mod call;
 mod compiled;
@@ -56,6 +57,7 @@ pub use mathml::{MathGroup, MathNode, MathToken};
 use super::{Bounded, Enclosure, Field, Jet};
 use crate::math::{Bounds, Interval, Sym3};
 use ast::{COORDINATES, Constant, Equation, Function};
+use branches::Branches;
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -137,6 +139,8 @@ pub struct Formula {
     /// Values of `parameters`, as the compiled formula takes them.
     values: Vec<f64>,
     compiled: Compiled,
+    /// The smooth branches of f, one of which may be evaluated in its place.
+    branches: Branches,
     scratch: eval::RegisterFile,
     jets: scalar::JetScratch,
     /// Scratch memory for the values of the nodes in double precision.
@@ -190,13 +194,16 @@ impl Formula {
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
+        let compiled = Compiled::new(&parsed.equation, &parameters)?;
+        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
         Ok(Self {
             text: text.to_owned(),
             simplified: None,
-            values: parameters.iter().map(|parameter| parameter.value).collect(),
+            branches: Branches::new(compiled.graph(), &values),
+            values,
             automatic,
             unused,
-            compiled: Compiled::new(&parsed.equation, &parameters)?,
+            compiled,
             equation: parsed.equation,
             parameters,
             scratch: eval::RegisterFile::default(),
@@ -220,6 +227,7 @@ impl Formula {
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
             self.simplified = Some(simplified);
+            self.branches = Branches::new(compiled.graph(), &self.values);
             self.compiled = compiled;
         }
         self
@@ -289,18 +297,13 @@ impl Formula {
         self.parameters[index].value = value;
         self.values[index] = value;
         self.compiled.set_parameters(&self.values);
+        self.branches.set_parameters(&self.values);
         Ok(())
     }
 
     /// Whether the batched methods compute in double precision.
     fn is_double(&self) -> bool {
         self.double.is_some() || self.origin != DVec3::ZERO
-    }
-
-    /// A point in the coordinates of the formula.
-    fn place(&self, p: DVec3) -> DVec3 {
-        // Adding 0 would take the sign off −0, to the other side of a jump.
-        if self.origin == DVec3::ZERO { p } else { self.origin + p }
     }
 
     /// Runs `enclose` on boxes in the coordinates of the formula that hold these boxes.
@@ -326,8 +329,15 @@ impl Formula {
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
     /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
-        self.compiled.transformed_jet(&self.values, self.place(p))
+        let compiled = self.branches.active(&mut self.compiled);
+        compiled.transformed_jet(&self.values, place(self.origin, p))
     }
+}
+
+/// A point that is counted from `origin`, in the coordinates of the formula.
+fn place(origin: DVec3, p: DVec3) -> DVec3 {
+    // Adding 0 would take the sign off −0, to the other side of a jump.
+    if origin == DVec3::ZERO { p } else { origin + p }
 }
 
 /// Syntax tree of `text`, and its undeclared names.
@@ -435,28 +445,33 @@ impl Field for Formula {
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        if self.is_double() {
+        let is_double = self.is_double();
+        let compiled = self.branches.active(&mut self.compiled);
+        if is_double {
             for (&p, value) in points.iter().zip(value) {
-                let exact = self.compiled.value(&self.values, self.place(p.as_dvec3()), &mut self.doubles);
+                let exact = compiled.value(&self.values, place(self.origin, p.as_dvec3()), &mut self.doubles);
                 *value = double::value(exact, self.double);
             }
             return;
         }
         let value = &mut value[..points.len()];
-        eval::run(&self.compiled.value_program, &mut self.scratch, points, &mut eval::Values(value));
+        eval::run(&compiled.value_program, &mut self.scratch, points, &mut eval::Values(value));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        if self.is_double() {
+        let is_double = self.is_double();
+        let compiled = self.branches.active(&mut self.compiled);
+        if is_double {
             for (k, &p) in points.iter().enumerate() {
-                let exact = self.compiled.gradient(&self.values, self.place(p.as_dvec3()), &mut self.doubles);
+                let exact =
+                    compiled.gradient(&self.values, place(self.origin, p.as_dvec3()), &mut self.doubles);
                 (value[k], gradient[k]) = double::gradient(exact, self.double);
             }
             return;
         }
         let mut sink =
             eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
-        eval::run(&self.compiled.gradient_program, &mut self.scratch, points, &mut sink);
+        eval::run(&compiled.gradient_program, &mut self.scratch, points, &mut sink);
     }
 
     fn hessians(
@@ -466,9 +481,11 @@ impl Field for Formula {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        if self.is_double() {
+        let is_double = self.is_double();
+        let compiled = self.branches.active(&mut self.compiled);
+        if is_double {
             for (k, &p) in points.iter().enumerate() {
-                let jet = self.compiled.jet(&self.values, self.place(p.as_dvec3()), &mut self.jets);
+                let jet = compiled.jet(&self.values, place(self.origin, p.as_dvec3()), &mut self.jets);
                 (value[k], gradient[k], hessian[k]) = double::hessian(&jet, self.double);
             }
             return;
@@ -478,7 +495,7 @@ impl Field for Formula {
             gradient: &mut gradient[..points.len()],
             hessian: &mut hessian[..points.len()],
         };
-        eval::run(self.compiled.hessian_program(&self.values), &mut self.scratch, points, &mut sink);
+        eval::run(compiled.hessian_program(&self.values), &mut self.scratch, points, &mut sink);
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
@@ -487,7 +504,8 @@ impl Field for Formula {
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        let jet = self.compiled.jet(&self.values, self.place(p), &mut self.jets);
+        let compiled = self.branches.active(&mut self.compiled);
+        let jet = compiled.jet(&self.values, place(self.origin, p), &mut self.jets);
         self.double.map_or(jet, |scale| double::scaled(jet, scale))
     }
 
@@ -507,6 +525,23 @@ impl Field for Formula {
     /// formula have more digits than single precision holds.
     fn set_origin(&mut self, origin: DVec3) {
         self.origin = origin;
+    }
+
+    /// The numbers are the same whatever was asked before, but for those beyond the first 256, and they outlast a change of the
+    /// parameters, unless that brings the width of a smooth minimum to 0 or an exponent to 1.
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        self.branches.at(&self.values, place(self.origin, p))
+    }
+
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        self.on_formula_boxes(&[*bounds], |field, boxes| field.branches.within(&field.values, &boxes[0]))
+    }
+
+    /// # Panics
+    ///
+    /// If no branch has this number.
+    fn select_branch(&mut self, branch: Option<u32>) {
+        self.branches.select(branch, &self.values);
     }
 
     /// The equation that [`Formula::without_powers`] has found.

@@ -16,7 +16,7 @@ use super::operations::{Binary, Unary};
 use super::registers::RegisterAllocator;
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
-use range::Range;
+pub(super) use range::Range;
 use rows::{BOXES, Row};
 
 /// Operation of a step. Its operands a, b and c are rows unless stated otherwise.
@@ -145,21 +145,8 @@ impl BoxProgram {
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.uniforms.clear();
         for &node in &self.uniform_nodes {
-            let known = |id: Id| self.uniforms[id as usize];
-            let range = match node {
-                Node::Constant(bits) => Range::exactly(f64::from_bits(bits)),
-                Node::Parameter(index) => Range::exactly(parameters[index as usize]),
-                Node::Coordinate(_) => unreachable!("a coordinate is not uniform"),
-                Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => {
-                    Row::fill(known(a)).sine(operation == Unary::Cos).at(0)
-                }
-                Node::Unary(operation, a) => known(a).unary(operation),
-                Node::Power(a, n) => known(a).power(n),
-                Node::Binary(operation, a, b) => known(a).binary(operation, known(b)),
-                Node::Smin(a, b, k) => Range::smooth_minimum(known(a), known(b), known(k)),
-                Node::IfLe(a, b, v) => Range::choice(known(a), known(b), known(v), true),
-                Node::IfGt(a, b, v) => Range::choice(known(a), known(b), known(v), false),
-            };
+            let coordinate = |_| unreachable!("a coordinate is not uniform");
+            let range = range_of(node, parameters, coordinate, |id| self.uniforms[id as usize]);
             self.uniforms.push(range);
         }
     }
@@ -242,6 +229,46 @@ impl BoxProgram {
             BoxOp::IfLe => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), true)),
             BoxOp::IfGt => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), false)),
         }
+    }
+}
+
+/// Bounds of a node, from those of the coordinates and of its operands.
+fn range_of(
+    node: Node,
+    parameters: &[f64],
+    coordinate: impl Fn(u8) -> Range,
+    known: impl Fn(Id) -> Range,
+) -> Range {
+    match node {
+        Node::Constant(bits) => Range::exactly(f64::from_bits(bits)),
+        Node::Parameter(index) => Range::exactly(parameters[index as usize]),
+        Node::Coordinate(axis) => coordinate(axis),
+        Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => {
+            Row::fill(known(a)).sine(operation == Unary::Cos).at(0)
+        }
+        Node::Unary(operation, a) => known(a).unary(operation),
+        Node::Power(a, n) => known(a).power(n),
+        Node::Binary(operation, a, b) => known(a).binary(operation, known(b)),
+        Node::Smin(a, b, k) => Range::smooth_minimum(known(a), known(b), known(k)),
+        Node::IfLe(a, b, v) => Range::choice(known(a), known(b), known(v), true),
+        Node::IfGt(a, b, v) => Range::choice(known(a), known(b), known(v), false),
+    }
+}
+
+/// Bounds of `nodes` over a box: `ranges` gets those of each at its index. The operands of each have to be among them.
+pub(super) fn bounds(
+    graph: &Graph,
+    nodes: &[Id],
+    parameters: &[f64],
+    bounds: &Bounds,
+    ranges: &mut Vec<Range>,
+) {
+    ranges.resize(graph.len().max(ranges.len()), Range::exactly(0.0));
+    for &id in nodes {
+        let coordinate =
+            |axis: u8| Range::between(bounds.min[usize::from(axis)], bounds.max[usize::from(axis)]);
+        let range = range_of(graph.node(id), parameters, coordinate, |id| ranges[id as usize]);
+        ranges[id as usize] = range;
     }
 }
 

@@ -7,8 +7,8 @@ use crate::math::Interval;
 
 /// Bounds of the values of an operation over a box, with its [other properties](super::flags).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
-    pub(super) bounds: Interval,
+pub(in crate::field::formula) struct Range {
+    pub(in crate::field::formula) bounds: Interval,
     pub(super) flags: u8,
 }
 
@@ -78,12 +78,17 @@ impl Range {
         if value.is_nan() { NOTHING } else { Self { bounds: Interval::new(value, value), flags: REGULAR } }
     }
 
+    /// Everything from `lo` to `hi`, the ends in either order.
+    pub(super) fn between(lo: f64, hi: f64) -> Self {
+        Self { bounds: Interval::new(lo.min(hi), lo.max(hi)), flags: REGULAR }
+    }
+
     pub(super) fn is_empty(self) -> bool {
         self.flags & EMPTY != 0
     }
 
     /// Whether 0 is certainly not among the values.
-    pub(super) fn is_nonzero(self) -> bool {
+    pub(in crate::field::formula) fn is_nonzero(self) -> bool {
         self.flags & (NONZERO | EMPTY) != 0 || self.bounds.excludes_zero()
     }
 

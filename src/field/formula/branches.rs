@@ -1,0 +1,432 @@
+//! The smooth branches of a formula.
+//!
+//! A *choice* is an operation that passes on one of two smooth operands: a minimum, a maximum, an absolute value (u or −u), a smooth
+//! minimum whose blend has no width. Where the choices on which f depends have taken a side, f is a smooth function, its *branch*.
+//! Its graph is that of f with each choice replaced by the operand that it takes, built anew, so that equal operations are one node:
+//! branches with the same root are the same function, as both sides of |x| are in |x|².
+//!
+//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that no coordinate enters.
+
+use super::compiled::Compiled;
+use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
+use super::interval::{self, Range};
+use super::operations::{Binary, Unary};
+use crate::math::Bounds;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Maximum number of branches that are listed for a box: four choices beyond those at a corner of three faces that meet in |x|, |y|
+/// and |z|. A smaller box has fewer.
+const MAX_LISTED: usize = 64;
+
+/// Maximum number of branches whose numbers do not depend on the order in which they are met: as many as eight choices have.
+const MAX_NUMBERED: usize = 256;
+
+/// What a node is to the walk from f to the operands that it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    /// All operands count.
+    Plain,
+    /// The first operand where it is at most the second.
+    Min(Id, Id),
+    /// The first operand where it is at least the second.
+    Max(Id, Id),
+    /// The operand where it is at least 0, else its negative.
+    Abs(Id),
+    /// A power of the absolute value of this node, smooth as it is.
+    Raised(Id),
+}
+
+/// The operands that a choice may take.
+#[derive(Clone, Copy, PartialEq)]
+enum Sides {
+    First,
+    Second,
+    Both,
+}
+
+impl Sides {
+    fn first_if(is_first: bool) -> Self {
+        if is_first { Self::First } else { Self::Second }
+    }
+
+    /// The side that `role` takes at a point, from the values of its operands.
+    fn at_point(role: Role, value: impl Fn(Id) -> f64) -> Self {
+        Self::first_if(match role {
+            Role::Min(a, b) => value(a) <= value(b),
+            Role::Max(a, b) => value(a) >= value(b),
+            Role::Abs(u) => value(u) >= 0.0,
+            Role::Plain | Role::Raised(_) => true,
+        })
+    }
+
+    /// The sides that `role` may take in a box, from the bounds of its operands. Both may at a tie.
+    fn in_box(role: Role, range: impl Fn(Id) -> Range) -> Self {
+        let below = |a: Id, b: Id| range(a).bounds.hi < range(b).bounds.lo;
+        let (first, second) = match role {
+            Role::Min(a, b) => (below(a, b), below(b, a)),
+            Role::Max(a, b) => (below(b, a), below(a, b)),
+            Role::Abs(u) => (range(u).bounds.lo > 0.0, range(u).bounds.hi < 0.0),
+            Role::Plain | Role::Raised(_) => (true, false),
+        };
+        if first || second { Self::first_if(first) } else { Self::Both }
+    }
+}
+
+/// f, or what has become of it once choices have taken sides.
+#[derive(Clone, Debug)]
+struct Part {
+    root: Id,
+    /// The nodes that the root needs, in the order of the graph.
+    nodes: Vec<Id>,
+    /// The number of the branch; none while choices remain.
+    number: Option<u32>,
+    /// The part for each way to take sides, which are in the order of [`Walk`].
+    taken: BTreeMap<Vec<bool>, usize>,
+    /// The branch compiled, once it has been selected.
+    compiled: Option<Box<Compiled>>,
+}
+
+/// A walk over the nodes of a part from its root, through the operands that are taken.
+#[derive(Clone, Debug, Default)]
+struct Walk {
+    /// Number of nodes that are still to be visited.
+    left: usize,
+    /// Whether each node is on the way; false for all at the end.
+    needed: Vec<bool>,
+    /// Whether each choice on the way has taken its second operand.
+    sides: Vec<bool>,
+}
+
+impl Walk {
+    fn begin(&mut self, part: &Part, graph: &Graph) {
+        self.needed.resize(graph.len(), false);
+        self.needed[part.root as usize] = true;
+        self.left = part.nodes.len();
+        self.sides.clear();
+    }
+
+    fn take(&mut self, (first, second): (Id, Id), is_second: bool) {
+        self.needed[if is_second { second } else { first } as usize] = true;
+        self.sides.push(is_second);
+    }
+
+    /// Walks to the end. `decide` is called with each node on the way and says which sides a choice takes; where it takes both, the
+    /// walk through the second is left in `forks`.
+    fn run(
+        &mut self,
+        nodes: &[Id],
+        base: &Base,
+        mut decide: impl FnMut(Id, Role) -> Sides,
+        forks: &mut Vec<Self>,
+    ) {
+        while self.left > 0 {
+            self.left -= 1;
+            let id = nodes[self.left];
+            if !core::mem::take(&mut self.needed[id as usize]) {
+                continue;
+            }
+            let role = base.roles[id as usize];
+            let sides = decide(id, role);
+            let operands = match role {
+                Role::Plain => {
+                    base.graph.node(id).operands(|operand| self.needed[operand as usize] = true);
+                    continue;
+                }
+                Role::Raised(u) => {
+                    self.needed[u as usize] = true;
+                    continue;
+                }
+                Role::Min(a, b) | Role::Max(a, b) => (a, b),
+                Role::Abs(u) => (u, u),
+            };
+            if sides == Sides::Both {
+                let mut fork = self.clone();
+                fork.take(operands, true);
+                forks.push(fork);
+            }
+            self.take(operands, sides == Sides::Second);
+        }
+    }
+}
+
+/// The graph of f and of its branches.
+#[derive(Clone, Debug, Default)]
+struct Base {
+    graph: Graph,
+    roles: Vec<Role>,
+    /// Values of the nodes that depend on no coordinate; NaN for the others.
+    uniforms: Vec<f64>,
+}
+
+impl Base {
+    /// Finds the roles of the nodes from number `roles.len()` on.
+    fn extend(&mut self, values: &[f64]) {
+        for id in self.roles.len() as Id..self.graph.len() as Id {
+            let node = self.graph.node(id);
+            let is_uniform = self.graph.is_uniform(id);
+            let value = node.evaluate(values, [f64::NAN; 3], |id| self.uniforms[id as usize]);
+            self.uniforms.push(if is_uniform { value } else { f64::NAN });
+            let uniform = |id: Id| self.uniforms[id as usize];
+            let magnitude = |id: Id| match self.graph.node(id) {
+                Node::Unary(Unary::Abs, u) => Some(u),
+                _ => None,
+            };
+            let role = match node {
+                _ if is_uniform => Role::Plain,
+                Node::Binary(Binary::Min, a, b) => Role::Min(a, b),
+                Node::Binary(Binary::Max, a, b) => Role::Max(a, b),
+                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => Role::Min(a, b),
+                Node::Unary(Unary::Abs, u) => Role::Abs(u),
+                Node::Power(a, n) if n > 1 => magnitude(a).map_or(Role::Plain, Role::Raised),
+                Node::Binary(Binary::Pow, a, b) if uniform(b) > 1.0 => {
+                    magnitude(a).map_or(Role::Plain, Role::Raised)
+                }
+                _ => Role::Plain,
+            };
+            self.roles.push(role);
+        }
+    }
+
+    /// The root of `part` with the choices on the way from it replaced by the operands that `sides` names.
+    fn specialised(&mut self, part: &Part, sides: &[bool], values: &[f64], walk: &mut Walk) -> Id {
+        let (mut way, mut rest) = (Vec::new(), sides.iter());
+        walk.begin(part, &self.graph);
+        let next = |id: Id, role: Role| {
+            let is_choice = matches!(role, Role::Min(..) | Role::Max(..) | Role::Abs(_));
+            let is_second = is_choice && rest.next() == Some(&true);
+            way.push((id, role, is_second));
+            Sides::first_if(!is_second)
+        };
+        walk.run(&part.nodes, self, next, &mut Vec::new());
+        let graph = &mut self.graph;
+        let mut map: Vec<Id> = (0..graph.len() as Id).collect();
+        for (id, role, is_second) in way.into_iter().rev() {
+            let new = |id: Id| map[id as usize];
+            map[id as usize] = match role {
+                Role::Plain => graph.built(graph.node(id).mapped(new)),
+                Role::Min(a, b) | Role::Max(a, b) => new(if is_second { b } else { a }),
+                Role::Abs(u) if is_second => graph.neg(new(u)),
+                Role::Abs(u) => new(u),
+                Role::Raised(u) => {
+                    let size = graph.unary(Unary::Abs, new(u));
+                    match graph.node(id) {
+                        Node::Power(_, n) => graph.power(size, n),
+                        Node::Binary(operation, _, exponent) => graph.binary(operation, size, exponent),
+                        _ => unreachable!("a power"),
+                    }
+                }
+            };
+        }
+        let root = map[part.root as usize];
+        self.extend(values);
+        root
+    }
+}
+
+/// The branches of f that have been met, with their numbers. There are none of a formula without choices.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Branches {
+    base: Base,
+    /// f, then what has become of it.
+    parts: Vec<Part>,
+    /// The part of each root.
+    by_root: BTreeMap<Id, usize>,
+    /// The part of each branch, by its number.
+    numbered: Vec<usize>,
+    /// The part that is evaluated in the place of f.
+    selected: Option<usize>,
+    walk: Walk,
+    doubles: Vec<f64>,
+    ranges: Vec<Range>,
+}
+
+impl Branches {
+    /// The branches of node `root` of `graph`, with these values of the parameters. They are looked for when first asked for.
+    pub(super) fn new((graph, root): (&Graph, Id), values: &[f64]) -> Self {
+        let mut branches = Self::default();
+        let is_choice = |&id: &Id| {
+            let node = graph.node(id);
+            let may_choose = matches!(
+                node,
+                Node::Binary(Binary::Min | Binary::Max, ..) | Node::Unary(Unary::Abs, _) | Node::Smin(..)
+            );
+            may_choose && !graph.is_uniform(id)
+        };
+        if graph.needed_by(&[root]).iter().any(is_choice) {
+            let (graph, root) = graph.part(root);
+            branches.base.graph = graph;
+            branches.base.extend(values);
+            branches.part(root);
+        }
+        branches
+    }
+
+    /// Index of the part with this root.
+    fn part(&mut self, root: Id) -> usize {
+        if let Some(&known) = self.by_root.get(&root) {
+            return known;
+        }
+        let part = Part {
+            root,
+            nodes: self.base.graph.needed_by(&[root]),
+            number: None,
+            taken: BTreeMap::new(),
+            compiled: None,
+        };
+        let index = self.parts.len();
+        let mut has_choice = false;
+        let look = |_, role| {
+            has_choice |= matches!(role, Role::Min(..) | Role::Max(..) | Role::Abs(_));
+            Sides::First
+        };
+        self.walk.begin(&part, &self.base.graph);
+        self.walk.run(&part.nodes, &self.base, look, &mut Vec::new());
+        self.parts.push(part);
+        self.by_root.insert(root, index);
+        if !has_choice {
+            self.parts[index].number = Some(self.numbered.len() as u32);
+            self.numbered.push(index);
+        }
+        index
+    }
+
+    /// Index of the part that part `of` becomes where its choices take these sides.
+    fn taken(&mut self, of: usize, sides: &[bool], values: &[f64]) -> usize {
+        if let Some(&known) = self.parts[of].taken.get(sides) {
+            return known;
+        }
+        let root = self.base.specialised(&self.parts[of], sides, values, &mut self.walk);
+        let part = self.part(root);
+        self.parts[of].taken.insert(sides.to_vec(), part);
+        part
+    }
+
+    /// The ways to take sides in part `of`, at most `limit`, first operands first.
+    fn ways(&self, of: usize, limit: usize, mut decide: impl FnMut(Role) -> Sides) -> Vec<Vec<bool>> {
+        let part = &self.parts[of];
+        let mut first = Walk::default();
+        first.begin(part, &self.base.graph);
+        let (mut open, mut found) = (vec![first], Vec::new());
+        while found.len() < limit
+            && let Some(mut walk) = open.pop()
+        {
+            walk.run(&part.nodes, &self.base, |_, role| decide(role), &mut open);
+            found.push(walk.sides);
+        }
+        found
+    }
+
+    /// Gives numbers to the first branches of part `of`, at most `left`, in an order that the formula alone decides.
+    fn number(&mut self, of: usize, left: &mut usize, values: &[f64]) {
+        if self.parts[of].number.is_some() {
+            *left = left.saturating_sub(1);
+            return;
+        }
+        for sides in self.ways(of, *left, |_| Sides::Both) {
+            let part = self.taken(of, &sides, values);
+            self.number(part, left, values);
+        }
+    }
+
+    fn number_first(&mut self, values: &[f64]) {
+        if self.numbered.is_empty() {
+            self.number(0, &mut { MAX_NUMBERED }, values);
+        }
+    }
+
+    /// The number of the branch at `p`.
+    pub(super) fn at(&mut self, values: &[f64], p: DVec3) -> u32 {
+        if self.parts.is_empty() {
+            return 0;
+        }
+        self.number_first(values);
+        let mut at = 0;
+        loop {
+            let part = &self.parts[at];
+            if let Some(number) = part.number {
+                return number;
+            }
+            self.base.graph.evaluate(&part.nodes, values, p, &mut self.doubles);
+            self.walk.begin(part, &self.base.graph);
+            let decide = |_, role| Sides::at_point(role, |id| self.doubles[id as usize]);
+            self.walk.run(&part.nodes, &self.base, decide, &mut Vec::new());
+            let sides = core::mem::take(&mut self.walk.sides);
+            at = self.taken(at, &sides, values);
+            self.walk.sides = sides;
+        }
+    }
+
+    /// The numbers of the branches that may have a zero in the box where they give f, ascending; none if there are more than
+    /// [`MAX_LISTED`] ways to take sides.
+    pub(super) fn within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
+        if self.parts.is_empty() {
+            return Some(vec![0]);
+        }
+        self.number_first(values);
+        let (mut open, mut found, mut ways) = (vec![0], Vec::new(), 0);
+        while let Some(at) = open.pop() {
+            let part = &self.parts[at];
+            interval::bounds(&self.base.graph, &part.nodes, values, bounds, &mut self.ranges);
+            let range = |id: Id| self.ranges[id as usize];
+            if range(part.root).is_nonzero() {
+                continue;
+            }
+            if let Some(number) = part.number {
+                found.push(number);
+                continue;
+            }
+            let sides = self.ways(at, MAX_LISTED + 1 - ways, |role| Sides::in_box(role, range));
+            ways += sides.len();
+            if ways > MAX_LISTED {
+                return None;
+            }
+            for sides in sides {
+                open.push(self.taken(at, &sides, values));
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        Some(found)
+    }
+
+    /// Makes [`Branches::active`] the branch of this number, or f.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such branch.
+    pub(super) fn select(&mut self, branch: Option<u32>, values: &[f64]) {
+        self.selected = None;
+        let Some(number) = branch.filter(|_| !self.parts.is_empty()) else { return };
+        self.number_first(values);
+        let index = *self.numbered.get(number as usize).expect("a number that a branch was given");
+        self.selected = Some(index);
+        let part = &mut self.parts[index];
+        if part.compiled.is_none() {
+            let (graph, root) = self.base.graph.part(part.root);
+            part.compiled = Some(Box::new(Compiled::from_graph(graph, root, values)));
+        }
+    }
+
+    /// What is to be evaluated: the branch that is selected, or `whole`, f.
+    pub(super) fn active<'a>(&'a mut self, whole: &'a mut Compiled) -> &'a mut Compiled {
+        self.selected.and_then(|index| self.parts[index].compiled.as_deref_mut()).unwrap_or(whole)
+    }
+
+    /// Recomputes everything that depends on the parameters alone. The branches begin anew, and none is selected, if another
+    /// operation is a choice now.
+    pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        if self.parts.is_empty() {
+            return;
+        }
+        let before = core::mem::take(&mut self.base.roles);
+        self.base.uniforms.clear();
+        self.base.extend(values);
+        if self.base.roles == before {
+            let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
+            compiled.for_each(|compiled| compiled.set_parameters(values));
+        } else {
+            *self = Self::new((&self.base.graph, self.parts[0].root), values);
+        }
+    }
+}

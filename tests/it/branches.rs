@@ -1,0 +1,278 @@
+//! The smooth branches of formulas: which one gives f where, which may in a box, and their values.
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::Field;
+use marching_particles::field::formula::Formula;
+use marching_particles::field::gallery::SURFACES;
+use marching_particles::math::{Bounds, Sym3};
+use proptest::prelude::*;
+
+fn field(text: &str) -> Formula {
+    Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}"))
+}
+
+const CUBE: &str = "max(abs(x), abs(y), abs(z)) - 1";
+
+/// Numbers of the branches at points of a grid, each once.
+fn branches_of(field: &mut Formula) -> Vec<u32> {
+    let mut numbers: Vec<u32> = spread(&Bounds::cube(1.5)).map(|p| field.branch_at(p)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
+/// Points of a grid of 9 × 9 × 9, off the planes of symmetry.
+fn spread(bounds: &Bounds) -> impl Iterator<Item = DVec3> {
+    let (lo, size) = (bounds.lo(), bounds.size());
+    (0..729).map(move |i| {
+        let node = DVec3::new(f64::from(i % 9), f64::from(i / 9 % 9), f64::from(i / 81));
+        lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / 9.0
+    })
+}
+
+/// f by every way of evaluating it at one point: single precision, then double.
+fn values_of(field: &mut dyn Field, p: Vec3) -> ([f32; 3], [f64; 3]) {
+    let ([mut v], [mut w], [mut h]) = ([0.0], [0.0], [0.0]);
+    let ([mut g], [mut second]) = ([Vec3::ZERO], [Sym3::splat(0.0)]);
+    field.values(&[p], core::slice::from_mut(&mut v));
+    field.gradients(&[p], core::slice::from_mut(&mut w), core::slice::from_mut(&mut g));
+    field.hessians(
+        &[p],
+        core::slice::from_mut(&mut h),
+        core::slice::from_mut(&mut g),
+        core::slice::from_mut(&mut second),
+    );
+    let (mut exact, mut slope) = ([0.0], [DVec3::ZERO]);
+    field.exact_gradients(&[p], &mut exact, &mut slope);
+    let p = p.as_dvec3();
+    ([v, w, h], [exact[0], field.value_and_gradient(p).0, field.jet(p).value])
+}
+
+#[test]
+fn a_cube_has_six_linear_branches() {
+    let mut cube = field(CUBE);
+    assert_eq!(branches_of(&mut cube), [0, 1, 2, 3, 4, 5]);
+    let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+    for (number, face) in (0..).zip(faces) {
+        assert_eq!(cube.branch_at(face + DVec3::splat(0.1)), number, "{face}");
+        cube.select_branch(Some(number));
+        // Far from the face, where other branches give f, and in every way of evaluating it.
+        for p in [Vec3::ZERO, Vec3::new(-3.0, 8.0, 5.5), Vec3::new(2.0, -0.25, -9.0)] {
+            let wanted = p.as_dvec3().dot(face) - 1.0;
+            for double in [None, Some(1.0)] {
+                cube.use_double(double);
+                let (single, exact) = values_of(&mut cube, p);
+                let scaled = double.map_or(wanted, |_| libm::asinh(wanted)) as f32;
+                assert_eq!((single, exact), ([scaled; 3], [wanted; 3]), "{face} at {p}");
+            }
+            cube.use_double(None);
+            let jet = cube.jet(p.as_dvec3());
+            assert_eq!((jet.gradient, jet.hessian), (face, Sym3::splat(0.0)), "{face} at {p}");
+        }
+    }
+}
+
+#[test]
+fn a_box_has_the_branches_of_the_faces_that_meet_it() {
+    let mut cube = field(CUBE);
+    let around = |p: DVec3| Bounds::new(p - 0.1, p + 0.1);
+    let [x, y, z] = DVec3::AXES.map(|axis| cube.branch_at(axis));
+    let mut listed = |p: DVec3| cube.branches_in(&around(p));
+    assert_eq!(listed(DVec3::new(1.0, 0.3, 0.2)), Some(vec![x]));
+    // Across the plane y = 0, where the branches of |y| have no zero.
+    assert_eq!(listed(DVec3::new(1.0, 0.0, 0.2)), Some(vec![x]));
+    assert_eq!(listed(DVec3::new(1.0, 1.0, 0.2)), Some(vec![x, y]));
+    assert_eq!(listed(DVec3::ONE), Some(vec![x, y, z]));
+    assert_eq!(listed(DVec3::new(0.5, 0.5, 0.5)), Some(vec![]));
+    assert_eq!(listed(DVec3::new(1.5, 0.5, 0.5)), Some(vec![]));
+    assert_eq!(cube.branches_in(&Bounds::cube(2.0)), Some(vec![0, 1, 2, 3, 4, 5]));
+}
+
+#[test]
+fn a_box_at_a_tie_has_both_branches() {
+    let mut slabs = field("abs(x) + y");
+    assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(0.0, -1.0, 0.0), DVec3::ONE)), Some(vec![0, 1]));
+    assert_eq!(slabs.branches_in(&Bounds::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::Y)), Some(vec![0, 1]));
+    assert_eq!((slabs.branch_at(DVec3::ZERO), slabs.branch_at(-DVec3::X)), (0, 1));
+}
+
+#[test]
+fn too_many_branches_are_not_listed() {
+    let mut waves =
+        field("abs(x) + abs(y) + abs(z) + abs(x + y) + abs(y + z) + abs(z + x) + abs(x + y + z) = 1");
+    assert_eq!(waves.branches_in(&Bounds::cube(1.0)), None);
+    assert_eq!(waves.branches_in(&Bounds::new(DVec3::splat(0.05), DVec3::ONE)), Some(vec![0]));
+}
+
+#[test]
+fn equal_functions_are_one_branch() {
+    for (text, count) in [
+        ("abs(x)^2 + y^2 + z^2 - 1", 1),
+        ("abs(x)^p + abs(y)^p + z^2 - 1", 4),
+        ("cos(abs(x)) + y^2 + z^2 - 1", 2),
+        ("abs(x) + abs(-x) + y + z", 2),
+        ("min((x - 1)^2 + y^2 + z^2, (x + 1)^2 + y^2 + z^2) - 1.2", 2),
+        ("abs(x) + abs(y) + abs(z) - 1", 8),
+        // The sign of y counts where |y| is taken, and nowhere else.
+        ("max(x, min(z, abs(y))) - 0.5", 4),
+        ("max(x, y, x) - 1", 2),
+        ("sqrt(x^2) + y^2 + z^2 - 1", 2),
+        ("hypot(x, 0) + sqrt((y - z)^4) + (z^2)^0.5 - 1", 4),
+        ("(x^4)^0.25 + y + z", 2),
+        ("sqrt(max(x, 0)^2 + max(y, 0)^2) - 0.5", 4),
+        ("smin(x, y, 0) + z", 2),
+        ("smin(x, y, 0.1) + z", 1),
+        ("max(x, p) + y + z", 2),
+        ("max(p, 2) x + y + z", 1),
+        ("x^2 + y^2 + z^2 - 1", 1),
+    ] {
+        let mut field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+        let found = branches_of(&mut field);
+        assert_eq!(found.len(), count, "{text}: {found:?}");
+    }
+}
+
+#[test]
+fn the_absolute_value_of_a_power_is_no_choice() {
+    for p in [1.5, 3.0, 4.0] {
+        let mut smooth = field("abs(x)^p + abs(y)^p + z^2 - 1").with("p", p).expect("a parameter");
+        assert_eq!(branches_of(&mut smooth), [0], "{p}");
+        smooth.select_branch(Some(0));
+        let at = |x: f64| smooth.clone().value_and_gradient(DVec3::new(x, 0.5, 0.25)).0;
+        assert_eq!(at(-0.75).to_bits(), at(0.75).to_bits(), "{p}");
+    }
+    assert_eq!(branches_of(&mut field("abs(x)^3 + y + z")), [0]);
+}
+
+#[test]
+fn parameters_change_branches_and_not_their_numbers() {
+    let mut cube = field("max(abs(x), abs(y), abs(z)) - a");
+    cube.select_branch(Some(3));
+    let p = DVec3::new(0.5, -4.0, 0.5);
+    assert_eq!((cube.branch_at(p), cube.value_and_gradient(p).0), (3, 3.0));
+    cube.set_parameter("a", 0.25).expect("a parameter");
+    let mut copy = cube.clone();
+    for cube in [&mut cube, &mut copy] {
+        let (single, exact) = values_of(cube, p.as_vec3());
+        assert_eq!((cube.branch_at(p), single, exact), (3, [3.75; 3], [3.75; 3]));
+    }
+    copy.select_branch(None);
+    assert_eq!(copy.value_and_gradient(DVec3::splat(2.0)).0, 1.75);
+    assert_eq!(cube.value_and_gradient(DVec3::splat(2.0)).0, -2.25);
+    // A blend that gets a width is no choice any more.
+    let mut blend = field("smin(x, y, k) + z").with("k", 0.0).expect("a parameter");
+    assert_eq!(branches_of(&mut blend), [0, 1]);
+    blend.select_branch(Some(1));
+    blend.set_parameter("k", 1.0).expect("a parameter");
+    assert_eq!(branches_of(&mut blend), [0]);
+    let value = blend.value_and_gradient(DVec3::new(0.25, 0.25, 0.0)).0;
+    assert!((value - (0.25 - 1.0 / 6.0)).abs() < 1e-15, "{value}");
+}
+
+#[test]
+fn numbers_do_not_depend_on_what_was_asked_before() {
+    let text = "max(abs(x) + abs(y), min(abs(z), x + y), abs(x - z)) - 1";
+    let points: Vec<DVec3> = spread(&Bounds::cube(1.5)).collect();
+    let (mut forward, mut backward) = (field(text), field(text));
+    let numbers: Vec<u32> = points.iter().map(|&p| forward.branch_at(p)).collect();
+    let others: Vec<u32> = points.iter().rev().map(|&p| backward.branch_at(p)).collect();
+    assert!(numbers.iter().eq(others.iter().rev()));
+    assert!(numbers.iter().max() > Some(&6));
+}
+
+#[test]
+fn a_field_is_itself_again_when_no_branch_is_selected() {
+    let points: Vec<Vec3> = spread(&Bounds::cube(1.5)).map(|p| p.as_vec3()).collect();
+    let (mut used, mut fresh) = (field(CUBE), field(CUBE));
+    used.select_branch(Some(4));
+    used.select_branch(None);
+    for p in points {
+        assert_eq!(values_of(&mut used, p), values_of(&mut fresh, p), "{p}");
+    }
+}
+
+#[test]
+fn an_origin_counts_for_branches_too() {
+    let mut cube = field(CUBE);
+    cube.set_origin(DVec3::new(1.0, 1.0, 0.0));
+    assert_eq!(cube.branch_at(DVec3::new(0.0, 0.1, 0.0)), 2);
+    assert_eq!(cube.branches_in(&Bounds::cube(0.1)), Some(vec![0, 2]));
+    cube.select_branch(Some(2));
+    assert_eq!(values_of(&mut cube, Vec3::Y), ([1.0; 3], [1.0; 3]));
+}
+
+#[test]
+fn the_branch_at_a_point_gives_the_value_of_the_gallery_there() {
+    for surface in SURFACES {
+        let mut field = surface.field();
+        for p in spread(&surface.bounds) {
+            agrees(&mut field, p, surface.id);
+        }
+    }
+}
+
+/// Checks that the branch at `p` has the value of f there and is among those of boxes around `p`, if f is 0 in them.
+fn agrees(field: &mut Formula, p: DVec3, text: &str) {
+    field.select_branch(None);
+    let wanted = field.value_and_gradient(p).0;
+    let number = field.branch_at(p);
+    field.select_branch(Some(number));
+    let value = field.value_and_gradient(p).0;
+    let close = (value - wanted).abs() <= 1e-13 * (1.0 + wanted.abs());
+    assert!(
+        close || value.to_bits() == wanted.to_bits() || value.is_nan() && wanted.is_nan(),
+        "{text} at {p}: {value} for {wanted}"
+    );
+    field.select_branch(None);
+    if wanted == 0.0 {
+        // Wide enough for the rounding errors of f.
+        let listed = field.branches_in(&Bounds::new(p - 1e-12, p + 1e-12));
+        assert!(
+            listed.as_ref().is_none_or(|listed| listed.contains(&number)),
+            "{text} at {p}: {number} of {listed:?}"
+        );
+    }
+}
+
+/// Solids made of others by the operations of sets.
+fn solids() -> impl Strategy<Value = String> {
+    let number = || (-20_i32..20).prop_map(|n| f64::from(n) / 10.0);
+    let leaf = prop_oneof![
+        (number(), number(), number()).prop_map(|(a, b, c)| format!("hypot(x - {a}, y - {b}, z - {c}) - 1")),
+        (number(), number(), number()).prop_map(|(a, b, c)| format!("{a}x + {b}y + {c}z - 0.5")),
+        number().prop_map(|a| format!("x^2 + y^2 - z - {a}")),
+        prop::sample::select(vec!["abs(x) - 1", "abs(y + 2z)", "sqrt(z^2)", "sin(3x) + cos(2y)"])
+            .prop_map(str::to_owned),
+    ];
+    leaf.prop_recursive(5, 24, 3, move |inner| {
+        let call = prop::sample::select(vec!["min", "max"]);
+        prop_oneof![
+            4 => (call, prop::collection::vec(inner.clone(), 2..4))
+                .prop_map(|(name, solids)| format!("{name}({})", solids.join(", "))),
+            2 => inner.clone().prop_map(|solid| format!("-({solid})")),
+            1 => (inner.clone(), number()).prop_map(|(solid, a)| format!("({solid}) + {a}")),
+            1 => inner.clone().prop_map(|solid| format!("abs({solid}) - 0.1")),
+            1 => (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a}) + ({b})")),
+            1 => (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("smin({a}, {b}, 0.2)")),
+            1 => (inner.clone(), inner).prop_map(|(a, b)| format!("smin({a}, {b}, 0)")),
+        ]
+    })
+}
+
+proptest! {
+    #[test]
+    fn the_branch_at_a_point_gives_the_value_of_a_solid_there(
+        text in solids(),
+        points in prop::collection::vec([-2.0..2.0_f64, -2.0..2.0, -2.0..2.0], 20),
+    ) {
+        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        for p in points.into_iter().map(DVec3::from_array) {
+            agrees(&mut field, p, &text);
+            // A point of the surface of another solid.
+            let level = field.value_and_gradient(p).0;
+            if let Ok(mut shifted) = Formula::as_written(&format!("{text} - ({level:?})"), &[]) {
+                agrees(&mut shifted, p, &text);
+            }
+        }
+    }
+}
