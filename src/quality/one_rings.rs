@@ -41,6 +41,8 @@ struct RingBuffers {
     cell: VoronoiCell,
     nearby: PointsInBox,
     keys: Vec<u64>,
+    /// The points that were asked for their sheet, and whether it is another one: each try asks for those of the one before.
+    asked: Vec<(usize, bool)>,
 }
 
 impl OneRings {
@@ -54,8 +56,12 @@ impl OneRings {
             nearest: Vec::with_capacity(n),
         };
         rings.start.push(0);
-        let mut scratch =
-            RingBuffers { cell: VoronoiCell::new(), nearby: PointsInBox::default(), keys: Vec::new() };
+        let mut scratch = RingBuffers {
+            cell: VoronoiCell::new(),
+            nearby: PointsInBox::default(),
+            keys: Vec::new(),
+            asked: Vec::new(),
+        };
         for leaf in sheets.tree.leaves() {
             rings.add_leaf(sheets, field, leaf, &mut scratch);
             pause().await;
@@ -69,7 +75,7 @@ impl OneRings {
         sheets: &Sheets,
         field: &mut dyn Field,
         Leaf { range, lo, hi }: Leaf,
-        RingBuffers { cell, nearby, keys }: &mut RingBuffers,
+        RingBuffers { cell, nearby, keys, asked }: &mut RingBuffers,
     ) {
         let Sheets { tree, normal, .. } = *sheets;
         let reach = BALL * (hi - lo).length();
@@ -102,7 +108,15 @@ impl OneRings {
             } else {
                 f64::INFINITY
             };
-            let mut is_stranger = |j: usize| sheets.are_two(field, i, j, facing_away);
+            asked.clear();
+            let mut is_stranger = |j: usize| {
+                let known = asked.iter().find(|(other, _)| *other == j).map(|&(_, is_stranger)| is_stranger);
+                known.unwrap_or_else(|| {
+                    let is_stranger = sheets.are_two(field, i, j, facing_away);
+                    asked.push((j, is_stranger));
+                    is_stranger
+                })
+            };
             let mut known_sq = f64::from(reach_sq);
             let mut closed = fill(cell, tree, normal[i], i, keys, known_sq, &mut is_stranger);
             for count in TRIES {
