@@ -164,8 +164,15 @@ pub const COLUMNS: &[Column] = &[
     },
 ];
 
-/// Writes `particles` to `out`, which should be buffered. `measured` is the report on them; particles beyond its end get a
-/// valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the same bits.
+/// The columns of a file: all, or those that need no measurement where nothing was measured.
+fn columns(measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
+    let is_measured = !measured.valence.is_empty();
+    COLUMNS.iter().filter(move |column| is_measured || !column.measured)
+}
+
+/// Writes `particles` to `out`, which should be buffered. `measured` is the report on them: where it is empty, its columns are left
+/// out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the
+/// same bits.
 ///
 /// # Errors
 ///
@@ -193,10 +200,10 @@ fn ply(
 ) -> io::Result<()> {
     let n = particles.len();
     if rows.start == 0 {
-        ply_header(particles, triangles, out)?;
+        ply_header(particles, measured, triangles, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
-        for column in COLUMNS {
+        for column in columns(measured) {
             (column.read)(particles, measured, i).write_binary(out)?;
         }
     }
@@ -211,10 +218,15 @@ fn ply(
     Ok(())
 }
 
-fn ply_header(particles: &Particles, triangles: Option<&[[u32; 3]]>, out: &mut dyn Write) -> io::Result<()> {
+fn ply_header(
+    particles: &Particles,
+    measured: &quality::Measurements,
+    triangles: Option<&[[u32; 3]]>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     writeln!(out, "element vertex {}", particles.len())?;
-    for column in COLUMNS {
+    for column in columns(measured) {
         let kind = match column.kind {
             ColumnKind::Coordinate if is_double(particles) => "double",
             ColumnKind::Coordinate | ColumnKind::Float => "float",
@@ -231,10 +243,10 @@ fn ply_header(particles: &Particles, triangles: Option<&[[u32; 3]]>, out: &mut d
 }
 
 fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
-    let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    let names: Vec<&str> = columns(measured).map(|column| column.name).collect();
     writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
-        for (k, column) in COLUMNS.iter().enumerate() {
+        for (k, column) in columns(measured).enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;
             (column.read)(particles, measured, i).write_text(out)?;
         }

@@ -237,21 +237,37 @@ impl<F: Field> Run<F> {
     ///
     /// If there is no particle: the error says why.
     pub fn finish(mut self) -> Result<Sample, Error> {
-        if self.count() == 0 {
-            let progress = self.last.unwrap_or_else(|| self.sampler.progress());
-            let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
-            if let Some(cause) =
-                self.start.warnings.iter().find(|warning| matches!(warning, Warning::Gradient { .. }))
-            {
-                message = format!("{message} {cause}");
-            }
-            return Err(Error::Nothing {
-                reason: progress.stop_reason.unwrap_or(StopReason::Cancelled),
-                message,
-            });
-        }
+        self.check_not_empty()?;
         let report = self.report();
         Ok(Sample::new(self, report))
+    }
+
+    /// [`Run::finish`] without measuring, which may take longer than the sampling. The report then has no figures of quality, no
+    /// number of components of the sample, and none of the warnings that come from measuring, of open edges and of close sheets; the
+    /// files have no columns of measured values.
+    ///
+    /// # Errors
+    ///
+    /// The error of [`Run::finish`].
+    pub fn finish_unmeasured(mut self) -> Result<Sample, Error> {
+        self.check_not_empty()?;
+        let report = self.report_unmeasured();
+        Ok(Sample::new(self, report))
+    }
+
+    /// Returns the reason if there is no particle.
+    fn check_not_empty(&self) -> Result<(), Error> {
+        if self.count() > 0 {
+            return Ok(());
+        }
+        let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
+        let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
+        if let Some(cause) =
+            self.start.warnings.iter().find(|warning| matches!(warning, Warning::Gradient { .. }))
+        {
+            message = format!("{message} {cause}");
+        }
+        Err(Error::Nothing { reason: progress.stop_reason.unwrap_or(StopReason::Cancelled), message })
     }
 
     /// The particles so far; of a generation level under way, the columns may hold provisional ones beyond [`Run::count`].

@@ -1,6 +1,6 @@
 //! The report of a run: the counts of the sampler, and the measurements of the particles before and after the relaxation.
 
-use super::measuring::{MeasuringInput, MeasuringResult, ParticleCopy};
+use super::measuring::{Measuring, MeasuringInput, MeasuringResult, ParticleCopy};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
@@ -9,7 +9,7 @@ use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{FateCounts, Sampled, Search, StopReason};
 use crate::slices;
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Report on a run: its particles, how they were placed, the proof of completeness, quality and warnings.
 #[derive(Clone, Debug, Serialize)]
@@ -94,7 +94,10 @@ pub struct Growth {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Proof {
-    /// Number of components at this radius: those of the graph of natural neighbours of the particles.
+    /// Number of components at this radius: those of the graph of natural neighbours of the particles. 0, and null in JSON, without
+    /// particles or where they were not measured.
+    #[serde(serialize_with = "null_for_zero")]
+    #[cfg_attr(test, ts(type = "number | null"))]
     pub components: usize,
     /// Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
     /// component of a particle or named in `sampled`.
@@ -112,7 +115,7 @@ pub struct Proof {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Measures {
-    /// Quality of the present particles; none if there are none.
+    /// Quality of the present particles; none if there are none, or where they were not measured.
     pub quality: Option<Figures>,
     /// Quality of the particles after the front, before the relaxation; none where nothing was relaxed.
     pub quality_before: Option<Figures>,
@@ -120,6 +123,11 @@ pub struct Measures {
     pub nearest_histogram: Histogram,
     /// The crowded pairs and wide holes of the present particles.
     pub places: Places,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
+fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S::Error> {
+    Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
 
 impl<F: Field> Run<F> {
@@ -159,15 +167,17 @@ impl<F: Field> Run<F> {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
         self.measuring.measured = now;
-        let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
-        let mut report = self.reported(facing);
-        if is_overflowing {
-            report.warnings.push(Warning::Overflow);
-        }
-        report
+        self.reported(facing)
     }
 
-    fn reported(&self, facing: usize) -> Report {
+    /// The report without measurements.
+    pub(super) fn report_unmeasured(&mut self) -> Report {
+        self.measuring = Measuring::default();
+        self.reported(0)
+    }
+
+    fn reported(&mut self, facing: usize) -> Report {
+        let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
         let particles = self.sampler.particles();
         let count = particles.len();
         let measured = &self.measuring.measured;
@@ -179,14 +189,16 @@ impl<F: Field> Run<F> {
         }
         let is_outside = |slots: &&Slots| (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
+        let mut warnings = self.warnings_of_run(&proof.sampled, facing);
+        warnings.extend(is_overflowing.then_some(Warning::Overflow));
         Report {
             count,
             sizes: self.sizes(),
             growth: self.growth(),
-            warnings: self.warnings_of_run(&proof.sampled, facing),
+            warnings,
             proof,
             measures: Measures {
-                quality: (count > 0).then_some(measured.figures),
+                quality: (!measured.valence.is_empty()).then_some(measured.figures),
                 quality_before: self.measuring.front_figures,
                 nearest_histogram: measured.histogram.clone(),
                 places,

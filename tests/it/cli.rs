@@ -220,6 +220,29 @@ fn text_report_names_the_figures_before_and_after() {
 }
 
 #[test]
+fn a_run_without_a_report_has_the_same_particles_and_says_what_is_missing() {
+    let path = file("unmeasured.csv");
+    let name = path.to_str().expect("a plain path");
+    let arguments = ["--surface", "torus", "--count", "1500"];
+    let unmeasured = sample(&[&arguments[..], &["--no-report", "--out", name]].concat());
+    let measured = sample(&arguments);
+    assert_eq!(unmeasured["digest"], measured["digest"]);
+    assert_eq!(measured["components"], 1);
+    for missing in ["quality", "quality_before", "components"] {
+        assert!(unmeasured[missing].is_null(), "{missing}: {}", unmeasured[missing]);
+    }
+    assert_eq!(
+        (&unmeasured["search"], &unmeasured["level_counts"]),
+        (&measured["search"], &measured["level_counts"])
+    );
+    let text = std::fs::read_to_string(&path).expect("the file was written");
+    assert_eq!(text.lines().next(), Some("x,y,z,nx,ny,nz,radius,level,parent,singular"));
+    assert!(text.lines().all(|line| line.split(',').count() == 10));
+    let summary = stdout(&run(&[&["sample", "--no-report"], &arguments[..]].concat()));
+    assert!(summary.contains("not measured: ") && !summary.contains("Six neighbours"), "{summary}");
+}
+
+#[test]
 fn formula_error_is_marked_under_its_span() {
     let message = fails(2, &["sample", "--formula", "x^2 + α)"]);
     let lines: Vec<&str> = message.lines().collect();

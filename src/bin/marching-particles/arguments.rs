@@ -86,6 +86,12 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
+    /// Do not measure the particles: no figures of quality, no components and Euler number of the sample, no warnings that come
+    /// from these, and no columns valence, nearest and residual in the files. Measuring can take longer than sampling on surfaces
+    /// of many sheets and on long formulas
+    #[arg(long, help_heading = "Output")]
+    pub(crate) no_report: bool,
+
     /// Print one line of JSON instead of text
     #[arg(long, help_heading = "Output")]
     pub(crate) json: bool,

@@ -70,7 +70,8 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let peak_sampling_mb = peak_mb();
     let reach = run.reach();
     let clock = Stopwatch::start();
-    let sample = run.finish().map_err(|error| match error {
+    let finished = if arguments.no_report { run.finish_unmeasured() } else { run.finish() };
+    let sample = finished.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }

@@ -40,7 +40,10 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     if s.refinement > 0.0 {
         write!(out, ", refinement {}", time(s.refinement))?;
     }
-    write!(out, ", relaxation {}, quality {}", time(s.relaxation), time(s.quality))?;
+    write!(out, ", relaxation {}", time(s.relaxation))?;
+    if report.measures.quality.is_some() {
+        write!(out, ", quality {}", time(s.quality))?;
+    }
     if let Some(mesh) = &outcome.mesh {
         write!(out, ", mesh {}\nmesh of {}", time(s.mesh), mesh_line(mesh))?;
     }
@@ -50,6 +53,13 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     }
     writeln!(out)?;
     table(out, outcome)?;
+    if report.measures.quality.is_none() {
+        writeln!(
+            out,
+            "\nnot measured: quality, components and Euler number of the sample, open edges; files have no columns valence, nearest \
+             and residual"
+        )?;
+    }
     writeln!(out, "\ndigest {}", report.digest)?;
     if let Some(cut) = report.cut {
         let [min, max] =

@@ -291,7 +291,8 @@ export type FunctionInfo = {
   help: string,
 };
 
-/** Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost. */
+/** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
+* Bins are equal, and values outside fall into the outermost. */
 export type Histogram = {
   /** Lower end of the first bin. */
   min: number,
@@ -961,8 +962,9 @@ export type Report = {
   refined_levels: number | null,
   /** Energy per particle before the first relaxation step and after each; none where nothing was relaxed. */
   energy: Array<number> | null,
-  /** Number of components at this radius: those of the graph of natural neighbours of the particles. */
-  components: number,
+  /** Number of components at this radius: those of the graph of natural neighbours of the particles. 0, and null in JSON, without
+  * particles or where they were not measured. */
+  components: number | null,
   /** Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
   * component of a particle or named in `sampled`. */
   search: Search,
@@ -973,11 +975,11 @@ export type Report = {
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,
-  /** Quality of the present particles; none if there are none. */
+  /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
   /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */
   quality_before: Figures | null,
-  /** Nearest-neighbour distances. */
+  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles. */
   nearest_histogram: Histogram,
   /** The crowded pairs and wide holes of the present particles. */
   places: Places,
