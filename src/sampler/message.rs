@@ -2,6 +2,7 @@
 
 use super::{Sampler, StopReason};
 use crate::math::shortest_text;
+use crate::sampler::discovery::completeness::Doubt;
 use crate::sampler::discovery::survey::Absence;
 use glam::DVec3;
 
@@ -24,22 +25,23 @@ impl Sampler {
                 let distance = |p: &DVec3| (*p - middle).length_squared();
                 let points = self.components.singular().iter().map(|point| point.position);
                 let nearest = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-                let [x, y, z] = nearest.unwrap_or_default().to_array().map(|x| shortest_text(rounded(x)));
+                let near = self.place(nearest.unwrap_or_default());
                 format!(
-                    "No surface that particles can cover: f comes to zero, for example near ({x}, {y}, {z}), but its gradient \
+                    "No surface that particles can cover: f comes to zero, for example near {near}, but its gradient \
                      vanishes there. This may be a point or a curve, as for x^2 + y^2 = 0, or a surface on which f is flat, as \
                      a power is. For a surface around it enter a small number on the right, such as x^2 + y^2 = 0.01; if f is \
                      a power, enter its base."
                 )
             }
-            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
-                "f keeps one sign at every grid point of this box. Enlarge or move the box."
-                    .into()
-            }
-            StopReason::NoSurface => {
-                "f changes its sign in this box, but only where it jumps, has a pole or loses its gradient."
-                    .into()
-            }
+            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => format!(
+                "f keeps one sign at every grid point of this box. Enlarge or move the box.{}",
+                self.undecided_place()
+            ),
+            StopReason::NoSurface => format!(
+                "f changes its sign in this box, but only where it jumps, has a pole or loses its gradient, or on a surface that is \
+                 far smaller than the box.{}",
+                self.undecided_place()
+            ),
             StopReason::Constant => {
                 "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
             }
@@ -53,6 +55,27 @@ impl Sampler {
                 "The radius is too large for this surface: only one particle fits. Choose a smaller radius."
                     .into()
             }
+        })
+    }
+}
+
+impl Sampler {
+    /// A place in words, in the coordinates of the formula.
+    fn place(&self, p: DVec3) -> String {
+        let p = self.output.particles.origin + p;
+        format!("({})", p.to_array().map(|x| shortest_text(rounded(x))).join(", "))
+    }
+
+    /// A sentence on the first cell that the search for components left undecided; empty if there is none.
+    fn undecided_place(&self) -> String {
+        let cell = self.doubts().into_iter().find_map(|doubt| match doubt {
+            Doubt::Cells { position, .. } => Some(self.place(DVec3::from_array(position))),
+            _ => None,
+        });
+        cell.map_or_else(String::new, |near| {
+            format!(
+                " The search for small parts could not decide near {near}: a small box there may show one."
+            )
         })
     }
 }

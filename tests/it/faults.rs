@@ -323,6 +323,24 @@ fn zeros_without_a_gradient_are_never_called_absent() {
 }
 
 #[test]
+fn a_surface_that_is_small_for_its_box_is_not_called_a_point() {
+    // Beside the box the sphere and the tube are thinner than the smallest cell of the search.
+    for (formula, half) in
+        [("x^2 + y^2 + z^2 - 1", 1e6), ("x^2 + y^2 + z^2 - 1", 1e7), ("x^2 + y^2 - 1e-12", 1.0)]
+    {
+        let (_, progress, report) = sampled(formula, half, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
+        let message = progress.message.unwrap_or_default();
+        assert!(
+            !message.contains("f comes to zero") && message.contains("far smaller than the box"),
+            "{formula}: {message}"
+        );
+        assert!(message.contains("could not decide near (0, 0, "), "{formula}: {message}");
+        assert_eq!(report.proof.singular_points, Some(0), "{formula}");
+    }
+}
+
+#[test]
 fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     for formula in ["floor(3x) + 0.5", "sign(x - 0.1234) + y/100", "sign(x)"] {
         let (session, progress, _) = sampled(formula, 0.9, &coarse());

@@ -31,10 +31,13 @@ const SUB_BOXES: usize = 27;
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Largest number of Newton steps to a singular point. At a cusp each step only halves the distance, so that it is known to 10⁻⁷.
+/// Largest number of Newton steps to a singular point.
 const MOST_STEPS: u32 = 24;
-/// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It
-/// is far above rounding. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as much 77, some of them
+/// Distance from an isolated singular point, and from another one, at which the steps have ended, over the search distance. At a
+/// cusp each step only halves the distance.
+const ENDS: [f64; 2] = [1e-12, 1e-7];
+/// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and d the search distance. It
+/// is far above rounding: cone points open where coefficients are rounded. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as much 77, some of them
 /// necks.
 const LARGEST_VALUE: f64 = 1e-8;
 /// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search
@@ -51,7 +54,8 @@ pub(crate) struct Singular {
     pub(crate) position: DVec3,
     /// Distance within which the point was searched for.
     pub(crate) reach: f64,
-    /// Whether f is 0 at the point, up to rounding.
+    /// Whether f is 0 at the point: up to rounding where f has a minimum or a maximum there, around which the surface is a small
+    /// sphere or tube, or nothing; at a saddle up to a small neck.
     pub(crate) is_zero: bool,
     /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
     pub(crate) is_alone: bool,
@@ -73,7 +77,7 @@ pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
         if !is_near(step) || !is_near(p - start) {
             return None;
         }
-        if step.length_squared() <= 1e-24 * reach * reach {
+        if step.length_squared() <= ENDS[0] * ENDS[0] * reach * reach {
             break;
         }
     }
@@ -82,11 +86,29 @@ pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
     let size = size_sq(&hessian).sqrt();
     let value = jet.value.abs() / (size * reach * reach);
     let settled = jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
-    (settled && value <= LARGEST_NECK).then(|| Singular {
-        position: p,
-        reach,
-        is_zero: value <= LARGEST_VALUE,
-        is_alone: hessian.determinant().abs() > SMALL * size * size * size,
+    (settled && value <= LARGEST_NECK).then(|| {
+        let is_alone = hessian.determinant().abs() > SMALL * size * size * size;
+        let end = ENDS[usize::from(!is_alone)];
+        let is_zero = value <= end * end
+            || value <= LARGEST_VALUE && (has_two_signs(&jet.hessian) || may_be_zero(field, p));
+        Singular { position: p, reach, is_zero, is_alone }
+    })
+}
+
+/// Whether the second derivatives along some directions are positive, and along others negative.
+fn has_two_signs(hessian: &Sym3<f64>) -> bool {
+    let least = SMALL * size_sq(&matrix(hessian)).sqrt();
+    extreme_directions(hessian)
+        .is_some_and(|[up, down]| up.dot(hessian.apply(up)) > least && down.dot(hessian.apply(down)) < -least)
+}
+
+/// Whether rounding may hide that f is 0 at a point.
+fn may_be_zero(field: &mut dyn Field, p: DVec3) -> bool {
+    let Some(field) = field.bounded() else { return false };
+    (0..field.factors()).any(|factor| {
+        let mut known = [Enclosure::UNKNOWN];
+        field.enclose(factor, &[Bounds::point(p)], &mut known);
+        known[0].value.holds(0.0)
     })
 }
 
