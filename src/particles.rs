@@ -31,6 +31,8 @@ pub struct Particles {
     /// For each of the first rows, the first row of the same particle. A particle on a crease has a row for each patch that meets
     /// there: all with its position, each with the normal of its patch. These rows come before all others and do not move.
     pub twins: Vec<u32>,
+    /// Pairs of particles that follow each other along a crease, each by its first row.
+    pub segments: Vec<[u32; 2]>,
 }
 
 /// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
@@ -196,6 +198,7 @@ impl Particles {
         self.slots.truncate(len);
         self.patch.truncate(len);
         self.twins.truncate(len);
+        self.segments.retain(|pair| pair.iter().all(|&row| (row as usize) < len));
     }
 
     /// Returns, for each particle, the index of the seed from which its front grew.
@@ -245,6 +248,8 @@ impl Particles {
         self.slots.extend_from_slice(&others.slots[..len]);
         self.patch.extend_from_slice(&others.patch[..len.min(others.patch.len())]);
         self.twins.extend_from_slice(&others.twins[..len.min(others.twins.len())]);
+        let is_kept = |pair: &&[u32; 2]| pair.iter().all(|&row| (row as usize) < len);
+        self.segments.extend(others.segments.iter().filter(is_kept));
     }
 
     /// Removes all particles and keeps the memory.
@@ -257,6 +262,7 @@ impl Particles {
         self.slots.clear();
         self.patch.clear();
         self.twins.clear();
+        self.segments.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,
