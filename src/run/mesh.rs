@@ -64,13 +64,16 @@ enum MeshState {
 impl Meshing {
     /// Joins particles to triangles, or takes those that are `known`, in slices of work.
     fn work(particles: &Particles, count: usize, known: &[[u32; 3]], bounds: Bounds) -> Work<Triangulation> {
-        if !known.is_empty() {
-            return Box::pin(Triangulation::known(known.to_vec(), count));
-        }
-        let (position, normal) = (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
+        let mut copy = Particles::default();
+        copy.copy_first(count, particles);
+        let known = known.to_vec();
         Box::pin(async move {
-            let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
-            build::in_slices(&position, &normal, &options).await
+            if known.is_empty() {
+                let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
+                build::particles_in_slices(&copy, &options).await
+            } else {
+                Triangulation::known(known, &copy).await
+            }
         })
     }
 

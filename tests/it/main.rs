@@ -11,6 +11,8 @@ mod branches;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;
+mod crease_mesh;
+mod creased;
 mod differential;
 mod door;
 mod far;

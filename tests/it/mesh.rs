@@ -238,10 +238,10 @@ fn points_that_cannot_be_joined_are_left_out_and_named() {
     // One of the two at one place.
     assert!(sphere.left_out.contains(&400) != sphere.left_out.contains(&1000));
     assert!(sphere.topology.is_closed());
-    // No mesh at all.
-    for count in 0..4 {
+    // No mesh at all, then a triangle.
+    for (count, triangles) in [(0, 0), (1, 0), (2, 0), (3, 1)] {
         let few = mesh(&normal[..count], &normal[..count], None);
-        assert_eq!(few.left_out.len(), count);
+        assert_eq!(few.triangles.len(), triangles, "{count} points");
     }
     let line: Vec<Vec3> = (0..500).map(|i| Vec3::X * i as f32).collect();
     assert_eq!(mesh(&line, &vec![Vec3::Z; 500], None).left_out.len(), 500);

@@ -1,6 +1,7 @@
 //! Holes: their borders are traced and the polygons are cut into triangles.
 
 use super::patch::{Gap, Patch};
+use super::rim::Rim;
 use crate::math::{Bounds, sort_few};
 use crate::slices::pause;
 
@@ -14,6 +15,8 @@ const AT_BOX: f64 = 1.5;
 /// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46 unrelaxed random runs takes more
 /// than six; with twice as many it has 11 particles fewer in triangles.
 const ROUNDS: u32 = 12;
+/// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of it, to some 10 ms at this number.
+const LARGEST_AT_RIM: usize = 96;
 
 /// Rule that tells a hole of the mesh from a border of the surface.
 pub(super) struct Borders<'a> {
@@ -21,16 +24,32 @@ pub(super) struct Borders<'a> {
     pub(super) largest_hole: usize,
     /// The box that cuts the surface.
     pub(super) bounds: Option<&'a Bounds>,
+    /// The rim of the surface.
+    pub(super) rim: &'a Rim,
 }
 
 impl Borders<'_> {
-    /// Whether a loop is a border for certain: it is long, or most of it lies at the box.
-    pub(super) fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
+    /// The holes that are no borders of the surface, and not too large.
+    pub(super) fn holes(&self, patch: &Patch) -> Vec<Vec<u32>> {
+        let mut loops = trace(patch, self.rim);
+        loops.retain(|hole| !self.is_border(patch, hole));
+        loops
+    }
+
+    /// Whether the surface may as well end at a loop that cannot be filled: most of the vertices see nothing near on that side.
+    pub(super) fn is_open(&self, patch: &Patch, hole: &[u32]) -> bool {
+        2 * hole.iter().filter(|&&v| patch.stars.is_open[v as usize]).count() > hole.len()
+            && !self.rim.is_along(hole)
+    }
+
+    /// Whether a loop is a border for certain: it is long and not beside the rim, or most of it lies at the box.
+    fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
         let at_box = |v: &u32| {
             let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
             self.bounds.is_some_and(|bounds| (p - bounds.lo()).min(bounds.hi() - p).min_element() <= reach)
         };
-        hole.len() > self.largest_hole || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len()
+        hole.len() > self.largest_hole && !self.rim.is_along(hole)
+            || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len()
     }
 }
 
@@ -39,18 +58,18 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> u32 {
     let mut cutter = Cutter::default();
     for round in 0..ROUNDS {
         let mut resisting = Vec::new();
-        for hole in trace(patch) {
-            if borders.is_border(patch, &hole) {
+        for hole in borders.holes(patch) {
+            pause().await;
+            if hole.len() > borders.largest_hole.max(LARGEST_AT_RIM) {
                 continue;
             }
-            pause().await;
             if !cutter.cut(patch, &hole, faces_as_corners) && !cutter.cut(patch, &hole, faces_as_mean) {
                 resisting.push(hole);
             }
         }
         let mut has_grown = false;
         for hole in resisting {
-            if is_open(patch, &hole) {
+            if borders.is_open(patch, &hole) {
                 continue;
             }
             let count = |v: u32| patch.around(v).count();
@@ -66,18 +85,15 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> u32 {
     ROUNDS
 }
 
-/// Whether the surface may as well end at a loop that cannot be filled: most of the vertices see nothing near on that side.
-pub(super) fn is_open(patch: &Patch, hole: &[u32]) -> bool {
-    2 * hole.iter().filter(|&&v| patch.stars.is_open[v as usize]).count() > hole.len()
-}
-
-/// The borders of the triangles: closed loops of vertices with the hole on the left.
-pub(super) fn trace(patch: &Patch) -> Vec<Vec<u32>> {
+/// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is a rim, they are those of what
+/// the triangles leave open on its left.
+fn trace(patch: &Patch, rim: &Rim) -> Vec<Vec<u32>> {
     let mut gaps: Vec<Gap> = Vec::new();
     let mut first_of = Vec::with_capacity(patch.changed().len());
     for &v in patch.changed() {
         first_of.push(gaps.len());
         patch.gaps(v, &mut gaps);
+        rim.narrow(patch, v, &mut gaps, first_of[first_of.len() - 1]);
     }
     let mut is_used = vec![false; gaps.len()];
     let mut loops = Vec::new();
@@ -90,7 +106,8 @@ pub(super) fn trace(patch: &Patch) -> Vec<Vec<u32>> {
             let first = patch.list_number(to).map_or(gaps.len(), |list| first_of[list]);
             at = (first..gaps.len()).take_while(|&k| gaps[k].vertex == to).find(|&k| gaps[k].from == vertex);
         }
-        if !hole.is_empty() {
+        // A way along the rim may end where the box cuts that.
+        if !hole.is_empty() && (rim.is_empty() || at == Some(start)) {
             loops.push(hole);
         }
     }

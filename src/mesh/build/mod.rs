@@ -5,29 +5,36 @@
 //!    triangle at most, and every triangle faces as its corners do.
 //! 3. *Disputes.* Four points near a circle may each prefer another diagonal, since each sees the others in its own tangent
 //!    plane. Triangles that fewer corners see are added where there is room.
-//! 4. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into triangles. Where that fails, a
+//! 4. *Rim.* Where it is known that the surface ends, the way for the edges there is cleared, and triangles beyond are removed. So the
+//!    patches of a surface with creases are joined one by one, and together are closed.
+//! 5. *Holes.* The borders of what is left are traced, and the polygons with few edges are cut into triangles. Where that fails, a
 //!    vertex is taken out, which makes the hole larger and its border simpler.
-//! 5. *Points left out* go into the triangle below them.
-//! 6. *Borders* are freed of vertices where the surface touches itself.
+//! 6. *Points left out* go into the triangle below them.
+//! 7. *Borders* are freed of vertices where the surface touches itself.
 //!
 //! The stars are those of Gopi, Krishnan and Silva, "Surface Reconstruction based on Lower Dimensional Localized Delaunay
 //! Triangulation", Computer Graphics Forum 19(3), 2000; holes are cut by the dynamic programme of Klincsek, "Minimal
 //! Triangulations of Polygonal Domains", Annals of Discrete Mathematics 9, 1980.
 
 mod ball;
+mod creases;
 mod holes;
 mod insert;
 mod patch;
+mod rim;
 mod settle;
 mod stars;
 
 use crate::math::Bounds;
+use crate::particles::Particles;
 use crate::slices::{self, pause, ranges};
 use crate::spatial::tree::Tree;
 use crate::topology::Topology;
+use creases::Sheet;
 use glam::Vec3;
 use holes::Borders;
 use patch::Patch;
+use rim::Rim;
 use stars::Stars;
 
 /// Points that are looked at in one slice of work, where that takes some 10 ns each.
@@ -41,11 +48,14 @@ pub struct MeshOptions<'a> {
     /// The box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be
     /// filled.
     pub bounds: Option<&'a Bounds>,
+    /// Edges along which the surface is known to end, as pairs of indices with the surface on the left, seen from outside. No
+    /// triangle lies beyond them, and what is open on their left is a hole.
+    pub rim: &'a [[u32; 2]],
 }
 
 impl Default for MeshOptions<'_> {
     fn default() -> Self {
-        Self { largest_hole: 24, bounds: None }
+        Self { largest_hole: 24, bounds: None, rim: &[] }
     }
 }
 
@@ -53,9 +63,10 @@ impl Default for MeshOptions<'_> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
     /// Triples of the indices of points, counter-clockwise round their normals. They form an oriented manifold: every edge
-    /// has one triangle or two, every vertex one fan.
+    /// has one triangle or two, every vertex one fan. Where the surface has creases, they are triples of rows, each of one patch, and the
+    /// manifold is that of the particles.
     pub triangles: Vec<[u32; 3]>,
-    /// Components, borders and Euler numbers, counted anew on the triangles.
+    /// Components, borders and Euler numbers, counted anew on the triangles: of rows, by the first row of their particle.
     pub topology: Topology,
     /// Borders of at most [`MeshOptions::largest_hole`] edges that are not at the box: places where no manifold could be had.
     /// Each starts at its smallest vertex and has the mesh on its left.
@@ -70,16 +81,55 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// The triangulation that consists of `triangles` over `point_count` points, in slices of work. They must be an oriented manifold whose
-    /// borders are borders of the surface.
-    pub(crate) async fn known(triangles: Vec<[u32; 3]>, point_count: usize) -> Self {
-        let topology = Topology::in_slices(&triangles, point_count).await;
-        let mut is_met = vec![false; point_count];
-        triangles.iter().flatten().for_each(|&v| is_met[v as usize] = true);
-        pause().await;
-        let left_out = (0..point_count as u32).filter(|&v| !is_met[v as usize]).collect();
+    /// The triangulation that consists of `triangles` over the rows of particles, in slices of work. They must be an oriented manifold
+    /// whose borders are borders of the surface.
+    pub(crate) async fn known(triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         let agreed = triangles.len();
-        Self { triangles, topology, left_out, agreed, ..Self::default() }
+        Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &particles.twins).await
+    }
+}
+
+/// Triangles over points, before they are counted.
+#[derive(Default)]
+struct Joined {
+    triangles: Vec<[u32; 3]>,
+    /// Loops around holes that no manifold fills, with the hole on the left.
+    unfilled: Vec<Vec<u32>>,
+    agreed: usize,
+    rounds: u32,
+}
+
+impl Joined {
+    /// The triangulation over `point_count` points, of which the first ones may be the same as earlier ones: `twins` has the first
+    /// such point of each.
+    async fn counted(self, point_count: usize, twins: &[u32]) -> Triangulation {
+        let Self { triangles, unfilled, agreed, rounds } = self;
+        let first = |v: u32| twins.get(v as usize).copied().unwrap_or(v);
+        let mut is_met = vec![false; point_count];
+        triangles.iter().flatten().for_each(|&v| is_met[first(v) as usize] = true);
+        pause().await;
+        let left_out = (0..point_count as u32).filter(|&v| first(v) == v && !is_met[v as usize]).collect();
+        pause().await;
+        let topology = if twins.is_empty() {
+            Topology::in_slices(&triangles, point_count).await
+        } else {
+            let welded: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.map(first)).collect();
+            pause().await;
+            Topology::in_slices(&welded, point_count).await
+        };
+        pause().await;
+        // The loops have the mesh on their left.
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        for hole in &unfilled {
+            edges.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first)));
+        }
+        edges.sort_unstable();
+        let is_open = |border: &&Vec<u32>| {
+            let mut sides = (0..border.len()).map(|k| [border[k], border[(k + 1) % border.len()]]);
+            sides.any(|side| edges.binary_search(&side).is_ok())
+        };
+        let unfilled = topology.borders.iter().filter(is_open).cloned().collect();
+        Triangulation { triangles, topology, unfilled, left_out, agreed, rounds }
     }
 }
 
@@ -104,6 +154,38 @@ pub(crate) async fn in_slices(
     normal: &[Vec3],
     options: &MeshOptions<'_>,
 ) -> Triangulation {
+    join(position, normal, options).await.counted(position.len(), &[]).await
+}
+
+/// Joins particles to triangles of their rows: as [`triangulate`] does, and where the surface has creases, each patch by itself up to
+/// its creases, which are edges of the mesh. The topology is counted over particles, each once, so that it is that of the patches
+/// together.
+#[must_use]
+pub fn triangulate_particles(particles: &Particles, options: &MeshOptions) -> Triangulation {
+    slices::complete(particles_in_slices(particles, options))
+}
+
+/// [`triangulate_particles`] in slices of work.
+pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOptions<'_>) -> Triangulation {
+    if particles.patch.is_empty() {
+        return in_slices(&particles.position, &particles.normal, options).await;
+    }
+    let mut whole = Joined::default();
+    for Sheet { rows, border } in Sheet::all(particles) {
+        pause().await;
+        let [position, normal] = [&particles.position, &particles.normal]
+            .map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
+        let joined = join(&position, &normal, &MeshOptions { rim: &border, ..*options }).await;
+        let row = |v: u32| rows[v as usize];
+        whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
+        whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
+        whole.agreed += joined.agreed;
+        whole.rounds = whole.rounds.max(joined.rounds);
+    }
+    whole.counted(particles.len(), &particles.twins).await
+}
+
+async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> Joined {
     assert_eq!(position.len(), normal.len(), "every point has a normal");
     assert!(position.len() < 1 << 31, "indices of points have 31 bits");
     let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
@@ -112,7 +194,7 @@ pub(crate) async fn in_slices(
         let points = JoinablePoints::new(position, normal, &usable).await;
         let stars = Stars::new(&points.tree, &points.normal).await;
         if stars.twins.is_empty() {
-            return points.triangulate(&stars, position.len(), options).await;
+            return points.join(&stars, options).await;
         }
         // They would be neighbours of everything that the first one is a neighbour of.
         for &twin in &stars.twins {
@@ -137,21 +219,30 @@ impl JoinablePoints {
         Self { tree, normal }
     }
 
-    async fn triangulate(
-        &self,
-        stars: &Stars,
-        point_count: usize,
-        options: &MeshOptions<'_>,
-    ) -> Triangulation {
+    /// The edges along which the surface ends, between points that can be joined.
+    fn rim(&self, edges: &[[u32; 2]]) -> Rim {
+        if edges.is_empty() {
+            return Rim::default();
+        }
+        let mut place: Vec<(u32, u32)> = self.tree.origin.iter().copied().zip(0..).collect();
+        place.sort_unstable();
+        let in_tree = |i: u32| place.binary_search_by_key(&i, |&(i, _)| i).ok().map(|k| place[k].1);
+        let edges = edges.iter().filter_map(|&[a, b]| Some([in_tree(a)?, in_tree(b)?]));
+        Rim::new(edges.collect(), self.tree.len())
+    }
+
+    async fn join(&self, stars: &Stars, options: &MeshOptions<'_>) -> Joined {
+        let rim = self.rim(options.rim);
         let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
         let agreed = patch.len();
-        let borders = Borders { largest_hole: options.largest_hole, bounds: options.bounds };
+        let borders = Borders { largest_hole: options.largest_hole, bounds: options.bounds, rim: &rim };
         settle::settle(&mut patch).await;
+        rim.clear(&mut patch).await;
         let rounds = holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
         for range in ranges(self.tree.len(), SLICE) {
             for v in range.start as u32..range.end as u32 {
-                if patch.around(v).next().is_none() {
+                if patch.around(v).next().is_none() && !rim.holds(v) {
                     insert::insert(&mut patch, &self.tree, v, &mut keys);
                     pause().await;
                 }
@@ -161,26 +252,12 @@ impl JoinablePoints {
         holes::unpinch(&mut patch);
         pause().await;
 
-        let origin = &self.tree.origin;
-        let triangles: Vec<[u32; 3]> =
-            patch.triangles().map(|triangle| triangle.map(|v| origin[v as usize])).collect();
+        let origin = |v: u32| self.tree.origin[v as usize];
+        let triangles: Vec<[u32; 3]> = patch.triangles().map(|triangle| triangle.map(origin)).collect();
         pause().await;
-        let topology = Topology::in_slices(&triangles, point_count).await;
-        pause().await;
-        let mut place = vec![u32::MAX; point_count];
-        for (k, &i) in origin.iter().enumerate() {
-            place[i as usize] = k as u32;
-        }
-        pause().await;
-        let unfilled = topology.borders.iter().filter(|border| {
-            let hole: Vec<u32> = border.iter().map(|&v| place[v as usize]).collect();
-            !borders.is_border(&patch, &hole) && !holes::is_open(&patch, &hole)
-        });
-        let unfilled = unfilled.cloned().collect();
-        pause().await;
-        let is_left_out =
-            |&i: &u32| place[i as usize] == u32::MAX || patch.around(place[i as usize]).next().is_none();
-        let left_out = (0..point_count as u32).filter(is_left_out).collect();
-        Triangulation { triangles, topology, unfilled, left_out, agreed, rounds }
+        let mut unfilled = borders.holes(&patch);
+        unfilled.retain(|hole| !borders.is_open(&patch, hole));
+        unfilled.iter_mut().flatten().for_each(|v| *v = origin(*v));
+        Joined { triangles, unfilled, agreed, rounds }
     }
 }

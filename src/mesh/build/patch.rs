@@ -7,7 +7,7 @@ use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
 
 /// No triangle, no list.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 /// A triangle that has been removed.
 const REMOVED: [u32; 3] = [NONE; 3];
 
@@ -179,6 +179,16 @@ impl<'a> Patch<'a> {
         fans
     }
 
+    /// Gives `v` a list of its own, so that it is looked at where holes are searched for.
+    pub(super) fn touch(&mut self, v: u32) {
+        self.list(v);
+    }
+
+    /// Whether the triangle with a number has been removed.
+    pub(super) fn is_removed(&self, id: u32) -> bool {
+        self.triangles[id as usize] == REMOVED
+    }
+
     /// The own list of `v`.
     fn list(&mut self, v: u32) -> &mut Vec<u32> {
         if self.list_of[v as usize] == NONE {
@@ -285,7 +295,7 @@ impl<'a> Patch<'a> {
 }
 
 /// A number in 0 … 4 that grows with the angle of (x, y) from the x axis, a quarter turn a unit.
-fn quarter_turns(x: f32, y: f32) -> f32 {
+pub(super) fn quarter_turns(x: f32, y: f32) -> f32 {
     let size = x.abs() + y.abs();
     let share = if size > 0.0 { y / size } else { 0.0 };
     if x < 0.0 {

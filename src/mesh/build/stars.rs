@@ -104,14 +104,16 @@ impl Stars {
         let reach_sq = reach * reach;
         let has_all = ball.take(surroundings, tree.position[i], reach_sq, i as u32);
         let mut known_sq = if has_all { reach_sq } else { 0.0 };
-        star.make(ball, normal[i], TWIN * TWIN * known_sq);
+        // Of a few points all are known, however far away.
+        let twin_sq = |known_sq: f32| TWIN * TWIN * if known_sq == f32::MAX { reach_sq } else { known_sq };
+        star.make(ball, normal[i], twin_sq(known_sq));
         let mut widest_sq = star.widest_sq(ball);
         if star.count == 0 || known_sq < widest_sq && !star.is_certain(known_sq) {
             known_sq = ball.search(tree, normal, i as u32, widest_sq.sqrt());
-            star.make(ball, normal[i], TWIN * TWIN * known_sq);
+            star.make(ball, normal[i], twin_sq(known_sq));
             widest_sq = star.widest_sq(ball).min(known_sq);
         }
-        if ball.has_earlier_twin(i as u32, TWIN * TWIN * known_sq) {
+        if ball.has_earlier_twin(i as u32, twin_sq(known_sq)) {
             self.twins.push(i as u32);
         }
         let mut is_open = star.count == 0;

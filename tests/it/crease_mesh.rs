@@ -1,0 +1,95 @@
+//! Meshes of surfaces with creases: closed over all patches, with the creases as edges.
+
+use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
+use glam::DVec3;
+use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate_particles};
+use marching_particles::particles::Particles;
+
+/// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number and about this area, with every
+/// segment of a crease as an edge between two patches.
+#[track_caller]
+fn assert_closed(name: &str, solid: &Creased, euler: i64, flatness: f64) {
+    let particles = solid.particles();
+    let mesh = triangulate_particles(&particles, &MeshOptions::default());
+    let told = format!("{name}, {} particles", particles.count());
+    assert!(mesh.left_out.is_empty() && mesh.unfilled.is_empty(), "{told}: {mesh:?}");
+    assert!(mesh.topology.is_closed(), "{told}: {:?}", mesh.topology.borders);
+    assert_eq!((mesh.topology.components.len(), mesh.topology.euler()), (1, euler), "{told}");
+    let area = area(&particles, &mesh);
+    assert!((area / solid.area - 1.0).abs() <= flatness, "{told}: area {area} instead of {}", solid.area);
+    for triangle in &mesh.triangles {
+        let [p, q, r] = triangle.map(|row| particles.place(row as usize));
+        let normal = (q - p).cross(r - p);
+        for row in triangle.map(|row| row as usize) {
+            assert!(normal.dot(particles.normal[row].as_dvec3()) > 0.0, "{told}: {triangle:?} faces inward");
+            assert_eq!(particles.patch[row], particles.patch[triangle[0] as usize], "{told}");
+        }
+    }
+    for &[a, b] in &particles.segments {
+        let sides = mesh.triangles.iter().filter(|triangle| {
+            let first = triangle.map(|row| particles.first_row(row as usize) as u32);
+            first.contains(&a) && first.contains(&b)
+        });
+        let patches: Vec<u32> = sides.map(|triangle| particles.patch[triangle[0] as usize]).collect();
+        assert!(patches.len() == 2 && patches[0] != patches[1], "{told}: patches {patches:?} at a segment");
+    }
+}
+
+fn area(particles: &Particles, mesh: &Triangulation) -> f64 {
+    let of = |triangle: &[u32; 3]| {
+        let [p, q, r]: [DVec3; 3] = triangle.map(|row| particles.place(row as usize));
+        0.5 * (q - p).cross(r - p).length()
+    };
+    mesh.triangles.iter().map(of).sum()
+}
+
+#[test]
+fn a_box_is_closed_with_its_edges() {
+    for spacing in [0.8, 0.31, 0.1] {
+        assert_closed("cube", &cuboid([1.0; 3], spacing), 2, 1e-6);
+        assert_closed("box", &cuboid([2.0, 0.7, 0.33], spacing), 2, 1e-6);
+    }
+    // Thinner than the spacing.
+    assert_closed("plate", &cuboid([2.0, 1.5, 0.02], 0.1), 2, 1e-6);
+}
+
+#[test]
+fn no_triangle_spans_the_outside_of_a_patch() {
+    for spacing in [0.5, 0.17, 0.06] {
+        let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.6], [0.7, 0.6], [0.7, 1.8], [0.0, 1.8]];
+        assert_closed("L", &prism(&[&ell], 0.9, spacing), 2, 1e-6);
+        // The ends of both arms lie in one plane, nearer to each other than the particles are.
+        let slot = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [1.04, 1.0],
+            [1.04, 0.3],
+            [1.0, 0.3],
+            [1.0, 1.0],
+            [0.0, 1.0],
+        ];
+        assert_closed("slot", &prism(&[&slot], 0.5, spacing), 2, 1e-6);
+        let outside = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0]];
+        let hole = [[1.0, 1.0], [1.0, 1.5], [1.5, 1.5], [1.5, 1.0]];
+        assert_closed("frame", &prism(&[&outside, &hole], 0.4, spacing), 0, 1e-6);
+    }
+}
+
+#[test]
+fn a_sharp_wedge_is_closed() {
+    for spacing in [0.3, 0.1, 0.05] {
+        let (sine, cosine) = libm::sincos(10.0_f64.to_radians());
+        assert_closed("wedge", &prism(&[&[[0.0, 0.0], [1.0, 0.0], [cosine, sine]]], 1.0, spacing), 2, 1e-6);
+    }
+}
+
+#[test]
+fn curved_patches_meet_at_their_crease() {
+    for spacing in [0.4, 0.15] {
+        assert_closed("two spheres", &two_spheres(spacing), 2, 0.2 * spacing);
+        assert_closed("drilled cube", &drilled_cube(0.5, spacing), 0, 0.2 * spacing);
+    }
+    // Fewer edges around the hole than a hole that would be filled.
+    assert_closed("pierced cube", &drilled_cube(0.1, 0.1), 0, 0.02);
+}

@@ -1,0 +1,244 @@
+//! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on every patch.
+
+use glam::{DVec2, DVec3, Vec3};
+use marching_particles::particles::{Particles, Slots};
+
+/// A crease: points in order along it, and the patches that meet there.
+pub(crate) struct Crease {
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) patches: [u32; 2],
+}
+
+/// A surface of patches.
+pub(crate) struct Creased {
+    pub(crate) creases: Vec<Crease>,
+    /// Points of each patch that lie on no crease.
+    pub(crate) inner: Vec<(u32, DVec3)>,
+    /// Outward unit normal of a patch.
+    pub(crate) normal: Box<dyn Fn(u32, DVec3) -> DVec3>,
+    pub(crate) area: f64,
+    pub(crate) spacing: f64,
+}
+
+impl Creased {
+    pub(crate) fn particles(&self) -> Particles {
+        // Each particle on a crease, with its patches.
+        let mut places: Vec<(Vec3, Vec<u32>)> = Vec::new();
+        let mut pairs = Vec::new();
+        for Crease { points, patches } in &self.creases {
+            let mut last = None;
+            for point in points {
+                let place = point.as_vec3();
+                let k =
+                    places.iter().position(|(other, _)| other.distance(place) < 1e-5).unwrap_or_else(|| {
+                        places.push((place, Vec::new()));
+                        places.len() - 1
+                    });
+                let new = patches.iter().filter(|&patch| !places[k].1.contains(patch)).copied();
+                let new: Vec<u32> = new.collect();
+                places[k].1.extend(new);
+                pairs.extend(last.replace(k).map(|from| [from, k]));
+            }
+        }
+        let mut particles = Particles::default();
+        let push = |particles: &mut Particles, place: Vec3, patch: u32| {
+            let normal = (self.normal)(patch, place.as_dvec3()).as_vec3();
+            let radius = 0.5 * self.spacing as f32;
+            particles.push(place, normal, radius, Particles::NO_PARENT, 0, Slots::default());
+            particles.patch.truncate(particles.len() - 1);
+            particles.patch.push(patch);
+        };
+        let mut first_of = Vec::new();
+        for (place, patches) in &places {
+            let first = particles.len() as u32;
+            first_of.push(first);
+            for &patch in patches {
+                push(&mut particles, *place, patch);
+                particles.twins.push(first);
+            }
+        }
+        particles.segments = pairs.into_iter().map(|pair| pair.map(|k| first_of[k])).collect();
+        for &(patch, point) in &self.inner {
+            push(&mut particles, point.as_vec3(), patch);
+        }
+        particles
+    }
+}
+
+/// Points along a way, evenly spaced by about `spacing`, both ends included.
+fn along(from: DVec3, to: DVec3, spacing: f64) -> Vec<DVec3> {
+    let count = (from.distance(to) / spacing).round().max(1.0) as u32;
+    (0..=count).map(|k| from.lerp(to, f64::from(k) / f64::from(count))).collect()
+}
+
+/// Points round a circle, the first one repeated at the end.
+fn around(centre: DVec3, x: DVec3, y: DVec3, spacing: f64) -> Vec<DVec3> {
+    let count = (core::f64::consts::TAU * x.length() / spacing).round() as u32;
+    let point = |k: u32| {
+        let angle = core::f64::consts::TAU * f64::from(k % count) / f64::from(count);
+        centre + x * libm::cos(angle) + y * libm::sin(angle)
+    };
+    (0..=count).map(point).collect()
+}
+
+/// A hexagonal lattice on a square around zero of half-width `half`, turned a little, so that it fits no edge.
+fn lattice(half: f64, spacing: f64) -> Vec<DVec2> {
+    let count = (1.5 * half / spacing) as i32 + 2;
+    let turn = DVec2::from_angle(0.2);
+    let mut points = Vec::new();
+    for row in -2 * count..=2 * count {
+        for column in -2 * count..=2 * count {
+            let shift = if row % 2 == 0 { 0.1 } else { 0.6 };
+            let point = DVec2::new(f64::from(column) + shift, f64::from(row) * 0.75_f64.sqrt()) * spacing;
+            points.push(turn.rotate(point));
+        }
+    }
+    points
+}
+
+/// A flat face: the number of its plane, and loops of corners, counter-clockwise seen from outside around the face.
+pub(crate) type Face = (u32, Vec<Vec<DVec3>>);
+
+fn plane_normal(face: &Face) -> DVec3 {
+    let corners = &face.1[0];
+    let area = |k: usize| (corners[k] - corners[0]).cross(corners[(k + 1) % corners.len()] - corners[0]);
+    (0..corners.len()).map(area).sum::<DVec3>().normalize_or_zero()
+}
+
+/// The surface of a solid with flat faces, sampled with a `spacing`.
+pub(crate) fn polyhedron(faces: Vec<Face>, spacing: f64) -> Creased {
+    let mut creases: Vec<(DVec3, DVec3, Crease)> = Vec::new();
+    let (mut inner, mut area) = (Vec::new(), 0.0);
+    for face in &faces {
+        let (patch, loops) = face;
+        let normal = plane_normal(face);
+        let (x, y) = normal.any_orthonormal_pair();
+        let origin = loops[0][0];
+        let flat = |p: DVec3| DVec2::new((p - origin).dot(x), (p - origin).dot(y));
+        let mut sides = Vec::new();
+        for corners in loops {
+            for (k, &a) in corners.iter().enumerate() {
+                let b = corners[(k + 1) % corners.len()];
+                sides.push((flat(a), flat(b)));
+                area += 0.5 * flat(a).perp_dot(flat(b)) * x.cross(y).dot(normal);
+                let other = creases.iter_mut().find(|(from, to, _)| (*from, *to) == (b, a));
+                match other {
+                    Some((_, _, crease)) => crease.patches[1] = *patch,
+                    None => {
+                        creases.push((a, b, Crease { points: along(a, b, spacing), patches: [*patch; 2] }))
+                    }
+                }
+            }
+        }
+        let distance = |p: DVec2, (a, b): (DVec2, DVec2)| {
+            let share = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            p.distance(a.lerp(b, share))
+        };
+        let is_inside = |p: DVec2| {
+            let crosses = |&&(a, b): &&(DVec2, DVec2)| {
+                (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+            };
+            sides.iter().filter(crosses).count() % 2 == 1
+                && sides.iter().all(|&side| distance(p, side) > 0.6 * spacing)
+        };
+        let half = sides.iter().map(|side| side.0.length()).fold(0.0, f64::max);
+        let points = lattice(half, spacing).into_iter().filter(|&p| is_inside(p));
+        inner.extend(points.map(|p| (*patch, origin + x * p.x + y * p.y)));
+    }
+    let normals: Vec<(u32, DVec3)> = faces.iter().map(|face| (face.0, plane_normal(face))).collect();
+    let normal = move |patch: u32, _| {
+        normals.iter().find(|other| other.0 == patch).map_or(DVec3::ZERO, |&(_, normal)| normal)
+    };
+    let creases = creases.into_iter().map(|(_, _, crease)| crease).collect();
+    Creased { creases, inner, normal: Box::new(normal), area, spacing }
+}
+
+/// A prism over an outline, counter-clockwise in the plane, with holes, clockwise. Sides are of one patch if they are of one plane.
+pub(crate) fn prism(loops: &[&[[f64; 2]]], height: f64, spacing: f64) -> Creased {
+    let at = |[x, y]: [f64; 2], z: f64| DVec3::new(x, y, z);
+    let top = loops.iter().map(|outline| outline.iter().map(|&p| at(p, height)).collect()).collect();
+    let bottom = loops.iter().map(|outline| outline.iter().rev().map(|&p| at(p, 0.0)).collect()).collect();
+    let mut faces: Vec<Face> = vec![(7, top), (3, bottom)];
+    let mut planes: Vec<(DVec3, f64)> = Vec::new();
+    for outline in loops {
+        for (k, &a) in outline.iter().enumerate() {
+            let b = outline[(k + 1) % outline.len()];
+            let mut face: Face = (0, vec![vec![at(a, 0.0), at(b, 0.0), at(b, height), at(a, height)]]);
+            let normal = plane_normal(&face);
+            let level = normal.dot(at(a, 0.0));
+            let is_one =
+                |other: &(DVec3, f64)| other.0.distance(normal) < 1e-9 && (other.1 - level).abs() < 1e-9;
+            let number = planes.iter().position(is_one).unwrap_or_else(|| {
+                planes.push((normal, level));
+                planes.len() - 1
+            });
+            face.0 = 10 + number as u32;
+            faces.push(face);
+        }
+    }
+    polyhedron(faces, spacing)
+}
+
+/// A box with a corner at zero.
+pub(crate) fn cuboid(size: [f64; 3], spacing: f64) -> Creased {
+    let [x, y, z] = size;
+    prism(&[&[[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]]], z, spacing)
+}
+
+/// The union of two unit spheres around (0, 0, ±0.5).
+pub(crate) fn two_spheres(spacing: f64) -> Creased {
+    let centre = |patch: u32| DVec3::Z * if patch == 0 { -0.5 } else { 0.5 };
+    let rim = 0.75_f64.sqrt();
+    let points = around(DVec3::ZERO, DVec3::X * rim, DVec3::Y * rim, spacing);
+    // Points of a spiral, each of which stands for the same area.
+    let count = (4.0 * core::f64::consts::PI / (0.75_f64.sqrt() * spacing * spacing)) as u32;
+    let on_sphere = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count);
+        let angle = f64::from(k) * core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+        let r = (1.0 - z * z).sqrt();
+        DVec3::new(r * libm::cos(angle), r * libm::sin(angle), z)
+    };
+    let is_inner = |&(patch, p): &(u32, DVec3)| {
+        let height = if patch == 0 { -p.z } else { p.z };
+        let from_rim = DVec2::new(p.truncate().length() - rim, p.z).length();
+        height > 0.0 && from_rim > 0.6 * spacing
+    };
+    let inner = (0..2).flat_map(|patch| (0..count).map(move |k| (patch, centre(patch) + on_sphere(k))));
+    Creased {
+        creases: vec![Crease { points, patches: [0, 1] }],
+        inner: inner.filter(is_inner).collect(),
+        normal: Box::new(move |patch, p| (p - centre(patch)).normalize_or_zero()),
+        area: 6.0 * core::f64::consts::PI,
+        spacing,
+    }
+}
+
+/// A cube of side 2 around zero with a round hole of a radius along z.
+pub(crate) fn drilled_cube(radius: f64, spacing: f64) -> Creased {
+    const HOLE: u32 = 1;
+    let mut solid = prism(&[&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]], 2.0, spacing);
+    let distance = |p: DVec3| p.truncate().length();
+    solid.inner.retain(|&(patch, p)| patch >= 10 || distance(p) > radius + 0.6 * spacing);
+    let (x, y) = (DVec3::X * radius, DVec3::Y * radius);
+    for (patch, z) in [(3, 0.0), (7, 2.0)] {
+        solid.creases.push(Crease { points: around(DVec3::Z * z, x, y, spacing), patches: [patch, HOLE] });
+    }
+    let count = (core::f64::consts::TAU * radius / spacing).round();
+    let rows = (2.0 / (0.75_f64.sqrt() * spacing)).round();
+    for row in 1..rows as u32 {
+        for column in 0..count as u32 {
+            let shift = f64::from(row % 2) * 0.5;
+            let angle = core::f64::consts::TAU * (f64::from(column) + shift) / count;
+            let p = x * libm::cos(angle) + y * libm::sin(angle) + DVec3::Z * (2.0 * f64::from(row) / rows);
+            solid.inner.push((HOLE, p));
+        }
+    }
+    let flat = solid.normal;
+    solid.normal = Box::new(
+        move |patch, p| {
+            if patch == HOLE { -p.with_z(0.0).normalize_or_zero() } else { flat(patch, p) }
+        },
+    );
+    solid.area += core::f64::consts::PI * radius * (4.0 - 2.0 * radius);
+    solid
+}
