@@ -162,10 +162,23 @@ impl Particles {
         self.twins.get(i).map_or(i, |&first| first as usize)
     }
 
-    /// The patch of row `i`; 0 if the surface has no creases.
+    /// The patch of row `i`; none if the surface has no creases.
     #[must_use]
-    pub fn patch_of(&self, i: usize) -> u32 {
-        self.patch.get(i).copied().unwrap_or(0)
+    pub fn patch_of(&self, i: usize) -> Option<u32> {
+        self.patch.get(i).copied()
+    }
+
+    /// Whether row `i` lies on a patch. Without creases all do.
+    #[must_use]
+    pub(crate) fn is_on(&self, i: usize, patch: Option<u32>) -> bool {
+        self.patch_of(i) == patch
+    }
+
+    /// Puts row `i` on a patch, if the surface has several.
+    pub(crate) fn set_patch(&mut self, i: usize, patch: Option<u32>) {
+        if let Some(patch) = patch {
+            self.patch[i] = patch;
+        }
     }
 
     /// Returns the number of particles, each counted once, however many rows it has.
@@ -184,8 +197,15 @@ impl Particles {
         self.level.push(level);
         self.slots.push(slots);
         if !self.patch.is_empty() {
-            self.patch.push(self.patch_of(parent as usize));
+            self.patch.push(self.patch_of(parent as usize).unwrap_or_default());
         }
+    }
+
+    /// Adds a seed, at level 0, on a patch if the surface has several.
+    pub(crate) fn push_seed(&mut self, position: Vec3, normal: Vec3, radius: f32, patch: Option<u32>) {
+        self.push(position, normal, radius, Self::NO_PARENT, 0, Slots::default());
+        self.patch.truncate(self.len() - 1);
+        self.patch.extend(patch);
     }
 
     /// Keeps the first `len` particles.

@@ -93,6 +93,8 @@ const ROOMS: [Room; 4] = [
             ("sheet", &["probe", "projection", "neighbours"]),
             ("discovery", &["probe", "projection", "sheet"]),
             ("sizing", &["settings", "probe", "discovery"]),
+            // Knows no front: it is where fronts begin.
+            ("constraint", &["probe"]),
             (
                 "front",
                 &["settings", "fates", "probe", "projection", "neighbours", "sheet", "discovery", "sizing"],
@@ -111,6 +113,7 @@ const ROOMS: [Room; 4] = [
                     "attempt",
                     "probe",
                     "sheet",
+                    "constraint",
                     "discovery",
                     "front",
                     "refine",

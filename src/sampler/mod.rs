@@ -6,6 +6,7 @@
 //! the audit and the refinement make memory of their own.
 
 mod attempt;
+mod constraint;
 mod discovery;
 mod fates;
 mod front;
@@ -22,6 +23,7 @@ mod settings;
 pub(crate) mod sheet;
 mod sizing;
 
+pub use constraint::CreaseCounts;
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
@@ -37,6 +39,7 @@ use crate::field::scaled::{Scaled, comfortable_scale, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use attempt::Attempt;
+use constraint::Creases;
 use discovery::precision;
 use discovery::search::ComponentSearch;
 use discovery::survey::{Absence, Survey, survey};
@@ -68,6 +71,7 @@ pub struct Sampler {
     settings: Settings,
     bounds: Bounds,
     survey: Survey,
+    creases: Creases,
     attempt: Attempt,
     phase: PhaseState,
     components: ComponentSearch,
@@ -181,6 +185,13 @@ impl Sampler {
         self.components.open_questions().map(|_| discovery::singular::places(self.components.singular()))
     }
 
+    /// Numbers of the creases and corners that were found. They are searched: bounds leave no place for others but within a hundredth
+    /// of the box's diagonal of a crease of the same two patches.
+    #[must_use]
+    pub fn creases(&self) -> CreaseCounts {
+        self.creases.counts()
+    }
+
     /// The scale at which the field of the last start is evaluated in double precision, if it is.
     pub(crate) fn double(&self) -> Option<f64> {
         self.survey.double
@@ -288,6 +299,7 @@ impl Sampler {
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
+            self.creases = Creases::find(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds);
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,

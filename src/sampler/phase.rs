@@ -52,6 +52,7 @@ pub enum StopReason {
 /// | Phase | Event | Next phase |
 /// |---|---|---|
 /// | any | a run starts | `Seeding` |
+/// | `Seeding` | particles were placed on creases | `Generation` |
 /// | `Seeding` | a survey point is not covered | `Generation` |
 /// | `Seeding` | all survey points are covered | `Search` |
 /// | `Generation` | the front has closed | `Seeding`; `Search` if the seed was a witness or the limit is reached |
@@ -119,6 +120,8 @@ impl PhaseState {
 /// The order in which the survey's points are tried as seeds: one chosen at random, then the others in grid order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurveyCursor {
+    /// Whether the particles on creases have been placed, which come before all seeds.
+    pub(super) has_creases: bool,
     first: usize,
     tried: usize,
     count: usize,
@@ -128,7 +131,7 @@ impl SurveyCursor {
     /// Starts with one of the `count` points, chosen by the number `random`.
     pub(super) fn new(count: usize, random: u64) -> Self {
         let first = if count == 0 { 0 } else { (random % count as u64) as usize };
-        Self { first, tried: 0, count }
+        Self { has_creases: false, first, tried: 0, count }
     }
 }
 

@@ -14,6 +14,8 @@ pub(crate) struct ProbeMemory {
     pub(super) gradient: Vec<Vec3>,
     /// Number of field evaluations so far, one for each point and call.
     pub(crate) evaluations: u64,
+    /// The branch that the field evaluates; none if it is f.
+    selected: Option<u32>,
 }
 
 /// A field with the memory to evaluate it at a batch of points, and the count of these evaluations.
@@ -33,6 +35,19 @@ impl<'a> Probe<'a> {
     /// Number of field evaluations so far, one for each point and call.
     pub(crate) fn evaluations(&self) -> u64 {
         self.memory.evaluations
+    }
+
+    /// Makes all evaluations those of a branch of f, or of f.
+    pub(crate) fn select(&mut self, branch: Option<u32>) {
+        if self.memory.selected != branch {
+            self.memory.selected = branch;
+            self.field.select_branch(branch);
+        }
+    }
+
+    /// Whether a point lies on a patch; a surface without creases has none, and every point does.
+    pub(crate) fn is_on_patch(&mut self, point: Vec3, patch: Option<u32>) -> bool {
+        patch.is_none_or(|patch| self.field.branch_at(point.as_dvec3()) == patch)
     }
 
     /// Counts evaluations that were made of the field directly.

@@ -145,7 +145,7 @@ impl Probe<'_> {
         let mut unsettled_count = 0;
         let mut count = circles.len();
         while count > 0 {
-            let ProbeMemory { points, value, gradient, evaluations } = &mut *self.memory;
+            let ProbeMemory { points, value, gradient, evaluations, .. } = &mut *self.memory;
             points.clear();
             points.extend(active[..count].iter().map(|a| circles[a.circle as usize].point(a.turn)));
             *evaluations += count as u64;

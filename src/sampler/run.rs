@@ -1,6 +1,7 @@
 //! The state machine of a run: the work of every phase, and the transitions between them.
 
 use super::Sampler;
+use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::discovery::audit::holds_any;
@@ -13,6 +14,7 @@ use crate::sampler::refine::{self, Components, Next, Refusal, SurfaceFacts};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
+use glam::Vec3;
 use rand_core::{Rng, SeedableRng};
 
 /// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
@@ -79,7 +81,9 @@ impl Sampler {
             },
             RunInput::Work { field, left } => {
                 let mut memory = core::mem::take(&mut self.tools.memory);
-                let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
+                let probe = &mut Probe::new(field, &mut memory);
+                let next = self.work(probe, left, phase);
+                probe.select(None);
                 self.tools.memory = memory;
                 next
             }
@@ -139,6 +143,13 @@ impl Sampler {
             let seed = OrientedPoint::of(known, 0);
             return self.begin_front(probe, seed, None).unwrap_or(PhaseState::Search);
         }
+        if !cursor.has_creases {
+            cursor.has_creases = true;
+            if self.creases.are_there() {
+                self.begin_at_creases(probe);
+                return PhaseState::Generation(Some(cursor));
+            }
+        }
         while *left > 0 {
             if self.has_too_many_lone_seeds() {
                 return PhaseState::Search;
@@ -147,7 +158,10 @@ impl Sampler {
             *left -= 1;
             let point = OrientedPoint { position: self.survey.position[i], normal: self.survey.normal[i] };
             let start = probe.evaluations();
-            let is_seed = !self.tools.front.active_mut().is_covered(probe, &self.output.particles, point)
+            let patch = self.patch_at(probe, point.position);
+            probe.select(patch);
+            let front = self.tools.front.active_mut();
+            let is_seed = !front.is_covered(probe, &self.output.particles, point, patch)
                 && self.survey.is_zero(probe, i);
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
@@ -155,6 +169,28 @@ impl Sampler {
             }
         }
         PhaseState::Seeding(cursor)
+    }
+
+    /// The patch of a point; none if the surface has no creases.
+    fn patch_at(&self, probe: &mut Probe, point: Vec3) -> Option<u32> {
+        self.creases.are_there().then(|| probe.field.branch_at(point.as_dvec3()))
+    }
+
+    /// Places particles on the creases and starts fronts from them.
+    fn begin_at_creases(&mut self, probe: &mut Probe) {
+        let before = probe.evaluations();
+        let uniform = self.attempt.front_radius() as f32;
+        let sizing = self.attempt.sizing.as_ref();
+        let filled = self.creases.fill(probe, |probe, place| {
+            sizing.map_or(uniform, |sizing| {
+                let mut curvature = [Curvature::default()];
+                curvatures(probe.field, &[place], &mut curvature);
+                sizing.radius(place, &curvature[0])
+            })
+        });
+        let along = filled.add_rows(probe, &mut self.output.particles);
+        self.counts.seeding_evaluations += probe.evaluations() - before;
+        self.with_front(probe, |front, context| front.add_creases(context, &along));
     }
 
     /// Starts a front, after which the seeding goes on from the cursor. Where the limit on particles is reached the search is
@@ -169,7 +205,9 @@ impl Sampler {
             self.tools.front.active_mut().level_mut().capped = true;
             return Some(PhaseState::Search);
         }
-        let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed));
+        let patch = self.patch_at(probe, seed.position);
+        probe.select(patch);
+        let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed, patch));
         is_started.then(|| {
             self.counts.seeds += u32::from(self.tools.coarse.known().is_none());
             PhaseState::Generation(after)
@@ -278,7 +316,8 @@ impl Sampler {
             };
             let rule = self.tools.front.active().rule();
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
-            let near = self.tools.front.active_mut().list_cover(&self.output.particles, point);
+            let patch = self.patch_at(probe, point.position);
+            let near = self.tools.front.active_mut().list_cover(&self.output.particles, point, patch);
             let start = probe.evaluations();
             let is_covered =
                 self.components.is_covered(probe, &self.output.particles, seed, &near, tolerance, rule);
@@ -317,7 +356,7 @@ impl Sampler {
 
     /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
     fn end_generation(&mut self, probe: &mut Probe) -> PhaseState {
-        let count = self.output.particles.len();
+        let count = self.output.particles.count();
         if count == 0 {
             return self.begin_audit(match self.survey.absence {
                 Absence::Constant => StopReason::Constant,

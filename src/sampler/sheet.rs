@@ -273,14 +273,16 @@ fn is_one_sheet_between(
     false
 }
 
-/// Returns a number for each particle, equal for those of one front, and of fronts that meet: that have two neighbours whose lift
-/// is at most `largest_lift`.
+/// Returns a number for each particle, equal for those of one front, and of fronts that meet on one patch: that have two neighbours
+/// whose lift is at most `largest_lift`.
 pub(crate) fn numbers(largest_lift: f32, particles: &Particles, neighbours: &PackedNeighbours) -> Vec<u32> {
     let mut number = particles.fronts();
     let mut met = Forest::new(number.len());
     let near = (0..neighbours.len()).flat_map(|i| neighbours.near(i).map(move |j| (i, j)));
     let far = neighbours.far().iter().map(|&[i, j]| (i as usize, j as usize));
-    for (i, j) in near.chain(far).filter(|&(i, j)| number[i] != number[j]) {
+    let is_joinable =
+        |&(i, j): &(usize, usize)| number[i] != number[j] && particles.patch_of(i) == particles.patch_of(j);
+    for (i, j) in near.chain(far).filter(is_joinable) {
         let one = OrientedPoint::of(particles, i);
         let pair = one.pair(particles.position[j] - one.position, particles.normal[j]);
         if pair.faces_one_way() && pair.lift() <= largest_lift {

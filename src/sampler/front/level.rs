@@ -167,8 +167,8 @@ pub(crate) trait LevelFront {
     /// Drops the parents and the provisional children.
     fn clear_level(&mut self);
 
-    /// Adds a seed, between two levels. Says whether it could: an adaptive one needs a curvature.
-    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool;
+    /// Adds a seed on a patch, between two levels. Says whether it could: an adaptive one needs a curvature.
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint, patch: Option<u32>) -> bool;
 
     /// Whether the last particle, a seed that stayed alone, touches another one of whatever sheet.
     fn is_seed_crowded(&mut self, particles: &Particles) -> bool;
@@ -176,11 +176,20 @@ pub(crate) trait LevelFront {
     /// Forgets the last seed, which has the index `seed`.
     fn forget_seed(&mut self, seed: usize);
 
+    /// Takes in the rows of the particles on creases, which are the only ones so far: they are the parents of the first level. Each has
+    /// a direction along its crease in `along`.
+    fn add_creases(&mut self, context: &mut FrontContext, along: &[Vec3]);
+
     /// The particles within a distance of a place, of whatever sheet.
     fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour];
 
-    /// Collects the particles that face the same way as a `point` and are so near that no front need start there.
-    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour>;
+    /// Collects the particles on the patch of a `point` that face the same way and are so near that no front need start there.
+    fn gather_cover(
+        &mut self,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> &mut Vec<Neighbour>;
 
     /// Goes on to the gaps, once the surface is covered; false if there is none to fill.
     fn begin_filling(&mut self) -> bool;
@@ -206,7 +215,10 @@ pub(crate) trait LevelFront {
             let &FrontLevel { stage, next, .. } = self.level();
             let count = match stage {
                 LevelStage::Place => (self.parents() - next).min(1),
-                LevelStage::Project => (self.children() - next).min(BATCH).min(budget as usize),
+                LevelStage::Project => {
+                    let most = (self.children() - next).min(BATCH).min(budget as usize);
+                    self.on_one_patch(context.particles, next, most)
+                }
                 LevelStage::Settle => (self.children() - next).min(1),
             };
             if count == 0 {
@@ -222,6 +234,14 @@ pub(crate) trait LevelFront {
             budget -= count as u32;
         }
         budget
+    }
+
+    /// Number of children from child `first` on, `most` at most, that lie on one patch.
+    fn on_one_patch(&self, particles: &Particles, first: usize, most: usize) -> usize {
+        let first = self.level().first_child + first;
+        let patch = particles.patch_of(first);
+        let is_on = |&k: &usize| particles.is_on(first + k, patch);
+        if patch.is_none() { most } else { (0..most).take_while(is_on).count() }
     }
 
     /// Goes on to the next stage, or to the next level.
@@ -250,7 +270,8 @@ pub(crate) trait LevelFront {
 
     /// Whether the last seed stayed alone beside another particle: it is the far side of something too small for the radius.
     fn has_lone_seed(&mut self, particles: &Particles) -> bool {
-        let is_lone = particles.parent.last() == Some(&Particles::NO_PARENT);
+        let is_seed = particles.parent.last() == Some(&Particles::NO_PARENT);
+        let is_lone = is_seed && particles.len() > particles.twins.len();
         is_lone && self.is_seed_crowded(particles)
     }
 
@@ -267,17 +288,23 @@ pub(crate) trait LevelFront {
         context.neighbours.truncate(last);
     }
 
-    /// Whether a particle of the sheet of a `point` is so near that no front need start there.
-    fn is_covered(&mut self, probe: &mut Probe, particles: &Particles, point: OrientedPoint) -> bool {
+    /// Whether a particle of the sheet of a `point` is so near that no front need start there. `patch` is that of the point.
+    fn is_covered(
+        &mut self,
+        probe: &mut Probe,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> bool {
         let rule = self.rule();
-        let found = self.gather_cover(particles, point);
+        let found = self.gather_cover(particles, point, patch);
         let spacing = |j: usize| 2.0 * particles.radius[j];
         rule.is_near_own(probe, particles, point, found, spacing)
     }
 
     /// The particles that [`Self::gather_cover`] finds around a `point`, the nearest first.
-    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint) -> Vec<u32> {
-        let found = self.gather_cover(particles, point);
+    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint, patch: Option<u32>) -> Vec<u32> {
+        let found = self.gather_cover(particles, point, patch);
         sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
         found.iter().map(|found| found.index).collect()
     }
@@ -297,17 +324,18 @@ pub(crate) struct SlotFrame {
 }
 
 impl SlotFrame {
-    /// The frame of a particle.
-    pub(crate) fn of(particles: &Particles, particle: usize) -> Self {
+    /// The frame of a particle. That of one on a crease has its first axis in the direction in `along`, which has an entry for each of
+    /// them.
+    pub(crate) fn of(particles: &Particles, particle: usize, along: &[Vec3]) -> Self {
         let (p, n) = (particles.position[particle], particles.normal[particle]);
         let parent = particles.parent[particle];
         let is_seed = parent == Particles::NO_PARENT;
         let towards = if is_seed {
-            Vec3::ZERO
+            along.get(particle).copied().unwrap_or(Vec3::ZERO)
         } else {
-            let towards = particles.position[parent as usize] - p;
-            (towards - n * towards.dot(n)).normalize_or_zero()
+            particles.position[parent as usize] - p
         };
+        let towards = (towards - n * towards.dot(n)).normalize_or_zero();
         let (u, w) = if towards == Vec3::ZERO { tangent_frame(n) } else { (towards, n.cross(towards)) };
         Self { n, u, w, is_seed }
     }

@@ -36,7 +36,7 @@ use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ResidualLimits, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
 use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
-use crate::sampler::relaxation::stepper::{Stepper, batches};
+use crate::sampler::relaxation::stepper::{Stepper, batch};
 use crate::sampler::sheet;
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
@@ -154,7 +154,7 @@ impl Relaxation {
         let sheets = if limits.largest_lift < f32::INFINITY {
             sheet::numbers(limits.largest_lift, particles, pairs)
         } else {
-            Vec::new()
+            particles.patch.clone()
         };
         let particles = particles.len();
         self.law = law;
@@ -329,7 +329,11 @@ impl Relaxation {
     ) {
         let Self { stage, lists, stepper, .. } = self;
         let mut landing = LandingBatch::new();
-        for range in batches(range) {
+        let mut next = range.start;
+        while next < range.end {
+            let range = batch(next..range.end, &particles.patch);
+            next = range.end;
+            probe.select(particles.patch_of(range.start));
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
             // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
             // sheet a short correction may lead far away.

@@ -167,7 +167,7 @@ impl Stepper {
     /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
     /// normals and radii there.
     ///
-    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, at a fold, across
+    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the box or of its patch, where the field ends, at a fold, across
     /// which its normal would turn by more than 90°, and where only another sheet is near.
     pub(super) fn land<L: Repulsion>(
         &mut self,
@@ -194,7 +194,13 @@ impl Stepper {
         for (k, i) in range.enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
             let cosine = normal.dot(particles.normal[i]);
-            if landing.ok[k] && self.limits.bounds.contains(position) && cosine > 0.0 {
+            let is_free = i >= particles.twins.len();
+            if landing.ok[k]
+                && is_free
+                && self.limits.bounds.contains(position)
+                && cosine > 0.0
+                && probe.is_on_patch(position, particles.patch_of(i))
+            {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
                 let per_turn = 0.5 * L::SKIN / STALE_TURN * law.radius(particles, i);
@@ -279,8 +285,9 @@ fn add_travel<L: Repulsion>(
     lists.add_travel(i, distance, more, 0.5 * L::SKIN * law.radius(particles, i));
 }
 
-/// Splits a range of particles where one batch of the projection ends and the next begins.
-pub(super) fn batches(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    (range.start / BATCH..range.end.div_ceil(BATCH))
-        .map(move |batch| range.start.max(batch * BATCH)..range.end.min((batch + 1) * BATCH))
+/// The first part of a range of particles, up to where a batch of the projection ends or the `patch` changes.
+pub(super) fn batch(range: Range<usize>, patch: &[u32]) -> Range<usize> {
+    let last = range.end.min((range.start / BATCH + 1) * BATCH);
+    let is_other = |&i: &usize| patch.get(i) != patch.get(range.start);
+    range.start..(range.start..last).find(is_other).unwrap_or(last)
 }

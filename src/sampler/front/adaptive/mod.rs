@@ -16,7 +16,7 @@ mod placement;
 mod prediction;
 mod vicinity;
 
-use crate::particles::{Particles, SlotFate, Slots};
+use crate::particles::{Particles, SlotFate};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
 use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shape_in};
@@ -112,6 +112,8 @@ pub(crate) struct AdaptiveFront {
     /// Rounds of filling so far, and particles placed in them.
     fills: u32,
     filled: u64,
+    /// Direction along the crease for each row of a particle on one.
+    along: Vec<Vec3>,
 }
 
 impl AdaptiveFront {
@@ -125,7 +127,7 @@ impl AdaptiveFront {
         let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
         let room = clearance - moved - self.children.drift - self.rules.match_tolerance * grown;
         let is_clear = room > 0.0;
-        if !is_clear && self.collides(probe, particles, &spot) {
+        if !is_clear && self.collides(probe, particles, &spot, particles.patch_of(provisional)) {
             self.parents.note_seam(parent);
             return SlotFate::Matched;
         }
@@ -143,13 +145,20 @@ impl AdaptiveFront {
         particles.radius[index] = spot.radius;
         particles.parent[index] = particles.parent[provisional];
         particles.level[index] = particles.level[provisional];
+        particles.set_patch(index, particles.patch_of(provisional));
         self.level.settled += 1;
         self.filled += u64::from(self.fills > 0);
         SlotFate::Added
     }
 
-    /// Whether a settled particle of the same sheet is nearer than the match tolerance allows.
-    fn collides(&mut self, probe: &mut Probe, particles: &Particles, spot: &SurfacePoint) -> bool {
+    /// Whether a settled particle of the same sheet is nearer to a place on a patch than the match tolerance allows.
+    fn collides(
+        &mut self,
+        probe: &mut Probe,
+        particles: &Particles,
+        spot: &SurfacePoint,
+        patch: Option<u32>,
+    ) -> bool {
         let sheets = self.rules.sheets;
         let share = self.rules.match_tolerance;
         self.grids.gather(spot.position, |largest| share * (spot.radius + largest), &mut self.found);
@@ -160,6 +169,7 @@ impl AdaptiveFront {
             let limit = share * both;
             let pair = PointPair { offset: near.offset, normal: spot.normal, other: particles.normal[j] };
             j < settled
+                && particles.is_on(j, patch)
                 && near.distance_sq <= limit * limit
                 && is_level(pair, near.distance_sq, limit)
                 && (!sheets.is_fine() || is_on_sheet(sheets, probe, spot.position, pair))
@@ -206,6 +216,7 @@ impl LevelFront for AdaptiveFront {
         self.growth = 0.0;
         self.grids.reset(radii, self.rules.reach);
         (self.fills, self.filled) = (0, 0);
+        self.along.clear();
     }
 
     fn release(&mut self) {
@@ -237,7 +248,12 @@ impl LevelFront for AdaptiveFront {
         let radius = particles.radius[parent];
         let reach = self.rules.reach * radius;
         let mut found = core::mem::take(&mut self.found);
+        let patch = particles.patch_of(parent);
+        context.probe.select(patch);
         self.grids.gather(particles.position[parent], |_| reach, &mut found);
+        if patch.is_some() {
+            found.retain(|near| particles.is_on(near.index as usize, patch));
+        }
         let is_fine = self.rules.sheets.is_fine();
         if is_fine {
             self.drop_strangers(context, parent, &mut found);
@@ -249,7 +265,7 @@ impl LevelFront for AdaptiveFront {
         let alone_on_sheet =
             self.around.read(&found, lists, particles, parent, &self.rules, self.level.settled) && !is_fine;
 
-        let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent);
+        let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent, &self.along);
         let inherited = Vec2::new(local.slope.dot(u), local.slope.dot(w));
         let slope = self.around.ring.slope(u, w, radius, inherited);
         let frame = ParentFrame { radius, u, w, n, shape: shape_in(&local.curvature, u, w), slope };
@@ -263,6 +279,7 @@ impl LevelFront for AdaptiveFront {
     }
 
     fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>) {
+        context.probe.select(context.particles.patch_of(self.level.first_child + children.start));
         let ProvisionalChildren { list, landings, drift, problems, solutions } = &mut self.children;
         problems.clear();
         problems.extend(list[children.clone()].iter().map(|child| child.proposal));
@@ -289,11 +306,19 @@ impl LevelFront for AdaptiveFront {
 
     fn settle_child(&mut self, context: &mut FrontContext, child: usize) {
         let AdaptiveChild { slot, handle, .. } = self.children.list[child];
-        let parent = context.particles.parent[self.level.first_child + child];
+        let provisional = self.level.first_child + child;
+        let (parent, patch) =
+            (context.particles.parent[provisional], context.particles.patch_of(provisional));
+        context.probe.select(patch);
         let fate = match self.children.landings[child] {
             DirectLanding::NotConverged => SlotFate::NotConverged,
             DirectLanding::Undefined => SlotFate::Undefined,
-            DirectLanding::On(spot) if !self.level.bounds.contains(spot.position) => SlotFate::Outside,
+            DirectLanding::On(spot)
+                if !self.level.bounds.contains(spot.position)
+                    || !context.probe.is_on_patch(spot.position, patch) =>
+            {
+                SlotFate::Outside
+            }
             DirectLanding::On(spot) => self.settle_at(context, child, spot),
         };
         if fate != SlotFate::Added {
@@ -315,7 +340,7 @@ impl LevelFront for AdaptiveFront {
         self.growth = 0.0;
     }
 
-    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool {
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint, patch: Option<u32>) -> bool {
         let OrientedPoint { position, normal } = seed;
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let sizing = context.sizing();
@@ -325,11 +350,24 @@ impl LevelFront for AdaptiveFront {
         }
         let index = context.particles.len();
         self.seed = self.grids.insert(position, spot.radius, index as u32);
-        context.particles.push(position, normal, spot.radius, Particles::NO_PARENT, 0, Slots::default());
+        context.particles.push_seed(position, normal, spot.radius, patch);
         self.parents.add(index as u32, LocalShape { curvature: spot.curvature, slope: Vec3::ZERO });
         self.level.settled = index + 1;
         self.level.begin();
         true
+    }
+
+    fn add_creases(&mut self, context: &mut FrontContext, along: &[Vec3]) {
+        self.along.extend_from_slice(along);
+        let sizing = context.sizing();
+        for i in 0..context.particles.len() {
+            context.probe.select(context.particles.patch_of(i));
+            let spot = self.solver.look(context.probe, sizing, context.particles.position[i]);
+            self.grids.insert(context.particles.position[i], context.particles.radius[i], i as u32);
+            self.parents.add(i as u32, LocalShape { curvature: spot.curvature, slope: Vec3::ZERO });
+        }
+        self.level.settled = context.particles.len();
+        self.level.begin();
     }
 
     fn is_seed_crowded(&mut self, particles: &Particles) -> bool {
@@ -352,12 +390,19 @@ impl LevelFront for AdaptiveFront {
         &self.found
     }
 
-    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour> {
+    fn gather_cover(
+        &mut self,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> &mut Vec<Neighbour> {
         self.grids.gather(point.position, |largest| UNCOVERED * largest, &mut self.found);
         self.found.retain(|near| {
             let j = near.index as usize;
             let reach = UNCOVERED * particles.radius[j];
-            particles.normal[j].dot(point.normal) > 0.0 && near.distance_sq <= reach * reach
+            particles.is_on(j, patch)
+                && particles.normal[j].dot(point.normal) > 0.0
+                && near.distance_sq <= reach * reach
         });
         &mut self.found
     }

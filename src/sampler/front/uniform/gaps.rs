@@ -70,9 +70,10 @@ impl UniformFront {
     /// Fills the widest gap beside particle `i`, if a particle has room there.
     fn fill_beside(&mut self, context: &mut FrontContext, i: usize) {
         let FrontContext { probe, neighbours, particles, .. } = context;
-        let (p, n) = (particles.position[i], particles.normal[i]);
+        let (p, n, patch) = (particles.position[i], particles.normal[i], particles.patch_of(i));
+        probe.select(patch);
         let spacing = 2.0 * self.radius;
-        self.grid.gather(p, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius, &mut self.found);
+        self.gather(particles, patch, p, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius);
         // The neighbours of the sheet are mapped to the tangent plane: they keep their direction there and their distance in
         // space. The unit is 2r.
         let (u, w) = tangent_frame(n);
@@ -95,10 +96,11 @@ impl UniformFront {
         let landing = &mut self.children.solutions;
         probe.land_on_circles(&[circle], self.tolerance, landing);
         let CircleLanding::On { position, normal } = landing[0] else { return };
-        if !self.level.bounds.contains(position) || normal.dot(n) <= 0.0 {
+        let is_inside = self.level.bounds.contains(position) && probe.is_on_patch(position, patch);
+        if !is_inside || normal.dot(n) <= 0.0 {
             return;
         }
-        self.grid.gather(position, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius, &mut self.found);
+        self.gather(particles, patch, position, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius);
         let same_sheet = |near: &&Neighbour| particles.normal[near.index as usize].dot(normal) > 0.0;
         let clear = GAP * spacing;
         if self.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {

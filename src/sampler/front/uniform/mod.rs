@@ -15,7 +15,7 @@ mod gaps;
 mod surroundings;
 
 use crate::field::Field;
-use crate::particles::{Particles, SlotFate, Slots};
+use crate::particles::{Particles, SlotFate};
 use crate::sampler::front::level::{
     FrontContext, FrontLevel, FrontSetup, LevelFront, ProvisionalChildren, SlotFrame, initial_slots,
 };
@@ -80,6 +80,8 @@ pub(crate) struct UniformFront {
     found: Vec<Neighbour>,
     around: Surroundings,
     gaps: SeamPass,
+    /// Direction along the crease for each row of a particle on one.
+    along: Vec<Vec3>,
 }
 
 impl UniformFront {
@@ -97,6 +99,14 @@ impl UniformFront {
     /// and its neighbours may move when they are projected.
     fn known_reach(&self) -> f32 {
         self.match_radius + DRIFT_ROOM * self.radius
+    }
+
+    /// Finds the particles of a patch within a distance of a place.
+    fn gather(&mut self, particles: &Particles, patch: Option<u32>, place: Vec3, distance: f32) {
+        self.grid.gather(place, distance, &mut self.found);
+        if patch.is_some() {
+            self.found.retain(|near| particles.is_on(near.index as usize, patch));
+        }
     }
 
     /// Predicts the child of a parent in the direction (cos, sin) of its frame, on the circle of radius 2r around it.
@@ -177,9 +187,15 @@ impl UniformFront {
         }
     }
 
-    /// Whether a final particle of the same sheet is within the match radius.
-    fn collides(&mut self, probe: &mut Probe, particles: &Particles, point: OrientedPoint) -> bool {
-        self.grid.gather(point.position, self.match_radius, &mut self.found);
+    /// Whether a final particle of the same sheet is within the match radius of a point on a patch.
+    fn collides(
+        &mut self,
+        probe: &mut Probe,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> bool {
+        self.gather(particles, patch, point.position, self.match_radius);
         self.found.retain(|near| {
             let pair = point.pair(near.offset, particles.normal[near.index as usize]);
             (near.index as usize) < self.level.settled
@@ -207,6 +223,7 @@ impl LevelFront for UniformFront {
         self.grid.reserve(setup.expected);
         self.grid.reset(CELL_PER_REACH * self.reach());
         self.gaps.clear();
+        self.along.clear();
     }
 
     fn release(&mut self) {
@@ -234,15 +251,17 @@ impl LevelFront for UniformFront {
         let parent = self.parents.start + parent;
         let FrontContext { probe, neighbours, particles, .. } = context;
         let (p, level) = (particles.position[parent], particles.level[parent] + 1);
+        let patch = particles.patch_of(parent);
+        probe.select(patch);
+        self.gather(particles, patch, p, self.reach());
         let mut found = core::mem::take(&mut self.found);
-        self.grid.gather(p, self.reach(), &mut found);
         let is_doubtful = self.read_surroundings(&found, neighbours, particles, parent);
         if is_doubtful {
             self.drop_strangers(probe, particles, parent, &mut found);
         }
         self.found = found;
 
-        let frame = SlotFrame::of(particles, parent);
+        let frame = SlotFrame::of(particles, parent, &self.along);
         let &SlotFrame { n, u, w, is_seed } = &frame;
         let form = if is_seed {
             second_form_at(probe.field, p, u, w)
@@ -286,6 +305,7 @@ impl LevelFront for UniformFront {
 
     fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>) {
         let FrontContext { probe, particles, .. } = context;
+        probe.select(particles.patch_of(self.level.first_child + children.start));
         let ProvisionalChildren { list, landings, drift, problems, solutions } = &mut self.children;
         problems.clear();
         problems.extend(list[children.clone()].iter().map(|child| child.circle));
@@ -326,16 +346,22 @@ impl LevelFront for UniformFront {
         let UniformChild { slot, handle, clearance, .. } = self.children.list[child];
         let provisional = self.level.first_child + child;
         let parent = particles.parent[provisional] as usize;
+        let patch = particles.patch_of(provisional);
+        probe.select(patch);
         let fate = match self.children.landings[child] {
             CircleLanding::NotConverged => SlotFate::NotConverged,
             CircleLanding::Undefined => SlotFate::Undefined,
-            CircleLanding::On { position, .. } if !self.level.bounds.contains(position) => SlotFate::Outside,
+            CircleLanding::On { position, .. }
+                if !self.level.bounds.contains(position) || !probe.is_on_patch(position, patch) =>
+            {
+                SlotFate::Outside
+            }
             CircleLanding::On { position, normal } => {
                 let moved = (position - particles.position[provisional]).length();
                 // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all
                 // sheets, because the final normal may belong to another sheet than the provisional one.
                 let is_clear = clearance - moved - self.children.drift > self.match_radius;
-                if !is_clear && self.collides(probe, particles, OrientedPoint { position, normal }) {
+                if !is_clear && self.collides(probe, particles, OrientedPoint { position, normal }, patch) {
                     SlotFate::Matched
                 } else {
                     let index = self.level.settled;
@@ -343,6 +369,7 @@ impl LevelFront for UniformFront {
                     particles.position[index] = position;
                     particles.normal[index] = normal;
                     particles.parent[index] = parent as u32;
+                    particles.set_patch(index, patch);
                     self.level.settled += 1;
                     SlotFate::Added
                 }
@@ -365,16 +392,26 @@ impl LevelFront for UniformFront {
         self.children.clear();
     }
 
-    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool {
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint, patch: Option<u32>) -> bool {
         let OrientedPoint { position, normal } = seed;
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let index = context.particles.len();
         self.seed = self.grid.insert(position, index as u32);
-        context.particles.push(position, normal, self.radius, Particles::NO_PARENT, 0, Slots::default());
+        context.particles.push_seed(position, normal, self.radius, patch);
         self.parents = index..index + 1;
         self.level.settled = index + 1;
         self.level.begin();
         true
+    }
+
+    fn add_creases(&mut self, context: &mut FrontContext, along: &[Vec3]) {
+        self.along.extend_from_slice(along);
+        for (&position, i) in context.particles.position.iter().zip(0..) {
+            self.grid.insert(position, i);
+        }
+        self.level.settled = context.particles.len();
+        self.parents = 0..self.level.settled;
+        self.level.begin();
     }
 
     fn is_seed_crowded(&mut self, particles: &Particles) -> bool {
@@ -393,8 +430,13 @@ impl LevelFront for UniformFront {
         &self.found
     }
 
-    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour> {
-        self.grid.gather(point.position, UNCOVERED * self.radius, &mut self.found);
+    fn gather_cover(
+        &mut self,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> &mut Vec<Neighbour> {
+        self.gather(particles, patch, point.position, UNCOVERED * self.radius);
         self.found.retain(|near| particles.normal[near.index as usize].dot(point.normal) > 0.0);
         &mut self.found
     }

@@ -1,0 +1,150 @@
+//! Particles on corners and along creases.
+
+use super::meeting::{FADED, Meeting};
+use super::{Crease, Creases};
+use crate::particles::Particles;
+use crate::sampler::probe::Probe;
+use glam::{DVec3, Vec3};
+
+/// A particle on a crease or a corner.
+#[derive(Clone, Debug)]
+pub(in super::super) struct CreaseParticle {
+    pub(in super::super) position: Vec3,
+    /// Half the distance to the next ones along the crease.
+    pub(in super::super) radius: f32,
+    /// Unit vector along the crease, or along one of those that meet at the corner.
+    pub(in super::super) tangent: Vec3,
+    /// The patches that meet there.
+    pub(in super::super) patches: Vec<u32>,
+}
+
+/// The particles on creases, and the pairs of them that follow each other along one.
+#[derive(Clone, Debug, Default)]
+pub(in super::super) struct CreaseParticles {
+    pub(in super::super) list: Vec<CreaseParticle>,
+    pub(in super::super) segments: Vec<[u32; 2]>,
+}
+
+/// A point of a curve, as it is filled.
+#[derive(Clone, Copy, Debug)]
+struct CurvePoint {
+    position: DVec3,
+    /// Wanted radius of a particle.
+    radius: f64,
+    /// Number of particles that fit between the start and this point.
+    room: f64,
+}
+
+impl Creases {
+    /// Fills corners and curves with particles, whose radius at a point of a patch is that of `radius`: on each curve as many as come
+    /// nearest to it.
+    pub(in super::super) fn fill(
+        &self,
+        probe: &mut Probe,
+        mut radius: impl FnMut(&mut Probe, Vec3) -> f32,
+    ) -> CreaseParticles {
+        let mut least = |probe: &mut Probe, place: DVec3, patches: &[u32]| {
+            let mut of = |probe: &mut Probe, patch: u32| {
+                probe.select(Some(patch));
+                radius(probe, place.as_vec3())
+            };
+            patches.iter().fold(f32::INFINITY, |least, &patch| least.min(of(probe, patch)))
+        };
+        let mut filled = CreaseParticles::default();
+        for corner in &self.corners {
+            filled.list.push(CreaseParticle {
+                position: corner.position.as_vec3(),
+                radius: least(probe, corner.position, &corner.patches),
+                tangent: Vec3::ZERO,
+                patches: corner.patches.clone(),
+            });
+        }
+        for curve in &self.curves {
+            let mut points: Vec<CurvePoint> = Vec::with_capacity(curve.points.len() + 1);
+            for &position in curve.points.iter().chain(curve.is_closed.then(|| &curve.points[0])) {
+                let radius = f64::from(least(probe, position, &curve.patches));
+                let room = points.last().map_or(0.0, |last| {
+                    last.room + position.distance(last.position) / (last.radius + radius)
+                });
+                points.push(CurvePoint { position, radius, room });
+            }
+            fill_curve(probe, curve, &points, &mut filled);
+        }
+        filled
+    }
+}
+
+/// Fills a curve of these points, the last of which is the first one again if it is closed.
+fn fill_curve(probe: &mut Probe, curve: &Crease, points: &[CurvePoint], filled: &mut CreaseParticles) {
+    let room = points[points.len() - 1].room;
+    // A closed curve of two particles would be a line there and back.
+    let least = if curve.is_closed { 3.0 } else { 1.0 };
+    let parts = room.round().max(least) as usize;
+    let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
+    let mut after = 1;
+    for k in 0..=parts {
+        let target = room * k as f64 / parts as f64;
+        while after + 1 < points.len() && points[after].room < target {
+            after += 1;
+        }
+        let (a, b) = (points[after - 1], points[after]);
+        let tangent = (b.position - a.position).normalize_or_zero().as_vec3();
+        let is_end = k == 0 || k == parts;
+        let corner = if is_end { curve.corners[usize::from(k == parts)] } else { None };
+        if let Some(corner) = corner {
+            filled.list[corner].tangent = tangent;
+            numbers.push(corner as u32);
+            continue;
+        }
+        if curve.is_closed && k == parts {
+            numbers.push(numbers[0]);
+            continue;
+        }
+        let share = ((target - a.room) / (b.room - a.room)).clamp(0.0, 1.0);
+        let (place, radius) = (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
+        // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
+        let reach = a.position.distance(b.position);
+        let found = Meeting::of_branches(probe, curve.patches, place, reach, FADED).filter(|_| !is_end);
+        numbers.push(filled.list.len() as u32);
+        filled.list.push(CreaseParticle {
+            position: found.map_or(place, |meeting| meeting.position).as_vec3(),
+            radius: radius as f32,
+            tangent,
+            patches: curve.patches.to_vec(),
+        });
+    }
+    filled.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
+}
+
+impl CreaseParticles {
+    /// Adds a row for each patch of each particle, patch by patch, to columns that are empty. Returns a unit vector along the crease for
+    /// each row.
+    pub(in super::super) fn add_rows(&self, probe: &mut Probe, particles: &mut Particles) -> Vec<Vec3> {
+        let mut patches: Vec<u32> =
+            self.list.iter().flat_map(|particle| particle.patches.iter().copied()).collect();
+        patches.sort_unstable();
+        patches.dedup();
+        let mut first: Vec<Option<u32>> = vec![None; self.list.len()];
+        let mut along = Vec::new();
+        for patch in patches {
+            probe.select(Some(patch));
+            for (particle, first) in self.list.iter().zip(&mut first) {
+                if !particle.patches.contains(&patch) {
+                    continue;
+                }
+                let row = particles.len() as u32;
+                let (_, gradient) = probe.gradient(particle.position);
+                let normal = gradient.normalize_or_zero();
+                particles.push_seed(particle.position, normal, particle.radius, Some(patch));
+                particles.twins.push(*first.get_or_insert(row));
+                along.push(particle.tangent);
+            }
+        }
+        particles.segments.extend(
+            self.segments.iter().map(|pair| {
+                pair.map(|particle| first[particle as usize].expect("a particle lies on a patch"))
+            }),
+        );
+        along
+    }
+}

@@ -1,0 +1,123 @@
+//! Points where branches of f are zero together.
+
+use crate::sampler::probe::Probe;
+use glam::{DMat3, DVec3};
+
+/// Steps of Newton's method. From a cell that a crease crosses five are enough; where two branches touch without an angle each step
+/// halves the distance.
+const STEPS: u32 = 12;
+/// A point is found when a step is shorter than this share of the reach.
+const AT_REST: f64 = 1e-9;
+/// Sine of the angle between two branches from which on they make a crease: one degree.
+pub(super) const SHARP: f64 = 0.0175;
+/// Sine of that angle down to which a crease is followed, where it fades out.
+pub(super) const FADED: f64 = 1e-3;
+/// Distance from a crease, as a share of the reach, at which it is asked which branch gives f.
+const ASIDE: f64 = 1e-4;
+
+/// A point where two patches meet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting {
+    pub(super) position: DVec3,
+    /// The branches, in ascending order.
+    pub(super) branches: [u32; 2],
+    /// Unit vector along the crease.
+    pub(super) tangent: DVec3,
+}
+
+/// Value and gradient of a branch at a point.
+fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
+    probe.select(Some(branch));
+    probe.count(1);
+    probe.field.value_and_gradient(p)
+}
+
+impl Meeting {
+    /// The point near `start`, within `reach`, where both branches are zero and meet at an angle of this sine at least, whichever
+    /// branch gives f there.
+    pub(super) fn of_branches(
+        probe: &mut Probe,
+        branches: [u32; 2],
+        start: DVec3,
+        reach: f64,
+        least_sine: f64,
+    ) -> Option<Self> {
+        let mut p = start;
+        for _ in 0..STEPS {
+            let [(f, u), (g, v)] = branches.map(|b| branch(probe, b, p));
+            // The shortest step to the line in which both tangent planes meet.
+            let across = u.cross(v);
+            let size = across.length_squared();
+            let step = (v.cross(across) * f + across.cross(u) * g) / size;
+            p -= step;
+            // Written so that NaN fails.
+            let is_steep = size > (least_sine * least_sine) * u.length_squared() * v.length_squared();
+            if !is_steep || !(p.distance(start) <= reach) {
+                return None;
+            }
+            if step.length() <= AT_REST * reach {
+                return Some(Self { position: p, branches, tangent: across / size.sqrt() });
+            }
+        }
+        None
+    }
+
+    /// Unit vectors from the crease into the patches of the first and of the second branch, in their tangent planes. There are none
+    /// where one of the branches gives f on neither side, or on both.
+    pub(super) fn inward(&self, probe: &mut Probe, reach: f64) -> Option<[DVec3; 2]> {
+        let mut inward = [DVec3::ZERO; 2];
+        for (b, inward) in self.branches.into_iter().zip(&mut inward) {
+            let (_, gradient) = branch(probe, b, self.position);
+            let aside = gradient.cross(self.tangent).try_normalize()?;
+            let [ahead, behind] =
+                [aside, -aside].map(|d| probe.field.branch_at(self.position + d * (ASIDE * reach)) == b);
+            if ahead == behind {
+                return None;
+            }
+            *inward = if ahead { aside } else { -aside };
+        }
+        Some(inward)
+    }
+}
+
+/// The point near `start`, within `reach`, where a plane and two branches, or three branches, are zero together.
+pub(super) fn common_point(
+    probe: &mut Probe,
+    branches: [u32; 2],
+    third: Third,
+    start: DVec3,
+    reach: f64,
+) -> Option<DVec3> {
+    let mut p = start;
+    for _ in 0..STEPS {
+        let [(f, u), (g, v)] = branches.map(|b| branch(probe, b, p));
+        let (h, w) = match third {
+            Third::Branch(b) => branch(probe, b, p),
+            Third::Plane { normal, offset } => (normal.dot(p) - offset, normal),
+        };
+        let scale = [u, v, w].map(DVec3::length);
+        let rows = DMat3::from_cols(u / scale[0], v / scale[1], w / scale[2]).transpose();
+        // Written so that NaN fails.
+        if !(rows.determinant().abs() > FADED * FADED) {
+            return None;
+        }
+        let step = rows.inverse() * DVec3::new(f / scale[0], g / scale[1], h / scale[2]);
+        p -= step;
+        if !(p.distance(start) <= reach) {
+            return None;
+        }
+        if step.length() <= AT_REST * reach {
+            return Some(p);
+        }
+    }
+    None
+}
+
+/// What two branches meet at a corner.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Third {
+    /// Another branch.
+    Branch(u32),
+    /// The plane of the points p with `normal` · p = `offset`.
+    Plane { normal: DVec3, offset: f64 },
+}

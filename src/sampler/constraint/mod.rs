@@ -1,0 +1,137 @@
+//! What a particle may lie on besides the surface: the creases along which two smooth branches of f give way to each other, and the
+//! corners where more than two meet.
+//!
+//! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
+//! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches are zero; it ends at a corner, at the
+//! box, or runs back into itself.
+//!
+//! 1. *Search.* The box is divided as long as bounds of f leave a cell more than one branch. In the smallest cells Newton's method
+//!    looks for a point on each pair of branches.
+//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner.
+//! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
+//!    fronts start from them, patch by patch, and end at them.
+
+mod fill;
+mod meeting;
+mod search;
+#[cfg(test)]
+mod tests;
+mod trace;
+
+use crate::math::Bounds;
+use crate::sampler::probe::Probe;
+use glam::DVec3;
+use meeting::{Meeting, SHARP};
+use serde::Serialize;
+
+/// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
+const CELL: f64 = 1.0 / 128.0;
+
+/// A curve along which two patches meet.
+#[derive(Clone, Debug)]
+pub(super) struct Crease {
+    /// The two patches.
+    patches: [u32; 2],
+    /// Points along the curve, in its order.
+    points: Vec<DVec3>,
+    /// Corners at its start and its end; none where the curve ends at the box or is closed.
+    corners: [Option<usize>; 2],
+    /// Whether the last point is followed by the first.
+    is_closed: bool,
+}
+
+/// A point at which creases end.
+#[derive(Clone, Debug)]
+pub(super) struct Corner {
+    position: DVec3,
+    /// The patches that meet there, in ascending order.
+    patches: Vec<u32>,
+}
+
+/// Numbers of the creases and corners of a surface in a box.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct CreaseCounts {
+    /// Curves along which two smooth patches of the surface meet.
+    pub creases: usize,
+    /// Points at which more than two creases meet.
+    pub corners: usize,
+}
+
+/// The creases and corners of a surface in a box.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Creases {
+    curves: Vec<Crease>,
+    corners: Vec<Corner>,
+}
+
+impl Creases {
+    /// Finds the creases of a field in `bounds`.
+    pub(super) fn find(probe: &mut Probe, bounds: &Bounds) -> Self {
+        let cells = search::cells(probe.field, bounds, CELL * bounds.diagonal());
+        let mut creases = Self::default();
+        let step = 0.5 * CELL * bounds.diagonal();
+        for cell in &cells {
+            for (k, &a) in cell.branches.iter().enumerate() {
+                for &b in &cell.branches[..k] {
+                    let place = cell.bounds.middle();
+                    let meeting = Meeting::of_branches(probe, [b, a], place, 2.0 * step, SHARP)
+                        .filter(|meeting| bounds.holds(meeting.position) && !creases.has_point(meeting, step))
+                        .filter(|meeting| meeting.inward(probe, step).is_some());
+                    if let Some(meeting) = meeting {
+                        trace::follow(probe, bounds, &mut creases, meeting, step);
+                    }
+                }
+            }
+        }
+        probe.select(None);
+        creases
+    }
+
+    /// Whether a crease that is known runs through a meeting of two branches.
+    fn has_point(&self, meeting: &Meeting, step: f64) -> bool {
+        /// Distance from the chord between two points of a curve, in steps, up to which a point lies on the curve: the chord of a
+        /// curve that turns by 60° in two steps is a seventh of a step away.
+        const NEAR: f64 = 0.2;
+        let is_on = |curve: &&Crease| {
+            let ends = curve.points.windows(2).map(|pair| [pair[0], pair[1]]);
+            let last = curve.is_closed.then(|| [curve.points[curve.points.len() - 1], curve.points[0]]);
+            ends.chain(last).any(|[a, b]| {
+                let way = b - a;
+                let t = ((meeting.position - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+                (a + way * t).distance_squared(meeting.position) <= (NEAR * step) * (NEAR * step)
+            })
+        };
+        self.curves.iter().filter(|curve| curve.patches == meeting.branches).any(|curve| is_on(&curve))
+    }
+
+    /// Number of the corner at a position, which is added if it is new.
+    fn corner_at(&mut self, position: DVec3, patches: &[u32], slack: f64) -> usize {
+        let known = self.corners.iter().position(|corner| corner.position.distance(position) <= slack);
+        let index = known.unwrap_or_else(|| {
+            self.corners.push(Corner { position, patches: Vec::new() });
+            self.corners.len() - 1
+        });
+        let own = &mut self.corners[index].patches;
+        own.extend_from_slice(patches);
+        own.sort_unstable();
+        own.dedup();
+        index
+    }
+
+    /// Whether patches of the surface meet.
+    pub(super) fn are_there(&self) -> bool {
+        !self.curves.is_empty()
+    }
+
+    /// Numbers of creases and corners.
+    pub(super) fn counts(&self) -> CreaseCounts {
+        let is_corner = |&corner: &usize| {
+            self.curves.iter().flat_map(|curve| curve.corners).filter(|&end| end == Some(corner)).count() > 2
+        };
+        CreaseCounts {
+            creases: self.curves.len(),
+            corners: (0..self.corners.len()).filter(is_corner).count(),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+use super::*;
+use crate::field::Field;
+use crate::field::formula::Formula;
+use crate::particles::Particles;
+use crate::sampler::probe::ProbeMemory;
+
+/// The creases of a formula in the box from −`half` to `half`.
+fn creases(text: &str, half: f64) -> (Formula, Creases) {
+    let mut field = Formula::as_written(text, &[]).expect("a formula");
+    let mut memory = ProbeMemory::default();
+    let creases = Creases::find(&mut Probe::new(&mut field, &mut memory), &Bounds::cube(half));
+    (field, creases)
+}
+
+/// Length of a crease, by its chords.
+fn length(curve: &Crease) -> f64 {
+    let closing = if curve.is_closed { curve.points[0].distance(*curve.points.last().unwrap()) } else { 0.0 };
+    closing + curve.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>()
+}
+
+#[test]
+fn the_creases_of_solids_are_counted() {
+    for (name, text, half, expected) in [
+        ("sphere", "x^2+y^2+z^2-1", 1.3, [0, 0]),
+        ("cube", "max(abs(x),abs(y),abs(z))-1", 1.3, [12, 8]),
+        (
+            "turned cube",
+            "max(abs(0.36*x+0.48*y-0.8*z),abs(-0.8*x+0.6*y),abs(0.48*x+0.64*y+0.6*z))-1",
+            1.9,
+            [12, 8],
+        ),
+        ("octahedron", "abs(x)+abs(y)+abs(z)-1", 1.2, [12, 6]),
+        ("cylinder", "max(x^2+y^2-1,abs(z)-1)", 1.4, [2, 0]),
+        ("union of spheres", "min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7, [1, 0]),
+        ("drilled block", "max(abs(x)-1,abs(y)-1,abs(z)-0.4,0.16-x^2-y^2)", 1.3, [14, 8]),
+        // Eight triples of cylinders meet on the diagonals of the cube, and six pairs where the third has its axis.
+        ("three cylinders", "max(x^2+y^2,y^2+z^2,z^2+x^2)-1", 1.3, [24, 14]),
+        ("wedge", "max(z,0.176327*x-z,abs(y)-1,-x-1.5)", 2.0, [9, 6]),
+        ("smooth contact", "max(x,0)^2+y^2+z^2-1", 1.2, [0, 0]),
+    ] {
+        let CreaseCounts { creases, corners } = creases(text, half).1.counts();
+        assert_eq!([creases, corners], expected, "{name}: {text}");
+    }
+}
+
+#[test]
+fn a_crease_lies_where_both_branches_are_zero() {
+    let (mut field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7);
+    let [curve] = &creases.curves[..] else { panic!("{creases:?}") };
+    assert!(curve.is_closed);
+    let exact = core::f64::consts::TAU * 0.75_f64.sqrt();
+    assert!((length(curve) / exact - 1.0).abs() < 1e-3, "{} for {exact}", length(curve));
+    for &p in &curve.points {
+        for patch in curve.patches {
+            field.select_branch(Some(patch));
+            let (value, gradient) = field.value_and_gradient(p);
+            assert!(value.abs() < 1e-9 * gradient.length(), "{p}: {value}");
+        }
+    }
+}
+
+#[test]
+fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
+    let (mut field, creases) = creases("max(abs(x),abs(y),abs(z))-1", 1.3);
+    let mut memory = ProbeMemory::default();
+    let probe = &mut Probe::new(&mut field, &mut memory);
+    let filled = creases.fill(probe, |_, _| 0.0493);
+    // An edge of length 2 has room for 20 particles at a distance of 0.1.
+    assert_eq!(filled.list.len(), 8 + 12 * 19);
+    assert_eq!(filled.segments.len(), 12 * 20);
+    for pair in &filled.segments {
+        let [a, b] = pair.map(|i| filled.list[i as usize].position);
+        assert!((a.distance(b) - 0.1).abs() < 1e-5, "{a} {b}");
+    }
+    let mut particles = Particles::default();
+    let along = filled.add_rows(probe, &mut particles);
+    assert_eq!(particles.len(), 8 * 3 + 12 * 19 * 2);
+    assert_eq!((particles.count(), along.len()), (filled.list.len(), particles.len()));
+    for i in 0..particles.len() {
+        let first = particles.first_row(i);
+        assert_eq!(particles.position[i], particles.position[first]);
+        assert!(first == i || particles.normal[i].dot(particles.normal[first]).abs() < 1e-6);
+    }
+}

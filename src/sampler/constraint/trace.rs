@@ -1,0 +1,209 @@
+//! Follows a crease from one of its points to both ends.
+
+use super::meeting::{FADED, Meeting, Third, common_point};
+use super::{Crease, Creases};
+use crate::math::Bounds;
+use crate::sampler::probe::Probe;
+use glam::DVec3;
+
+/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved.
+const MOST_TURN: f64 = 0.866;
+/// Times that a step is halved, at most: a closed crease of a thousandth of the usual step is followed.
+const HALVINGS: u32 = 12;
+/// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.
+const BISECTIONS: u32 = 30;
+/// Corners nearer to each other than this share of a step are one.
+const ONE_CORNER: f64 = 1e-3;
+/// The same where creases fade out, which is not known as precisely: at an angle of [`FADED`], less than a hundredth of a step away.
+const ONE_END: f64 = 0.1;
+/// Largest number of steps on one curve. One that is 80 times as long as the diagonal of the box is cut there.
+const MOST_STEPS: usize = 20_000;
+
+/// How a walk along a crease ended.
+enum WalkEnd {
+    /// It has come back to its start.
+    Closed,
+    /// At the box.
+    Open,
+    /// At the corner of this number, or where the crease fades out.
+    Corner(usize),
+}
+
+/// Follows the crease through `start`, and adds it with its corners.
+pub(super) fn follow(probe: &mut Probe, bounds: &Bounds, creases: &mut Creases, start: Meeting, step: f64) {
+    let mut walk = Walk { probe, bounds, start, step };
+    let mut points = vec![start.position];
+    let end = walk.run(creases, start.tangent, &mut points);
+    let is_closed = matches!(end, WalkEnd::Closed);
+    let mut first = WalkEnd::Open;
+    if !is_closed {
+        points.reverse();
+        first = walk.run(creases, -start.tangent, &mut points);
+        points.reverse();
+    }
+    // At a corner two patches that have nothing else in common are met, too.
+    let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    if !is_closed && length <= ONE_CORNER * step {
+        return;
+    }
+    let corner = |end: &WalkEnd| if let WalkEnd::Corner(index) = end { Some(*index) } else { None };
+    let corners = [corner(&first), corner(&end)];
+    creases.curves.push(Crease { patches: start.branches, points, corners, is_closed });
+}
+
+/// A walk along a crease, from one of its points.
+struct Walk<'a, 'f> {
+    probe: &'a mut Probe<'f>,
+    bounds: &'a Bounds,
+    start: Meeting,
+    /// Usual length of a step.
+    step: f64,
+}
+
+impl Walk<'_, '_> {
+    /// Walks on from the last of the `points`, and adds those on the way.
+    fn run(&mut self, creases: &mut Creases, direction: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
+        let origin = self.start.position;
+        let (mut here, mut direction) = (self.start.position, direction);
+        let is_forward = self.start.tangent.dot(direction) > 0.0;
+        let mut left_start = false;
+        while points.len() < MOST_STEPS {
+            let Some((next, length)) = self.next(here, direction) else {
+                return WalkEnd::Corner(creases.corner_at(here, &self.start.branches, ONE_END * self.step));
+            };
+            if (next.tangent.dot(direction) > 0.0) != is_forward {
+                let end = self.turn(here, &next, direction, is_forward);
+                points.push(end);
+                return WalkEnd::Corner(creases.corner_at(end, &self.start.branches, ONE_END * self.step));
+            }
+            let is_active = next.inward(self.probe, self.step).is_some();
+            if !is_active {
+                return self.end_before(creases, here, &next, points);
+            }
+            if !self.bounds.holds(next.position) {
+                return self.end_at_box(here, next.position, points);
+            }
+            let to_start = origin - here;
+            let is_back = to_start.dot(direction) > 0.0 && to_start.length() <= 1.2 * length;
+            if left_start && is_back && next.position.distance(origin) <= length {
+                return WalkEnd::Closed;
+            }
+            left_start |= next.position.distance(origin) > length;
+            direction = if next.tangent.dot(direction) < 0.0 { -next.tangent } else { next.tangent };
+            here = next.position;
+            points.push(here);
+        }
+        WalkEnd::Open
+    }
+
+    /// The next point of the curve on which both branches are zero, and the length of the step.
+    fn next(&mut self, here: DVec3, direction: DVec3) -> Option<(Meeting, f64)> {
+        let mut length = self.step;
+        for _ in 0..=HALVINGS {
+            let guess = here + direction * length;
+            let next = Meeting::of_branches(self.probe, self.start.branches, guess, length, FADED);
+            if let Some(next) = next
+                && next.tangent.dot(direction).abs() >= MOST_TURN
+                && (next.position - here).dot(direction) >= MOST_TURN * next.position.distance(here)
+            {
+                return Some((next, length));
+            }
+            length *= 0.5;
+        }
+        None
+    }
+
+    /// The point, between the last one of the walk and one behind it, where the angle between the branches changes its sign: the crease
+    /// fades out there, and another one may begin.
+    fn turn(&mut self, here: DVec3, beyond: &Meeting, direction: DVec3, is_forward: bool) -> DVec3 {
+        let (mut before, mut after) = (here, beyond.position);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (before + after);
+            let reach = before.distance(after);
+            let Some(point) = Meeting::of_branches(self.probe, self.start.branches, middle, reach, FADED)
+            else {
+                return middle;
+            };
+            if (point.tangent.dot(direction) > 0.0) == is_forward {
+                before = point.position;
+            } else {
+                after = point.position;
+            }
+        }
+        before
+    }
+
+    /// Ends the walk between its last point and one behind which other branches give f: at a corner, if a third branch is zero there.
+    fn end_before(
+        &mut self,
+        creases: &mut Creases,
+        here: DVec3,
+        beyond: &Meeting,
+        points: &mut Vec<DVec3>,
+    ) -> WalkEnd {
+        let branches = self.start.branches;
+        let way = beyond.position - here;
+        for third in self.branches_around(beyond) {
+            let corner =
+                common_point(self.probe, branches, Third::Branch(third), here + 0.5 * way, way.length());
+            if let Some(corner) = corner
+                && (corner - here).dot(way) > 0.0
+                && corner.distance(here) <= 1.01 * way.length()
+            {
+                if !self.bounds.holds(corner) {
+                    return self.end_at_box(here, corner, points);
+                }
+                points.push(corner);
+                let patches = [branches[0], branches[1], third];
+                return WalkEnd::Corner(creases.corner_at(corner, &patches, ONE_CORNER * self.step));
+            }
+        }
+        let (mut active, mut inactive) = (here, beyond.position);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (active + inactive);
+            let point = Meeting::of_branches(self.probe, branches, middle, way.length(), FADED);
+            match point {
+                Some(point) if point.inward(self.probe, 1e-3 * self.step).is_some() => {
+                    active = point.position
+                }
+                _ => inactive = middle,
+            }
+        }
+        points.push(active);
+        WalkEnd::Corner(creases.corner_at(active, &branches, ONE_END * self.step))
+    }
+
+    /// The branches, other than the two of the walk, that give f at a point and beside it.
+    fn branches_around(&mut self, point: &Meeting) -> Vec<u32> {
+        let aside = 1e-2 * self.step;
+        let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+        let mut found: Vec<u32> = Vec::new();
+        for offset in offsets {
+            let branch = self.probe.field.branch_at(point.position + offset * aside);
+            if !self.start.branches.contains(&branch) && !found.contains(&branch) {
+                found.push(branch);
+            }
+        }
+        found
+    }
+
+    /// Ends the walk where the curve leaves the box, on its way from one point to another outside.
+    fn end_at_box(&mut self, here: DVec3, outside: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
+        let way = outside - here;
+        let mut share = 1.0;
+        let mut plane = Third::Plane { normal: DVec3::X, offset: self.bounds.max[0] };
+        for (axis, normal) in DVec3::AXES.into_iter().enumerate() {
+            for offset in [self.bounds.min[axis], self.bounds.max[axis]] {
+                let t = (offset - here[axis]) / way[axis];
+                let is_left = (outside[axis] - offset) * (here[axis] - offset) <= 0.0;
+                if is_left && t < share {
+                    (share, plane) = (t, Third::Plane { normal, offset });
+                }
+            }
+        }
+        let place = here + way * share;
+        let end = common_point(self.probe, self.start.branches, plane, place, way.length()).unwrap_or(place);
+        points.push(end.clamp(self.bounds.lo(), self.bounds.hi()));
+        WalkEnd::Open
+    }
+}
