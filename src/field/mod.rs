@@ -173,6 +173,13 @@ pub trait Field: Send {
         None
     }
 
+    /// Looks for the creases of the surface in the box, and returns whether there are any. Branches that meet smoothly on the surface
+    /// are one from now on, numbers begin anew, and no branch is selected. By default there are no creases.
+    fn find_creases(&mut self, bounds: &Bounds) -> bool {
+        let _ = bounds;
+        false
+    }
+
     /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
     /// on which f depends. Equal numbers are equal functions. A field that is smooth has the one branch 0, which is the default.
     fn branch_at(&mut self, p: DVec3) -> u32 {
@@ -288,6 +295,11 @@ macro_rules! forward_field {
             fn sampled_as(&self) -> Option<String> {
                 let $this = self;
                 $field.sampled_as()
+            }
+
+            fn find_creases(&mut self, bounds: &$crate::math::Bounds) -> bool {
+                let $this = self;
+                $field_mut.find_creases(bounds)
             }
 
             fn branch_at(&mut self, p: ::glam::DVec3) -> u32 {

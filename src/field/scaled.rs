@@ -139,6 +139,10 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
+    fn find_creases(&mut self, bounds: &Bounds) -> bool {
+        self.field.find_creases(bounds)
+    }
+
     fn branch_at(&mut self, p: DVec3) -> u32 {
         self.field.branch_at(p)
     }

@@ -276,3 +276,89 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn the_surfaces_of_the_gallery_have_no_creases() {
+    for surface in SURFACES {
+        let mut field = surface.field();
+        assert!(!field.find_creases(&surface.bounds), "{}", surface.id);
+        assert!(spread(&surface.bounds).all(|p| field.branch_at(p) == 0), "{}", surface.id);
+        field.select_branch(Some(0));
+        let p = Vec3::new(0.3, 0.2, 0.1);
+        assert_eq!(
+            format!("{:?}", values_of(&mut field, p)),
+            format!("{:?}", values_of(&mut surface.field(), p))
+        );
+    }
+}
+
+#[test]
+fn choices_that_meet_smoothly_are_no_creases() {
+    // A blend by hand, a rounded box, two spheres that stay apart, an edge outside the box, an edge of half a degree.
+    for text in [
+        "min(x, y) - max(0.5 - abs(x - y), 0)^2/2 + 0.3",
+        "sqrt(max(abs(x) - 0.7, 0)^2 + max(abs(y) - 0.7, 0)^2 + max(abs(z) - 0.7, 0)^2) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0) - 0.2",
+        "min((x - 1)^2 + y^2 + z^2, (x + 1)^2 + y^2 + z^2) - 0.9",
+        "max(x - 3, y) - 0.2",
+        "x x abs(x) + y + z",
+        "abs(x) + 200 y",
+    ] {
+        let mut field = field(text);
+        assert!(!field.find_creases(&Bounds::cube(1.6)), "{text}");
+        assert_eq!(branches_of(&mut field), [0], "{text}");
+    }
+}
+
+#[test]
+fn creases_are_found_whatever_their_size_and_place() {
+    for (text, count) in [
+        (CUBE, 6),
+        ("max(abs(x - 0.777), abs(y - 0.3), abs(z + 0.41)) - 0.02", 6),
+        ("abs(x) + abs(y) + abs(z) - 1", 8),
+        ("min(hypot(x - 0.5, y, z), hypot(x + 0.5, y, z)) - 0.8", 2),
+        ("max(hypot(x, y) - 0.5, abs(z) - 1)", 3),
+        // A rounded box with a hole: the choices within the box make no creases.
+        ("max(smax(smax(abs(x), abs(y), 0.3), abs(z), 0.3) - 1, 0.4 - hypot(x, y))", 2),
+        ("hypot(x, y, z) - 1 + 0.1 abs(x + y - 0.2)", 2),
+    ] {
+        let mut field = field(text);
+        assert!(field.find_creases(&Bounds::cube(1.6)), "{text}");
+        let mut seen: Vec<u32> = on_surface(&mut field).into_iter().map(|p| field.branch_at(p)).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen.len(), count, "{text}: {seen:?}");
+    }
+}
+
+#[test]
+fn both_sides_of_a_face_of_an_exact_distance_are_one_branch() {
+    let squares = ["x", "y", "z"].map(|axis| format!("max(abs({axis}) - 0.7, 0)^2")).join(" + ");
+    let mut field = field(&format!("sqrt({squares}) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0)"));
+    assert!(field.find_creases(&Bounds::cube(1.6)));
+    for face in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
+        let [inside, outside] = [0.69, 0.71].map(|at| at * face + 0.1 * (DVec3::ONE - face.abs()));
+        assert_eq!(field.branch_at(inside), field.branch_at(outside), "{face}");
+        field.select_branch(Some(field.clone().branch_at(inside)));
+        let far = DVec3::new(3.0, -5.0, 2.5);
+        assert!((field.value_and_gradient(far).0 - (far.dot(face) - 0.7)).abs() < 1e-15, "{face}");
+        field.select_branch(None);
+    }
+}
+
+/// Points of the surface, by steps along the gradient from those of a grid.
+fn on_surface(field: &mut Formula) -> Vec<DVec3> {
+    let mut found = Vec::new();
+    for mut p in spread(&Bounds::cube(1.6)) {
+        for _ in 0..30 {
+            let (value, gradient) = field.value_and_gradient(p);
+            if value.abs() < 1e-12 {
+                break;
+            }
+            p -= gradient * (value / gradient.length_squared());
+        }
+        if field.value_and_gradient(p).0.abs() < 1e-9 {
+            found.push(p);
+        }
+    }
+    found
+}

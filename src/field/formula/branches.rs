@@ -5,7 +5,8 @@
 //! Its graph is that of f with each choice replaced by the operand that it takes, built anew, so that equal operations are one node:
 //! branches with the same root are the same function, as both sides of |x| are in |x|².
 //!
-//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that no coordinate enters.
+//! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that no coordinate enters, nor one of which
+//! it was found that it makes [no crease](super::creases).
 
 use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
@@ -24,7 +25,7 @@ const MAX_NUMBERED: usize = 256;
 
 /// What a node is to the walk from f to the operands that it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Role {
+pub(super) enum Role {
     /// All operands count.
     Plain,
     /// The first operand where it is at most the second.
@@ -37,9 +38,15 @@ enum Role {
     Raised(Id),
 }
 
+impl Role {
+    pub(super) fn is_choice(self) -> bool {
+        matches!(self, Self::Min(..) | Self::Max(..) | Self::Abs(_))
+    }
+}
+
 /// The operands that a choice may take.
 #[derive(Clone, Copy, PartialEq)]
-enum Sides {
+pub(super) enum Sides {
     First,
     Second,
     Both,
@@ -61,7 +68,7 @@ impl Sides {
     }
 
     /// The sides that `role` may take in a box, from the bounds of its operands. Both may at a tie.
-    fn in_box(role: Role, range: impl Fn(Id) -> Range) -> Self {
+    pub(super) fn in_box(role: Role, range: impl Fn(Id) -> Range) -> Self {
         let below = |a: Id, b: Id| range(a).bounds.hi < range(b).bounds.lo;
         let (first, second) = match role {
             Role::Min(a, b) => (below(a, b), below(b, a)),
@@ -75,12 +82,12 @@ impl Sides {
 
 /// f, or what has become of it once choices have taken sides.
 #[derive(Clone, Debug)]
-struct Part {
-    root: Id,
+pub(super) struct Part {
+    pub(super) root: Id,
     /// The nodes that the root needs, in the order of the graph.
-    nodes: Vec<Id>,
+    pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
-    number: Option<u32>,
+    pub(super) number: Option<u32>,
     /// The part for each way to take sides, which are in the order of [`Walk`].
     taken: BTreeMap<Vec<bool>, usize>,
     /// The branch compiled, once it has been selected.
@@ -152,9 +159,11 @@ impl Walk {
 
 /// The graph of f and of its branches.
 #[derive(Clone, Debug, Default)]
-struct Base {
-    graph: Graph,
-    roles: Vec<Role>,
+pub(super) struct Base {
+    pub(super) graph: Graph,
+    pub(super) roles: Vec<Role>,
+    /// Choices that make no crease, and are none therefore, ascending.
+    smooth: Vec<Id>,
     /// Values of the nodes that depend on no coordinate; NaN for the others.
     uniforms: Vec<f64>,
 }
@@ -173,7 +182,7 @@ impl Base {
                 _ => None,
             };
             let role = match node {
-                _ if is_uniform => Role::Plain,
+                _ if is_uniform || self.smooth.binary_search(&id).is_ok() => Role::Plain,
                 Node::Binary(Binary::Min, a, b) => Role::Min(a, b),
                 Node::Binary(Binary::Max, a, b) => Role::Max(a, b),
                 Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => Role::Min(a, b),
@@ -193,8 +202,7 @@ impl Base {
         let (mut way, mut rest) = (Vec::new(), sides.iter());
         walk.begin(part, &self.graph);
         let next = |id: Id, role: Role| {
-            let is_choice = matches!(role, Role::Min(..) | Role::Max(..) | Role::Abs(_));
-            let is_second = is_choice && rest.next() == Some(&true);
+            let is_second = role.is_choice() && rest.next() == Some(&true);
             way.push((id, role, is_second));
             Sides::first_if(!is_second)
         };
@@ -227,9 +235,9 @@ impl Base {
 /// The branches of f that have been met, with their numbers. There are none of a formula without choices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Branches {
-    base: Base,
+    pub(super) base: Base,
     /// f, then what has become of it.
-    parts: Vec<Part>,
+    pub(super) parts: Vec<Part>,
     /// The part of each root.
     by_root: BTreeMap<Id, usize>,
     /// The part of each branch, by its number.
@@ -254,12 +262,24 @@ impl Branches {
             may_choose && !graph.is_uniform(id)
         };
         if graph.needed_by(&[root]).iter().any(is_choice) {
-            let (graph, root) = graph.part(root);
-            branches.base.graph = graph;
-            branches.base.extend(values);
-            branches.part(root);
+            branches.begin((graph, root), values, &[]);
         }
         branches
+    }
+
+    fn begin(&mut self, (graph, root): (&Graph, Id), values: &[f64], smooth: &[Id]) {
+        let (graph, root) = graph.part(root);
+        *self = Self { base: Base { graph, smooth: smooth.to_vec(), ..Base::default() }, ..Self::default() };
+        self.base.extend(values);
+        self.part(root);
+    }
+
+    /// Forgets all branches and selects none. From now on the nodes `smooth` of f, ascending, are no choices.
+    pub(super) fn begin_again(&mut self, values: &[f64], smooth: &[Id]) {
+        if let Some(root) = self.parts.first().map(|part| part.root) {
+            let graph = core::mem::take(&mut self.base.graph);
+            self.begin((&graph, root), values, smooth);
+        }
     }
 
     /// Index of the part with this root.
@@ -276,8 +296,8 @@ impl Branches {
         };
         let index = self.parts.len();
         let mut has_choice = false;
-        let look = |_, role| {
-            has_choice |= matches!(role, Role::Min(..) | Role::Max(..) | Role::Abs(_));
+        let look = |_, role: Role| {
+            has_choice |= role.is_choice();
             Sides::First
         };
         self.walk.begin(&part, &self.base.graph);
@@ -397,7 +417,8 @@ impl Branches {
     /// If there is no such branch.
     pub(super) fn select(&mut self, branch: Option<u32>, values: &[f64]) {
         self.selected = None;
-        let Some(number) = branch.filter(|_| !self.parts.is_empty()) else { return };
+        let is_piecewise = self.parts.first().is_some_and(|part| part.number.is_none());
+        let Some(number) = branch.filter(|_| is_piecewise) else { return };
         self.number_first(values);
         let index = *self.numbered.get(number as usize).expect("a number that a branch was given");
         self.selected = Some(index);
@@ -426,7 +447,7 @@ impl Branches {
             let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
             compiled.for_each(|compiled| compiled.set_parameters(values));
         } else {
-            *self = Self::new((&self.base.graph, self.parts[0].root), values);
+            self.begin_again(values, &[]);
         }
     }
 }

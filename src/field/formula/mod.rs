@@ -28,6 +28,7 @@ mod branches;
 mod build;
 mod call;
 mod compiled;
+mod creases;
 mod derivative;
 mod display;
 mod double;
@@ -525,6 +526,12 @@ impl Field for Formula {
     /// formula have more digits than single precision holds.
     fn set_origin(&mut self, origin: DVec3) {
         self.origin = origin;
+    }
+
+    fn find_creases(&mut self, bounds: &Bounds) -> bool {
+        self.on_formula_boxes(&[*bounds], |field, boxes| {
+            field.branches.find_creases(&field.values, &boxes[0])
+        })
     }
 
     /// The numbers are the same whatever was asked before, but for those beyond the first 256, and they outlast a change of the

@@ -1,0 +1,246 @@
+//! The choices of a formula that crease its surface.
+//!
+//! Where a surface crosses the tie of a choice, at which both operands are equal, it has a crease if the gradient of f jumps there, else
+//! a *seam*. |x| makes a seam in a blend that takes no account of it near x = 0. A minimum of functions whose zeros stay apart makes
+//! neither. A search of the box, halved again and again, excludes by interval arithmetic the cells in which f has no zero, or where no
+//! choice has both a tie and an effect on f. In a cell that is left, Newton's method finds a place where f and the difference of the
+//! operands vanish, and the gradients on both sides of it are compared.
+
+use super::branches::{Base, Branches, Part, Role, Sides};
+use super::graph::{Id, MIN_BLEND_WIDTH, Node};
+use super::{interval, scalar};
+use crate::math::Bounds;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Number of halvings of the box after which a place is looked for: 32 cells on every axis.
+const DEPTH: u32 = 15;
+
+/// Number of halvings after which a choice counts that can be neither excluded nor tested: 256 cells on every axis.
+const DEEPEST: u32 = 24;
+
+/// Maximum number of cells of a search, as many as there are after [`DEPTH`] halvings. The choices in question at its end count.
+const MAX_CELLS: usize = 1 << DEPTH;
+
+/// Least jump of the gradient, as a share of it, that is a crease: an angle of 0.6°, less than light and shadow show.
+const LEAST_JUMP: f64 = 0.01;
+
+/// Distance from the tie at which the gradients are taken, and a hundred times the error of its place; as a share of the diagonal of
+/// the box.
+const STEP: f64 = 1e-6;
+
+/// What the surface is where a choice is tied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// It is smooth.
+    Seam,
+    /// The gradient jumps, or the tie is the surface itself, where nothing can be said.
+    Crease,
+}
+
+/// How far a choice counts for f in a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Reach {
+    /// Another choice or the box leave it out.
+    Nowhere,
+    /// Only blends leave it out.
+    Blended,
+    Reached,
+}
+
+/// A cell, with the choices that are in question there.
+struct Cell {
+    bounds: Bounds,
+    depth: u32,
+    choices: Vec<Id>,
+}
+
+impl Branches {
+    /// Looks for the creases of the surface in the box, and returns whether there are any. If not, f has no choices from now on; else
+    /// only those whose operands meet smoothly on the surface are none. The branches begin anew.
+    pub(super) fn find_creases(&mut self, values: &[f64], bounds: &Bounds) -> bool {
+        self.begin_again(values, &[]);
+        let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return false };
+        let is_choice = |id: &Id| self.base.roles[*id as usize].is_choice();
+        let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
+        let kinds = Search { base: &self.base, part, values, bounds }.kinds(&choices);
+        let has_creases = kinds.values().any(|kind| *kind == Kind::Crease);
+        let smooth = |id: &Id| !has_creases || kinds.get(id) == Some(&Kind::Seam);
+        let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
+        self.begin_again(values, &smooth);
+        has_creases
+    }
+}
+
+/// Scratch memory of a search.
+#[derive(Default)]
+struct Scratch {
+    ranges: Vec<interval::Range>,
+    jets: scalar::JetScratch,
+}
+
+/// A search of a box.
+struct Search<'a> {
+    base: &'a Base,
+    part: &'a Part,
+    values: &'a [f64],
+    bounds: &'a Bounds,
+}
+
+impl Search<'_> {
+    /// What each of `choices` is where it is tied on the surface. Those that are tied nowhere there are left out.
+    fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, Kind> {
+        let mut kinds = BTreeMap::new();
+        let mut open = vec![Cell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
+        let (mut scratch, mut left) = (Scratch::default(), MAX_CELLS);
+        while let Some(mut cell) = open.pop() {
+            cell.choices.retain(|id| kinds.get(id) != Some(&Kind::Crease));
+            if cell.choices.is_empty() {
+                continue;
+            }
+            if left == 0 {
+                kinds.extend(cell.choices.into_iter().map(|id| (id, Kind::Crease)));
+                continue;
+            }
+            left -= 1;
+            let reached = self.tied(&cell.bounds, &mut scratch.ranges);
+            cell.choices.retain(|id| {
+                let Some(reach) = reached.get(id) else { return false };
+                if cell.depth < DEPTH {
+                    return true;
+                }
+                let kind = match reach {
+                    Reach::Reached => self.kind(*id, &cell.bounds, &mut scratch),
+                    Reach::Blended | Reach::Nowhere => Some(Kind::Seam),
+                };
+                if kind.is_none() && cell.depth < DEEPEST {
+                    return true;
+                }
+                let known = kinds.entry(*id).or_insert(Kind::Seam);
+                *known = (*known).max(kind.unwrap_or(Kind::Crease));
+                false
+            });
+            if !cell.choices.is_empty() {
+                for half in halves(&cell.bounds) {
+                    open.push(Cell { bounds: half, depth: cell.depth + 1, choices: cell.choices.clone() });
+                }
+            }
+        }
+        kinds
+    }
+
+    /// The choices that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
+    fn tied(&self, cell: &Bounds, ranges: &mut Vec<interval::Range>) -> BTreeMap<Id, Reach> {
+        let (base, part) = (self.base, self.part);
+        interval::bounds(&base.graph, &part.nodes, self.values, cell, ranges);
+        let range = |id: Id| ranges[id as usize];
+        let mut tied = BTreeMap::new();
+        if range(part.root).is_nonzero() {
+            return tied;
+        }
+        let mut reaches = vec![Reach::Nowhere; base.graph.len()];
+        reaches[part.root as usize] = Reach::Reached;
+        for &id in part.nodes.iter().rev().filter(|&&id| !base.graph.is_uniform(id)) {
+            let reach = reaches[id as usize];
+            if reach == Reach::Nowhere {
+                continue;
+            }
+            let role = base.roles[id as usize];
+            let sides = Sides::in_box(role, range);
+            if role.is_choice() && sides == Sides::Both {
+                tied.insert(id, reach);
+            }
+            let mut need = |id: Id, reach: Reach| reaches[id as usize] = reaches[id as usize].max(reach);
+            match (role, base.graph.node(id)) {
+                (Role::Min(a, _) | Role::Max(a, _), _) if sides == Sides::First => need(a, reach),
+                (Role::Min(_, b) | Role::Max(_, b), _) if sides == Sides::Second => need(b, reach),
+                (Role::Raised(u), _) => need(u, reach),
+                // Where the operands differ by more than the width, the blend is one of them.
+                (Role::Plain, Node::Smin(a, b, k)) => {
+                    let width = range(k).bounds.hi.max(MIN_BLEND_WIDTH);
+                    let is_far_below = |a: Id, b: Id| range(a).bounds.hi + width < range(b).bounds.lo;
+                    need(a, if is_far_below(b, a) { Reach::Blended } else { reach });
+                    need(b, if is_far_below(a, b) { Reach::Blended } else { reach });
+                    need(k, reach);
+                }
+                (_, node) => node.operands(|operand| need(operand, reach)),
+            }
+        }
+        tied
+    }
+
+    /// What the surface is at a place near the cell at which choice `id` is tied; none if no such place is found.
+    fn kind(&self, id: Id, cell: &Bounds, scratch: &mut Scratch) -> Option<Kind> {
+        // Enough for Newton's method, which doubles the digits with each step, from a start that is not too bad.
+        const STEPS: usize = 12;
+        let graph = &self.base.graph;
+        let size = self.bounds.diagonal();
+        let Scratch { ranges, jets } = scratch;
+        let mut jet = |id: Id, p: DVec3| {
+            let jet = scalar::jet(graph, id, self.values, p, jets);
+            (jet.value, jet.gradient)
+        };
+        let tie =
+            |p: DVec3, jet: &mut dyn FnMut(Id, DVec3) -> (f64, DVec3)| match self.base.roles[id as usize] {
+                Role::Min(a, b) | Role::Max(a, b) => {
+                    let ((a, of_a), (b, of_b)) = (jet(a, p), jet(b, p));
+                    (a - b, of_a - of_b)
+                }
+                Role::Abs(u) => jet(u, p),
+                Role::Plain | Role::Raised(_) => unreachable!("no choice"),
+            };
+        let mut best = None;
+        // Off the planes of symmetry, on which other choices may be tied.
+        for start in cell.spread(2) {
+            let mut p = start;
+            for _ in 0..STEPS {
+                let ((f, g), (t, h)) = (jet(self.part.root, p), tie(p, &mut jet));
+                let (gg, gh, hh) = (g.dot(g), g.dot(h), h.dot(h));
+                let determinant = gg * hh - gh * gh;
+                // Gradients that are parallel to three digits.
+                if !(determinant > 1e-6 * gg * hh) {
+                    let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
+                    if is_near(f, gg) && is_near(t, hh) {
+                        return Some(Kind::Crease);
+                    }
+                    break;
+                }
+                // The shortest step to f = 0 and t = 0 to first order.
+                let (a, b) = ((f * hh - t * gh) / determinant, (t * gg - f * gh) / determinant);
+                let step = a * g + b * h;
+                p -= step;
+                if step.length() > 0.01 * STEP * size {
+                    continue;
+                }
+                let around = Bounds::new(p - STEP * size, p + STEP * size);
+                if !self.bounds.holds(p) || self.tied(&around, ranges).get(&id) != Some(&Reach::Reached) {
+                    break;
+                }
+                let across = h * (STEP * size / hh.sqrt());
+                let [one, other] = [p + across, p - across].map(|p| jet(self.part.root, p).1);
+                if (one - other).length() > LEAST_JUMP * one.length().max(other.length()) {
+                    return Some(Kind::Crease);
+                }
+                best = Some(Kind::Seam);
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// The halves of a box across its longest side.
+fn halves(bounds: &Bounds) -> [Bounds; 2] {
+    let size = bounds.size().to_array();
+    let axis = if size[0] >= size[1] && size[0] >= size[2] {
+        0
+    } else if size[1] >= size[2] {
+        1
+    } else {
+        2
+    };
+    let middle = bounds.middle().to_array()[axis];
+    let (mut low, mut high) = (*bounds, *bounds);
+    (low.max[axis], high.min[axis]) = (middle, middle);
+    [low, high]
+}
