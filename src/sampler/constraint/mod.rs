@@ -5,7 +5,7 @@
 //! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches are zero; it ends at a corner, at the
 //! box, or runs back into itself.
 //!
-//! 1. *Search.* The box is divided as long as bounds of f leave a cell more than one branch. In the smallest cells Newton's method
+//! 1. *Search.* The field says whether there are creases at all. The box is divided as long as bounds of f leave a cell more than one branch. In the smallest cells Newton's method
 //!    looks for a point on each pair of branches.
 //! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
@@ -68,6 +68,9 @@ pub(super) struct Creases {
 impl Creases {
     /// Finds the creases of a field in `bounds`.
     pub(super) fn find(probe: &mut Probe, bounds: &Bounds) -> Self {
+        if !probe.field.find_creases(bounds) {
+            return Self::default();
+        }
         let cells = search::cells(probe.field, bounds, CELL * bounds.diagonal());
         let mut creases = Self::default();
         let step = 0.5 * CELL * bounds.diagonal();
