@@ -31,7 +31,10 @@ const ROOMS: [Room; 4] = [
             ("mesh", &["math", "slices", "spatial", "particles", "topology"]),
             ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh"]),
             // Figures about a set of particles must not depend on what made them.
-            ("quality", &["math", "slices", "field", "differential", "spatial", "particles", "topology"]),
+            (
+                "quality",
+                &["math", "slices", "field", "differential", "spatial", "particles", "topology", "mesh"],
+            ),
             ("export", &["math", "spatial", "particles", "mesh", "quality"]),
             // The door: a field, sampled and measured.
             (
@@ -127,6 +130,7 @@ const ROOMS: [Room; 4] = [
         &[
             ("figures", &[]),
             ("options", &[]),
+            ("creases", &["options"]),
             ("places", &[]),
             ("moments", &[]),
             ("nearby", &[]),
@@ -134,20 +138,23 @@ const ROOMS: [Room; 4] = [
             ("border", &[]),
             ("projection", &[]),
             ("probe", &["projection"]),
-            ("sheets", &[]),
+            ("sheets", &["creases"]),
             ("one_rings", &["cell", "nearby", "sheets"]),
             ("accuracy", &["figures", "moments"]),
             ("triangles", &["figures", "moments", "one_rings"]),
             // The points, prepared; the figures below are made from them.
-            ("points", &["accuracy", "sheets", "one_rings"]),
+            ("points", &["options", "creases", "accuracy", "sheets", "one_rings"]),
             ("gaps", &["points"]),
-            ("prepared", &["figures", "points", "gaps", "triangles"]),
+            ("prepared", &["figures", "options", "points", "gaps", "triangles"]),
             ("components", &["points", "gaps", "triangles"]),
             ("order", &["figures", "moments", "one_rings", "points"]),
             ("spacing", &["figures", "moments", "places", "points"]),
             ("sizes", &["options", "moments", "places", "points"]),
             ("energy", &["points", "sizes"]),
-            ("holes", &["nearby", "border", "places", "projection", "probe", "triangles", "sizes"]),
+            (
+                "holes",
+                &["nearby", "border", "creases", "places", "projection", "probe", "triangles", "sizes"],
+            ),
         ],
     ),
     (

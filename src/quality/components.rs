@@ -40,13 +40,15 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
     for i in (0..n).filter(|&i| !is_used[i]) {
         points.rings.of(i).for_each(|j| join(i, j));
     }
+    // What joins patches is the particles on creases.
+    (0..n).for_each(|i| forest.join(i as u32, points.creases.first(i) as u32));
     let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
     // At the root of each component: the number of points, and the first of them in the order given.
     let mut count = vec![0_u32; n];
     let mut first = vec![u32::MAX; n];
-    for (&r, &origin) in root.iter().zip(&points.tree.origin) {
-        count[r as usize] += 1;
+    for (i, (&r, &origin)) in root.iter().zip(&points.tree.origin).enumerate() {
+        count[r as usize] += u32::from(points.creases.is_first(i));
         first[r as usize] = first[r as usize].min(origin);
     }
     // The key falls with the count, so the component with the most points is first.

@@ -1,6 +1,7 @@
 //! Figures of the holes: distances from random points of the surface and from Voronoi corners to the nearest point.
 
 use super::border::Border;
+use super::creases::Creases;
 use super::nearby::PointsInBox;
 use super::places::{Hole, WIDE};
 use super::probe;
@@ -40,6 +41,8 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
 /// The points whose holes are measured, and the triangles from which samples of the surface are drawn.
 pub(super) struct Cover<'a> {
     pub(super) tree: &'a Tree,
+    pub(super) creases: &'a Creases,
+    /// Those of one patch follow each other.
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
@@ -50,6 +53,11 @@ pub(super) struct Cover<'a> {
 }
 
 impl Cover<'_> {
+    /// The triangles, patch by patch.
+    fn patches(&self) -> impl Iterator<Item = &[[u32; 3]]> {
+        self.mesh.chunk_by(|one, other| self.creases.is_one_patch(one[0] as usize, other[0] as usize))
+    }
+
     /// Returns whether a sample counts: it is away from the border.
     pub(super) fn counts(&self, p: Vec3) -> bool {
         self.border.is_none_or(|border| !border.is_near(p))
@@ -155,15 +163,19 @@ impl HoleSearch {
     /// Takes in the Voronoi corners on the surface: the projected circumcentres of the triangles.
     pub(super) async fn add_corners(&mut self, field: &mut dyn Field, cover: &Cover<'_>) {
         let mut batch = Batch::default();
-        for chunk in cover.mesh.chunks(BATCH) {
-            for &triangle in chunk {
-                if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
-                    batch.push(centre.as_vec3(), radius as f32, triangle);
+        for triangles in cover.patches() {
+            cover.creases.select(field, triangles[0][0] as usize);
+            for chunk in triangles.chunks(BATCH) {
+                for &triangle in chunk {
+                    if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
+                        batch.push(centre.as_vec3(), radius as f32, triangle);
+                    }
                 }
+                self.add_corner_batch(field, cover, &mut batch);
+                pause().await;
             }
-            self.add_corner_batch(field, cover, &mut batch);
-            pause().await;
         }
+        cover.creases.release(field);
     }
 
     fn add_corner_batch(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
@@ -177,7 +189,11 @@ impl HoleSearch {
                 let gap_sq = cover.tree.nearest_sq(p, u32::MAX, bound_sq);
                 // The leash of an almost flat triangle is far longer than the gap.
                 let near = leash.min(gap_sq.sqrt());
-                if self.matters(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, near) {
+                if self.matters(gap_sq, ideal_sq)
+                    && cover.counts(p)
+                    && is_reached(field, p, near)
+                    && cover.creases.reaches(field, triangle[0] as usize, p)
+                {
                     self.widen(p, gap_sq, ideal_sq);
                 }
             }
@@ -194,8 +210,8 @@ impl HoleSearch {
         count: usize,
         seed: u64,
     ) {
-        let (position, triangles) = (&cover.tree.position, cover.mesh);
-        let total: f64 = triangles.iter().map(|&t| area_vector(position, t).length()).sum();
+        let position = &cover.tree.position;
+        let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
         let share = total / count as f64;
         let mut random = Pcg32::seed_from_u64(seed);
         let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
@@ -203,26 +219,33 @@ impl HoleSearch {
         let mut passed = 0.0;
         let mut next = share * unit();
         let mut stratum = 1.0;
-        for &triangle in triangles {
-            passed += area_vector(position, triangle).length();
-            while next < passed && stratum <= count as f64 {
-                let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
-                // The sample is uniform in the triangle: the square root undoes the crowding towards `a`.
-                let (s, t) = (unit().sqrt(), unit());
-                let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
-                // The nearest point is no farther than the nearest corner, and the projection moves the sample by less
-                // than that.
-                let corner = (p - a).length().min((p - b).length()).min((p - c).length());
-                batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
-                if batch.position.len() == BATCH {
-                    self.add_random(field, cover, &mut batch);
-                    pause().await;
+        for triangles in cover.patches() {
+            cover.creases.select(field, triangles[0][0] as usize);
+            for &triangle in triangles {
+                passed += area_vector(position, triangle).length();
+                while next < passed && stratum <= count as f64 {
+                    let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
+                    // The sample is uniform in the triangle: the square root undoes the crowding towards `a`.
+                    let (s, t) = (unit().sqrt(), unit());
+                    let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
+                    // The nearest point is no farther than the nearest corner, and the projection moves the sample by less
+                    // than that.
+                    let corner = (p - a).length().min((p - b).length()).min((p - c).length());
+                    batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
+                    if batch.position.len() == BATCH {
+                        self.add_random(field, cover, &mut batch);
+                        pause().await;
+                    }
+                    next = share * (stratum + unit());
+                    stratum += 1.0;
                 }
-                next = share * (stratum + unit());
-                stratum += 1.0;
+            }
+            if !cover.creases.is_empty() {
+                self.add_random(field, cover, &mut batch);
             }
         }
         self.add_random(field, cover, &mut batch);
+        cover.creases.release(field);
     }
 }
 
@@ -318,8 +341,15 @@ mod tests {
         for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {
             let tree = Tree::new(&points);
             let mesh = [[0, 1, 2]];
-            let cover =
-                Cover { tree: &tree, mesh: &mesh, border: None, wanted: None, lattice: 1.0, wide: 1.0 };
+            let cover = Cover {
+                tree: &tree,
+                creases: &Creases::default(),
+                mesh: &mesh,
+                border: None,
+                wanted: None,
+                lattice: 1.0,
+                wide: 1.0,
+            };
             let mut search = HoleSearch::default();
             complete(search.add_corners(&mut field, &cover));
             assert!(holes.contains(&search.largest().widest), "{}", search.largest().widest);

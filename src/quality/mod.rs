@@ -11,6 +11,10 @@
 //! the field between the points decides. The cell is clipped by the nearest points until no farther one can matter. The
 //! result is the same as from the convex hull of the inverted points q/|q|², without a hull.
 //!
+//! On a surface with creases the neighbours of a particle are those of its own patch, evaluated on the branch of that patch. The
+//! triangles are then those of [`mesh::build`](crate::mesh::build), which end at the creases. A particle on a crease has no full ring
+//! of neighbours, and the figures of order leave it out; in distances, holes, angles and the topology it counts, once.
+//!
 //! The whole report costs a few microseconds for each particle. It is deterministic, with the same bits natively and in
 //! WebAssembly if the field has the same bits.
 
@@ -18,6 +22,7 @@ mod accuracy;
 mod border;
 mod cell;
 mod components;
+mod creases;
 mod energy;
 pub mod figures;
 mod gaps;
@@ -38,7 +43,7 @@ mod spacing;
 mod triangles;
 
 pub use figures::Figures;
-pub use options::{MeasureOptions, Sizes};
+pub use options::{MeasureOptions, Patches, Sizes};
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
@@ -146,7 +151,7 @@ pub(crate) async fn in_slices(
 ) -> Measurements {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let prepared = Prepared::new(position, normal, field, bounds, options.area).await;
+    let prepared = Prepared::new(position, normal, field, bounds, options).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening } =
         figures_of(&prepared, field, bounds, options).await;
     let Prepared { points, drop, .. } = &prepared;
@@ -169,7 +174,11 @@ pub(crate) async fn in_slices(
         report.component[i] = component[k];
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
+        if let Some(&patch) = options.patches.patch.get(i) {
+            field.select_branch(Some(patch));
+        }
         let jet = field.jet(position[i].as_dvec3());
+        points.creases.release(field);
         report.residual[i] = first_order_height(jet.value, jet.gradient.length()).abs() as f32;
         let (_, equal) = points.tree.nearest(position[i], u32::MAX, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(Measurements::NO_COMPONENT);
@@ -180,7 +189,9 @@ pub(crate) async fn in_slices(
     figures.spacing.crowded = (!points.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
     report.places = Places { pairs: pairs.reported(), holes };
-    report.histogram = Histogram::new(&report.nearest, |i| match options.sizes {
+    let is_first = |i: usize| options.patches.twins.get(i).is_none_or(|&first| first as usize == i);
+    let nearest = report.nearest.iter().enumerate().filter(|&(i, _)| is_first(i));
+    report.histogram = Histogram::new(nearest.map(|(i, &distance)| (i, distance)), |i| match options.sizes {
         Sizes::Given(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),
         _ => figures.d_hex,
     });
@@ -196,7 +207,8 @@ pub(crate) async fn in_slices(
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let Prepared { points, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None, None));
+    let Prepared { points, mesh, .. } =
+        slices::complete(Prepared::new(position, normal, field, None, &MeasureOptions::default()));
     let origin = &points.tree.origin;
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
@@ -229,7 +241,7 @@ async fn figures_of(
         return DistinctFigures { figures, ..measured };
     }
     figures.area = options.area.unwrap_or_else(|| triangles::area(&points.tree.position, mesh));
-    figures.d_hex = hexagonal_spacing(figures.area, n + duplicates);
+    figures.d_hex = hexagonal_spacing(figures.area, points.count() + duplicates);
     pause().await;
     figures.accuracy = accuracy::measure(&points.residual, &points.normal_angles, figures.d_hex);
 
@@ -238,19 +250,21 @@ async fn figures_of(
         None => None,
     };
     let inner = points_away_from(border.as_ref(), points).await;
-    figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
+    figures.boundary_excluded = (0..n).filter(|&i| !inner[i] && points.creases.is_first(i)).count();
     pause().await;
-    figures.spacing = spacing::measure(points, &inner, *duplicates, figures.d_hex);
+    let once: Vec<bool> = (0..n).map(|i| inner[i] && points.creases.is_first(i)).collect();
+    figures.spacing = spacing::measure(points, &once, *duplicates, figures.d_hex);
     pause().await;
     let wanted = WantedRadii::new(points, &inner, field, options.sizes, figures.area).await;
     measured.pairs = measure_neighbourhoods(points, &inner, wanted.as_ref(), &mut figures).await;
     measured.energy = energy::of_points(points, wanted.as_ref(), figures.d_hex).await;
     (measured.component, measured.opening) =
-        measure_triangles(prepared, &inner, options.euler, &mut figures).await;
+        measure_triangles(prepared, [&inner, &once], options.euler, &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
-        let cover = Cover { tree: &points.tree, mesh, border, wanted, lattice, wide };
+        let cover =
+            Cover { tree: &points.tree, creases: &points.creases, mesh, border, wanted, lattice, wide };
         measured.holes = measure_holes(&cover, field, bounds, options, &mut figures).await;
     }
     DistinctFigures { figures, ..measured }
@@ -281,8 +295,12 @@ async fn measure_neighbourhoods(
     let mut ratios = EdgeRatios::default();
     for range in ranges(points.tree.len(), SLICE) {
         for i in range.filter(|&i| inner[i]) {
-            order.add(points, i);
-            points.mutual(inner, i).for_each(|j| edge.add(points.distance(i, j)));
+            // On a crease a particle has neighbours on one side only.
+            if !points.creases.holds(i) {
+                order.add(points, i);
+            }
+            let mutual = points.mutual(inner, i).filter(|&j| points.creases.is_first_pair(i, j));
+            mutual.for_each(|j| edge.add(points.distance(i, j)));
             wanted.iter().for_each(|wanted| ratios.add(wanted, points, inner, i));
         }
         pause().await;
@@ -298,30 +316,34 @@ async fn measure_neighbourhoods(
     ratios.pairs
 }
 
-/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and the
+/// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of those that are also counted
+/// `once`, as the first rows of their particles. Returns the connected component of each point, and the
 /// opening of the triangles.
 async fn measure_triangles(
     prepared: &Prepared,
-    inner: &[bool],
+    [inner, once]: [&[bool]; 2],
     euler: Option<i64>,
     figures: &mut Figures,
 ) -> (Vec<u32>, Option<Opening>) {
     let Prepared { points, spacing, triangles, mesh, .. } = prepared;
     let n = points.tree.len();
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
+    let is_whole = |i: usize| inner[i] && !points.creases.holds(i);
     let mut angles = TriangleAngles::default();
     let mut corners = 0;
     for list in [&triangles.unanimous, &triangles.majority] {
         for chunk in list.chunks(SLICE) {
             chunk.iter().filter(away).for_each(|&triangle| angles.add(&points.tree.position, triangle));
-            corners += chunk.iter().flatten().filter(|&&i| inner[i as usize]).count();
+            corners += chunk.iter().flatten().filter(|&&i| is_whole(i as usize)).count();
             pause().await;
         }
     }
     figures.angles = angles.figures();
-    let topology = Topology::in_slices(mesh, n).await;
+    let first = |i: u32| points.creases.first(i as usize) as u32;
+    let welded: Vec<[u32; 3]> = mesh.iter().map(|triangle| triangle.map(first)).collect();
+    let topology = Topology::in_slices(&welded, n).await;
     figures.connectivity.euler = topology.euler();
-    let opening = opening(&topology, mesh, inner, &points.tree.position);
+    let opening = opening(&topology, &welded, once, &points.tree.position);
     pause().await;
     let (component, count) = components::label(points, spacing, mesh).await;
     figures.connectivity.components = count;
@@ -330,10 +352,10 @@ async fn measure_triangles(
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());
     figures.connectivity.tri_ok = if figures.boundary_excluded == 0 {
         triangles.kept().count() as f64
-            / (2 * n as i64 - 2 * euler.unwrap_or(figures.connectivity.euler)) as f64
+            / (2 * points.count() as i64 - 2 * euler.unwrap_or(figures.connectivity.euler)) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
-        share(corners, (0..n).filter(|&i| inner[i]).map(|i| points.rings.valence(i)).sum())
+        share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.rings.valence(i)).sum())
     };
     (component, opening)
 }
@@ -357,7 +379,7 @@ async fn measure_holes(
     options: &MeasureOptions<'_>,
     figures: &mut Figures,
 ) -> Vec<Hole> {
-    let n = cover.tree.len();
+    let n = cover.tree.len() - cover.creases.further();
     let samples = n.max(options.samples).min(MOST_SAMPLES);
     let mut search = HoleSearch::default();
     search.add_samples(field, cover, samples, options.seed).await;

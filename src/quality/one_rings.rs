@@ -77,7 +77,7 @@ impl OneRings {
         Leaf { range, lo, hi }: Leaf,
         RingBuffers { cell, nearby, keys, asked }: &mut RingBuffers,
     ) {
-        let Sheets { tree, normal, .. } = *sheets;
+        let Sheets { tree, normal, creases, .. } = *sheets;
         let reach = BALL * (hi - lo).length();
         let reach_sq = reach * reach;
         nearby.gather(tree, lo - reach, hi + reach);
@@ -88,8 +88,11 @@ impl OneRings {
             keys.clear();
             for (indices, distances_sq) in nearby.index.chunks(LANES).zip(nearby.distances_sq(p)) {
                 for (&j, &d) in indices.iter().zip(&distances_sq.0) {
-                    if d < reach_sq && j as usize != i {
+                    if d < reach_sq && j as usize != i && !creases.are_one(i, j as usize) {
                         nearest_sq = nearest_sq.min(d);
+                        if !creases.is_one_patch(i, j as usize) {
+                            continue;
+                        }
                         if is_one_sheet(tree, normal, i, j as usize, d) {
                             keys.push(key(d, j));
                         } else {
@@ -99,16 +102,18 @@ impl OneRings {
                 }
             }
             if nearest_sq >= reach_sq {
-                nearest_sq = tree.nearest_sq(p, i as u32, f32::INFINITY);
+                nearest_sq = creases.nearest(tree, i).0;
             }
             self.nearest.push(nearest_sq.sqrt());
             keys.sort_unstable();
             let facing_away = if faces_another {
-                sheets.facing_away(i, nearby.index.iter().map(|&j| j as usize))
+                let of_patch = |&j: &usize| creases.is_one_patch(i, j);
+                sheets.facing_away(i, nearby.index.iter().map(|&j| j as usize).filter(of_patch))
             } else {
                 f64::INFINITY
             };
             asked.clear();
+            creases.select(field, i);
             let mut is_stranger = |j: usize| {
                 let known = asked.iter().find(|(other, _)| *other == j).map(|&(_, is_stranger)| is_stranger);
                 known.unwrap_or_else(|| {
@@ -126,7 +131,9 @@ impl OneRings {
                 }
                 let accept = |j: u32| {
                     let distance_sq = (tree.position[j as usize] - p).length_squared();
-                    j as usize != i && is_one_sheet(tree, normal, i, j as usize, distance_sq)
+                    j as usize != i
+                        && creases.is_one_patch(i, j as usize)
+                        && is_one_sheet(tree, normal, i, j as usize, distance_sq)
                 };
                 tree.nearest_many(p, count, accept, keys);
                 known_sq = match keys.last() {
@@ -137,6 +144,7 @@ impl OneRings {
             }
             self.neighbour
                 .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
+            creases.release(field);
             self.closed.push(closed);
             self.start.push(self.neighbour.len() as u32);
         }

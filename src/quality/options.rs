@@ -1,5 +1,7 @@
 //! Options of a measurement: the wanted radii, the exact area and Euler number where they are known, and the sampling of holes.
 
+use crate::particles::Particles;
+
 /// The wanted radius of each particle, for [`Edges::size_cv`](super::figures::Edges::size_cv),
 /// [`cover_local`](super::figures::Coverage::cover_local) and [`overlap_min`](super::figures::Edges::overlap_min).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,6 +22,24 @@ pub enum Sizes<'a> {
     },
 }
 
+/// The patches of a surface with creases: columns of [`Particles`](crate::particles::Particles). Neighbours of a particle are looked
+/// for on its own patch, and the patches are one surface by the particles on creases. All are empty where there are no creases.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Patches<'a> {
+    /// Patch of every row, by the number of its branch.
+    pub patch: &'a [u32],
+    /// For each of the first rows, the first row of the same particle.
+    pub twins: &'a [u32],
+    /// Pairs of particles that follow each other along a crease, each by its first row.
+    pub segments: &'a [[u32; 2]],
+}
+
+impl<'a> From<&'a Particles> for Patches<'a> {
+    fn from(Particles { patch, twins, segments, .. }: &'a Particles) -> Self {
+        Self { patch, twins, segments }
+    }
+}
+
 /// Options of a measurement: known properties of the surface, and the number of random samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasureOptions<'a> {
@@ -30,6 +50,8 @@ pub struct MeasureOptions<'a> {
     pub euler: Option<i64>,
     /// Wanted radii.
     pub sizes: Sizes<'a>,
+    /// The patches, where the surface has creases. Each column is then one of rows.
+    pub patches: Patches<'a>,
     /// Smallest number of random samples for [`Coverage::quant`](super::figures::Coverage::quant). There is at least one for each
     /// particle, and there are at most 262,144.
     pub samples: usize,
@@ -40,6 +62,13 @@ pub struct MeasureOptions<'a> {
 impl Default for MeasureOptions<'_> {
     fn default() -> Self {
         // 65,536 stratified samples give `quant` to about 0.1 %.
-        Self { area: None, euler: None, sizes: Sizes::None, samples: 65_536, seed: 0 }
+        Self {
+            area: None,
+            euler: None,
+            sizes: Sizes::None,
+            patches: Patches::default(),
+            samples: 65_536,
+            seed: 0,
+        }
     }
 }

@@ -1,10 +1,12 @@
 //! The points to be measured, with their normals and one-rings.
 
 use super::accuracy::{NormalAngles, first_order_height};
+use super::creases::Creases;
 use super::one_rings::OneRings;
+use super::options::Patches;
 use super::sheets::Sheets;
 use crate::field::Field;
-use crate::slices::pause;
+use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
@@ -22,6 +24,7 @@ pub(super) struct MeasuredPoints {
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
     pub(super) rings: OneRings,
+    pub(super) creases: Creases,
     /// Whether a duplicate of the point was dropped, so that the distance to the nearest point is 0.
     has_duplicate: Vec<bool>,
 }
@@ -33,15 +36,18 @@ impl MeasuredPoints {
         field: &mut dyn Field,
         has_duplicate: &[bool],
         drop: &[bool],
+        patches: Patches<'_>,
     ) -> Self {
         let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
         let tree = Tree::in_slices(kept).await;
+        let creases = Creases::new(&tree, patches);
         let mut normal = Vec::with_capacity(tree.len());
         let mut height = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();
-        for (position, origin) in tree.position.chunks(BATCH).zip(tree.origin.chunks(BATCH)) {
+        for range in ranges(tree.len(), BATCH) {
+            let (position, origin) = (&tree.position[range.clone()], &tree.origin[range.clone()]);
             let (mut value, mut gradient) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
-            field.exact_gradients(position, &mut value, &mut gradient);
+            creases.exact_gradients(field, range, position, &mut value, &mut gradient);
             for ((&i, value), &gradient) in origin.iter().zip(value).zip(&gradient) {
                 let slope = gradient.length();
                 let given = given.get(i as usize).copied().unwrap_or(Vec3::ZERO);
@@ -52,12 +58,17 @@ impl MeasuredPoints {
             }
             pause().await;
         }
-        let sheets = Sheets { tree: &tree, normal: &normal, height: &height };
+        let sheets = Sheets { tree: &tree, normal: &normal, height: &height, creases: &creases };
         let rings = OneRings::new(&sheets, field).await;
         let mut residual = height;
         residual.iter_mut().for_each(|height| *height = height.abs());
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
-        Self { tree, normal, residual, normal_angles, rings, has_duplicate }
+        Self { tree, normal, residual, normal_angles, rings, creases, has_duplicate }
+    }
+
+    /// Returns the number of particles.
+    pub(super) fn count(&self) -> usize {
+        self.tree.len() - self.creases.further()
     }
 
     /// Returns the distance from point `i` to the nearest other point, of any sheet.

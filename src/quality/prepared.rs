@@ -2,10 +2,12 @@
 
 use super::figures::hexagonal_spacing;
 use super::gaps::{Gaps, spacing_of};
+use super::options::MeasureOptions;
 use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
 use crate::math::{Bounds, IndexTable, hash};
+use crate::mesh::build::MeshOptions;
 use crate::slices::pause;
 use glam::Vec3;
 
@@ -29,32 +31,43 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares the points; `bounds` is the box that was sampled and `known_area` that of the surface, where they are known.
+    /// Prepares the points; `bounds` is the box that was sampled, where it is known.
     pub(super) async fn new(
         position: &[Vec3],
         normal: &[Vec3],
         field: &mut dyn Field,
         bounds: Option<&Bounds>,
-        known_area: Option<f64>,
+        options: &MeasureOptions<'_>,
     ) -> Self {
+        let patches = options.patches;
+        // The further rows of a particle on a crease.
+        let is_further = |i: usize| patches.twins.get(i).is_some_and(|&first| first as usize != i);
+        let further = (0..patches.twins.len()).filter(|&i| is_further(i)).count();
         let mut drop: Vec<bool> = position.iter().map(|p| !p.is_finite()).collect();
         let not_finite = drop.iter().filter(|&&dropped| dropped).count();
         let mut has_duplicate = vec![false; position.len()];
         // Equal points go first: all of them would be nearest neighbours of one another.
-        drop_equal(position, &mut drop, &mut has_duplicate);
+        drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop).await;
+            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, patches).await;
             let spacing = spacing_of(&points).await;
-            let mut triangles = Triangles::new(&points.rings).await;
-            let gaps = Gaps { points: &points, spacing: &spacing, bounds };
-            for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
-                gaps.drop_across(field, list).await;
-            }
-            let mesh = triangles.settled(&points.tree.position);
+            let (triangles, mesh) = if points.creases.is_empty() {
+                let mut triangles = Triangles::new(&points.rings).await;
+                let gaps = Gaps { points: &points, spacing: &spacing, bounds };
+                for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
+                    gaps.drop_across(field, list).await;
+                }
+                let mesh = triangles.settled(&points.tree.position);
+                (triangles, mesh)
+            } else {
+                let options = MeshOptions { bounds, ..MeshOptions::default() };
+                let mesh = points.creases.mesh(&points.tree, &points.normal, patches, &options).await;
+                (Triangles::seen(&points.rings, &mesh), mesh)
+            };
             pause().await;
-            let area = known_area.unwrap_or_else(|| area(&points.tree.position, &mesh));
-            let d_hex = hexagonal_spacing(area, position.len() - not_finite);
+            let area = options.area.unwrap_or_else(|| area(&points.tree.position, &mesh));
+            let d_hex = hexagonal_spacing(area, position.len() - not_finite - further);
             pause().await;
             if !drop_close(&points, (DUPLICATE * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - points.tree.len();
@@ -64,11 +77,17 @@ impl Prepared {
     }
 }
 
-/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`.
-fn drop_equal(position: &[Vec3], drop: &mut [bool], has_duplicate: &mut [bool]) {
+/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`; further rows of a particle
+/// are no duplicates of it.
+fn drop_equal(
+    position: &[Vec3],
+    is_further: impl Fn(usize) -> bool,
+    drop: &mut [bool],
+    has_duplicate: &mut [bool],
+) {
     let mut table = IndexTable::default();
     for (i, p) in position.iter().enumerate() {
-        if drop[i] {
+        if drop[i] || is_further(i) {
             continue;
         }
         // Adding 0 turns −0 into 0.
@@ -93,6 +112,7 @@ fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
             tree.within_box(tree.position[i] - limit, tree.position[i] + limit, &mut near);
             if near.iter().any(|&j| {
                 tree.origin[j as usize] < tree.origin[i]
+                    && !points.creases.are_one(i, j as usize)
                     && (tree.position[j as usize] - tree.position[i]).length() < limit
             }) {
                 drop[tree.origin[i] as usize] = true;
@@ -120,7 +140,7 @@ mod tests {
         let is_first = |i: usize| i % 17 != 3 && !(0..i).any(|j| j % 17 != 3 && position[j] == position[i]);
         let has_later = |i: usize| (i + 1..position.len()).any(|j| j % 17 != 3 && position[j] == position[i]);
         let mut has_duplicate = vec![false; position.len()];
-        drop_equal(&position, &mut drop, &mut has_duplicate);
+        drop_equal(&position, |_| false, &mut drop, &mut has_duplicate);
         for i in 0..position.len() {
             assert_eq!(drop[i], !is_first(i), "{i}");
             assert_eq!(has_duplicate[i], is_first(i) && has_later(i), "{i}");

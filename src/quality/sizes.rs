@@ -8,7 +8,6 @@ use crate::differential::exact_curvature;
 use crate::field::Field;
 use crate::math::SQRT_3;
 use crate::slices::{pause, ranges};
-use glam::Vec3;
 
 /// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
 const CELL_AREA: f64 = 2.0 * SQRT_3;
@@ -57,19 +56,23 @@ impl WantedRadii {
                 own.iter().map(Moments::mean).collect()
             }
             Sizes::Curvature { lowest, highest } => {
-                let mut of = |p: &Vec3| {
+                let mut of = |i: usize| {
+                    let p = points.tree.position[i];
+                    points.creases.select(field, i);
                     let curvature = exact_curvature(&field.jet(p.as_dvec3())).max_abs();
                     1.0 / curvature.max(lowest).min(highest)
                 };
                 let mut radius = Vec::with_capacity(n);
-                for chunk in points.tree.position.chunks(SLICE) {
-                    radius.extend(chunk.iter().map(&mut of));
+                for range in ranges(n, SLICE) {
+                    radius.extend(range.map(&mut of));
                     pause().await;
                 }
+                points.creases.release(field);
                 radius
             }
         };
-        let cells: f64 = radius.iter().filter(|r| r.is_finite()).map(|r| CELL_AREA * r * r).sum();
+        let once = (0..n).filter(|&i| points.creases.is_first(i)).map(|i| radius[i]);
+        let cells: f64 = once.filter(|r| r.is_finite()).map(|r| CELL_AREA * r * r).sum();
         Some(Self { radius, hole: HOLE * (area / cells).sqrt() })
     }
 
@@ -106,6 +109,7 @@ impl EdgeRatios {
     pub(super) fn add(&mut self, wanted: &WantedRadii, points: &MeasuredPoints, inner: &[bool], i: usize) {
         points
             .mutual(inner, i)
+            .filter(|&j| points.creases.is_first_pair(i, j))
             .map(|j| wanted.ratio(points, i, j))
             .filter(|ratio| ratio.is_finite())
             .for_each(|ratio| self.edge.add(ratio));
@@ -114,8 +118,9 @@ impl EdgeRatios {
             self.least = self.least.min(ratio);
             // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
             let is_seen_again = j < i && inner[j] && points.rings.adjacent(j, i);
-            if ratio.is_finite() && !is_seen_again {
-                self.pairs.add(ratio, points.tree.origin[i], points.tree.origin[j]);
+            if ratio.is_finite() && !is_seen_again && points.creases.is_first_pair(i, j) {
+                let [i, j] = [i, j].map(|i| points.creases.particle(&points.tree, i));
+                self.pairs.add(ratio, i, j);
             }
         }
     }

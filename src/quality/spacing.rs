@@ -30,11 +30,11 @@ impl Histogram {
     /// A bin is 0.01 wide: a fifth of the standard deviation of the distances on a relaxed surface.
     const BINS: usize = 120;
 
-    /// Counts the distances `nearest` over the ideal one of each particle. Those that are NaN are left out.
-    pub(super) fn new(nearest: &[f32], ideal: impl Fn(usize) -> f64) -> Self {
+    /// Counts the distances `nearest` of particles over the ideal one of each. Those that are NaN are left out.
+    pub(super) fn new(nearest: impl IntoIterator<Item = (usize, f32)>, ideal: impl Fn(usize) -> f64) -> Self {
         let (min, max) = Self::RANGE;
         let mut bins = vec![0; Self::BINS];
-        for (i, &distance) in nearest.iter().enumerate() {
+        for (i, distance) in nearest {
             let place = (f64::from(distance) / ideal(i) - min) / (max - min) * Self::BINS as f64;
             if !place.is_nan() {
                 bins[(place as usize).min(Self::BINS - 1)] += 1;
@@ -46,11 +46,11 @@ impl Histogram {
 
 /// Adds the pairs of points by their distance over d_hex, of which at least one point is `inner`.
 pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f64, pairs: &mut Pairs) {
-    let tree = &points.tree;
+    let MeasuredPoints { tree, creases, .. } = points;
     let reach = (CROWDED * d_hex) as f32;
     let mut near = Vec::new();
     for range in ranges(inner.len(), SLICE) {
-        for i in range.filter(|&i| inner[i]) {
+        for i in range.filter(|&i| inner[i] && creases.is_first(i)) {
             let nearest = f64::from(points.rings.nearest[i]) / d_hex;
             if !nearest.is_finite() || !pairs.matters(nearest) {
                 continue;
@@ -60,12 +60,12 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
             if nearest < CROWDED {
                 tree.within_box(p - reach, p + reach, &mut near);
             } else {
-                near.push(tree.nearest(p, i as u32, f32::INFINITY).1);
+                near.push(creases.first(creases.nearest(tree, i).1 as usize) as u32);
             }
             for &j in &near {
                 let j = j as usize;
                 // Of two inner points, the pair is added at the earlier one.
-                if j != i && (j > i || !inner[j] || nearest >= CROWDED) {
+                if j != i && creases.is_first(j) && (j > i || !inner[j] || nearest >= CROWDED) {
                     pairs.add(points.distance(i, j) / d_hex, tree.origin[i], tree.origin[j]);
                 }
             }
@@ -112,7 +112,8 @@ mod tests {
     #[test]
     fn a_distance_counts_by_the_ideal_one_of_its_particle() {
         let diameters = [0.2, 2.0, 20.0, 20.0, 2.0];
-        let Histogram { bins, .. } = Histogram::new(&[0.2, 1.99, 20.0, 500.0, f32::NAN], |i| diameters[i]);
+        let Histogram { bins, .. } =
+            Histogram::new((0..).zip([0.2, 1.99, 20.0, 500.0, f32::NAN]), |i| diameters[i]);
         let found: Vec<(usize, u32)> = bins.into_iter().enumerate().filter(|&(_, count)| count > 0).collect();
         assert_eq!(found, [(99, 1), (100, 2), (119, 1)]);
     }

@@ -36,6 +36,16 @@ impl Triangles {
         triangles
     }
 
+    /// The triangles of a mesh: those that all corners see are unanimous, and the others count as well.
+    pub(super) fn seen(rings: &OneRings, mesh: &[[u32; 3]]) -> Self {
+        let is_seen = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|i| i as usize);
+            rings.sees(a, b, c) && rings.sees(b, c, a) && rings.sees(c, a, b)
+        };
+        let (unanimous, majority) = mesh.iter().partition(|triangle| is_seen(triangle));
+        Self { unanimous, majority, single: Vec::new() }
+    }
+
     /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added once.
     fn add(&mut self, rings: &OneRings, i: usize) {
         for (a, b) in rings.pairs(i) {

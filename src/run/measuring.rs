@@ -48,12 +48,21 @@ pub(super) struct ParticleCopy {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
     radius: Vec<f32>,
+    patch: Vec<u32>,
+    twins: Vec<u32>,
+    segments: Vec<[u32; 2]>,
 }
 
 impl ParticleCopy {
     pub(super) fn of(particles: &Particles) -> Self {
-        let Particles { position, normal, radius, .. } = particles;
-        Self { position: position.clone(), normal: normal.clone(), radius: radius.clone() }
+        Self {
+            position: particles.position.clone(),
+            normal: particles.normal.clone(),
+            radius: particles.radius.clone(),
+            patch: particles.patch.clone(),
+            twins: particles.twins.clone(),
+            segments: particles.segments.clone(),
+        }
     }
 
     /// [`quality::measure`], a slice at a time.
@@ -67,7 +76,9 @@ impl ParticleCopy {
             Sampling::Uniform => quality::Sizes::None,
             Sampling::Adaptive => quality::Sizes::Given(&self.radius),
         };
-        let options = quality::MeasureOptions { sizes, ..quality::MeasureOptions::default() };
+        let Self { patch, twins, segments, .. } = self;
+        let patches = quality::Patches { patch, twins, segments };
+        let options = quality::MeasureOptions { sizes, patches, ..quality::MeasureOptions::default() };
         quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
     }
 }
@@ -111,7 +122,7 @@ impl MeasuringInput {
     }
 }
 
-/// Number of particles nearer than 2r to one that faces the other way.
+/// Number of particles nearer than 2r to one of the same patch that faces the other way.
 async fn facing_another_sheet(particles: &ParticleCopy) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
@@ -129,7 +140,9 @@ async fn facing_another_sheet(particles: &ParticleCopy) -> usize {
             near.clear();
             tree.within_box(p - Vec3::splat(reach), p + Vec3::splat(reach), &mut near);
             let is_facing = near.iter().any(|&k| {
-                particles.normal[tree.origin[k as usize] as usize].dot(n) < FACING
+                let j = tree.origin[k as usize] as usize;
+                particles.normal[j].dot(n) < FACING
+                    && particles.patch.get(j) == particles.patch.get(i)
                     && tree.position[k as usize].distance_squared(p) < reach * reach
             });
             count += usize::from(is_facing);

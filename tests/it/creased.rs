@@ -1,6 +1,7 @@
 //! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on every patch.
 
 use glam::{DVec2, DVec3, Vec3};
+use marching_particles::Field;
 use marching_particles::particles::{Particles, Slots};
 
 /// A crease: points in order along it, and the patches that meet there.
@@ -14,13 +15,44 @@ pub(crate) struct Creased {
     pub(crate) creases: Vec<Crease>,
     /// Points of each patch that lie on no crease.
     pub(crate) inner: Vec<(u32, DVec3)>,
-    /// Outward unit normal of a patch.
-    pub(crate) normal: Box<dyn Fn(u32, DVec3) -> DVec3>,
+    /// f and ∇f of a patch.
+    pub(crate) branch: Branch,
+    /// The patch that is nearest to a point.
+    pub(crate) nearest: Nearest,
     pub(crate) area: f64,
     pub(crate) spacing: f64,
 }
 
+type Branch = Box<dyn Fn(u32, DVec3) -> (f64, DVec3) + Send>;
+type Nearest = Box<dyn Fn(DVec3) -> u32 + Send>;
+
+/// The field of a surface of patches: at each point that of the nearest patch.
+pub(crate) struct CreasedField {
+    branch: Branch,
+    nearest: Nearest,
+    selected: Option<u32>,
+}
+
+impl Field for CreasedField {
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let patch = self.selected.unwrap_or_else(|| (self.nearest)(p));
+        (self.branch)(patch, p)
+    }
+
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        (self.nearest)(p)
+    }
+
+    fn select_branch(&mut self, branch: Option<u32>) {
+        self.selected = branch;
+    }
+}
+
 impl Creased {
+    pub(crate) fn field(self) -> CreasedField {
+        CreasedField { branch: self.branch, nearest: self.nearest, selected: None }
+    }
+
     pub(crate) fn particles(&self) -> Particles {
         // Each particle on a crease, with its patches.
         let mut places: Vec<(Vec3, Vec<u32>)> = Vec::new();
@@ -42,7 +74,7 @@ impl Creased {
         }
         let mut particles = Particles::default();
         let push = |particles: &mut Particles, place: Vec3, patch: u32| {
-            let normal = (self.normal)(patch, place.as_dvec3()).as_vec3();
+            let normal = (self.branch)(patch, place.as_dvec3()).1.normalize_or_zero().as_vec3();
             let radius = 0.5 * self.spacing as f32;
             particles.push(place, normal, radius, Particles::NO_PARENT, 0, Slots::default());
             particles.patch.truncate(particles.len() - 1);
@@ -105,6 +137,21 @@ fn plane_normal(face: &Face) -> DVec3 {
     (0..corners.len()).map(area).sum::<DVec3>().normalize_or_zero()
 }
 
+fn distance_to(face: &Face, p: DVec3) -> f64 {
+    let normal = plane_normal(face);
+    let (mut nearest, mut turns) = (f64::INFINITY, 0.0);
+    for corners in &face.1 {
+        for (k, &a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            let share = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min(p.distance(a.lerp(b, share)));
+            let flat = |q: DVec3| (q - p) - normal * (q - p).dot(normal);
+            turns += libm::atan2(flat(a).cross(flat(b)).dot(normal), flat(a).dot(flat(b)));
+        }
+    }
+    if turns > 3.0 { nearest.min((p - face.1[0][0]).dot(normal).abs()) } else { nearest }
+}
+
 /// The surface of a solid with flat faces, sampled with a `spacing`.
 pub(crate) fn polyhedron(faces: Vec<Face>, spacing: f64) -> Creased {
     let mut creases: Vec<(DVec3, DVec3, Crease)> = Vec::new();
@@ -145,12 +192,18 @@ pub(crate) fn polyhedron(faces: Vec<Face>, spacing: f64) -> Creased {
         let points = lattice(half, spacing).into_iter().filter(|&p| is_inside(p));
         inner.extend(points.map(|p| (*patch, origin + x * p.x + y * p.y)));
     }
-    let normals: Vec<(u32, DVec3)> = faces.iter().map(|face| (face.0, plane_normal(face))).collect();
-    let normal = move |patch: u32, _| {
-        normals.iter().find(|other| other.0 == patch).map_or(DVec3::ZERO, |&(_, normal)| normal)
+    let planes: Vec<(u32, DVec3, DVec3)> =
+        faces.iter().map(|face| (face.0, plane_normal(face), face.1[0][0])).collect();
+    let branch = move |patch: u32, p: DVec3| {
+        let (_, normal, at) = planes.iter().find(|plane| plane.0 == patch).expect("a plane");
+        (normal.dot(p - at), *normal)
+    };
+    let nearest = move |p: DVec3| {
+        let distance = |face: &Face| distance_to(face, p);
+        faces.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a face").0
     };
     let creases = creases.into_iter().map(|(_, _, crease)| crease).collect();
-    Creased { creases, inner, normal: Box::new(normal), area, spacing }
+    Creased { creases, inner, branch: Box::new(branch), nearest: Box::new(nearest), area, spacing }
 }
 
 /// A prism over an outline, counter-clockwise in the plane, with holes, clockwise. Sides are of one patch if they are of one plane.
@@ -207,7 +260,11 @@ pub(crate) fn two_spheres(spacing: f64) -> Creased {
     Creased {
         creases: vec![Crease { points, patches: [0, 1] }],
         inner: inner.filter(is_inner).collect(),
-        normal: Box::new(move |patch, p| (p - centre(patch)).normalize_or_zero()),
+        branch: Box::new(move |patch, p| {
+            let offset = p - centre(patch);
+            (offset.length() - 1.0, offset.normalize_or_zero())
+        }),
+        nearest: Box::new(|p| u32::from(p.z > 0.0)),
         area: 6.0 * core::f64::consts::PI,
         spacing,
     }
@@ -233,12 +290,15 @@ pub(crate) fn drilled_cube(radius: f64, spacing: f64) -> Creased {
             solid.inner.push((HOLE, p));
         }
     }
-    let flat = solid.normal;
-    solid.normal = Box::new(
-        move |patch, p| {
-            if patch == HOLE { -p.with_z(0.0).normalize_or_zero() } else { flat(patch, p) }
-        },
-    );
+    let (flat, nearest) = (solid.branch, solid.nearest);
+    solid.branch = Box::new(move |patch, p| {
+        let of_hole = (radius - distance(p), -p.with_z(0.0).normalize_or_zero());
+        if patch == HOLE { of_hole } else { flat(patch, p) }
+    });
+    solid.nearest = Box::new(move |p| {
+        let from_top = (p.z - 1.0).abs() - 1.0;
+        if radius - distance(p) > from_top.max(-radius) { HOLE } else { nearest(p) }
+    });
     solid.area += core::f64::consts::PI * radius * (4.0 - 2.0 * radius);
     solid
 }

@@ -12,6 +12,7 @@ mod branches;
 mod cli;
 mod components;
 mod crease_mesh;
+mod crease_quality;
 mod creased;
 mod differential;
 mod door;

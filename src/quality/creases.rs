@@ -1,0 +1,191 @@
+//! The rows of particles on creases: which are of one patch, and which of one particle.
+
+use super::options::Patches;
+use crate::field::Field;
+use crate::math::unkey;
+use crate::mesh::build::{MeshOptions, particles_in_slices};
+use crate::particles::Particles;
+use crate::spatial::tree::Tree;
+use core::ops::Range;
+use glam::{DVec3, Vec3};
+
+/// The patches of the points, in tree order; all columns are empty on a surface without creases.
+#[derive(Debug, Default)]
+pub(super) struct Creases {
+    patch: Vec<u32>,
+    /// The first row of the particle of each point, as given.
+    particle: Vec<u32>,
+    /// The point that is the first row of each point's particle; itself where that was left out.
+    first: Vec<u32>,
+    /// Particle and patch of each row on a crease, sorted.
+    on_creases: Vec<(u32, u32)>,
+}
+
+impl Creases {
+    pub(super) fn new(tree: &Tree, patches: Patches<'_>) -> Self {
+        if patches.patch.is_empty() {
+            return Self::default();
+        }
+        let particle = |row: u32| patches.twins.get(row as usize).copied().unwrap_or(row);
+        let mut place = vec![u32::MAX; patches.patch.len()];
+        for (k, &row) in (0..).zip(&tree.origin) {
+            place[row as usize] = k;
+        }
+        let first = |(k, &row): (u32, &u32)| match place[particle(row) as usize] {
+            u32::MAX => k,
+            first => first,
+        };
+        let mut on_creases: Vec<(u32, u32)> =
+            patches.twins.iter().copied().zip(patches.patch.iter().copied()).collect();
+        on_creases.sort_unstable();
+        Self {
+            patch: tree.origin.iter().map(|&row| patches.patch[row as usize]).collect(),
+            particle: tree.origin.iter().map(|&row| particle(row)).collect(),
+            first: (0..).zip(&tree.origin).map(first).collect(),
+            on_creases,
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.patch.is_empty()
+    }
+
+    /// The particle of point `i`: the first of its rows, as given.
+    pub(super) fn particle(&self, tree: &Tree, i: usize) -> u32 {
+        self.particle.get(i).copied().unwrap_or(tree.origin[i])
+    }
+
+    /// The point that stands for the particle of point `i`.
+    pub(super) fn first(&self, i: usize) -> usize {
+        self.first.get(i).map_or(i, |&first| first as usize)
+    }
+
+    /// Whether point `i` stands for its particle.
+    pub(super) fn is_first(&self, i: usize) -> bool {
+        self.first(i) == i
+    }
+
+    /// Number of points that stand for another one.
+    pub(super) fn further(&self) -> usize {
+        (0..self.first.len()).filter(|&i| !self.is_first(i)).count()
+    }
+
+    /// Whether two points are rows of one particle.
+    pub(super) fn are_one(&self, i: usize, j: usize) -> bool {
+        !self.is_empty() && self.particle[i] == self.particle[j]
+    }
+
+    /// Squared distance of the nearest point that is of another particle than point `i`, and that point or another row of its
+    /// particle; infinite and `u32::MAX` if there is none.
+    pub(super) fn nearest(&self, tree: &Tree, i: usize) -> (f32, u32) {
+        if self.is_empty() {
+            return tree.nearest(tree.position[i], i as u32, f32::INFINITY);
+        }
+        let mut keys = Vec::new();
+        tree.nearest_many(tree.position[i], 1, |j| !self.are_one(i, j as usize), &mut keys);
+        keys.first().map_or((f32::INFINITY, u32::MAX), |&key| unkey(key))
+    }
+
+    /// Whether two points are on one patch.
+    pub(super) fn is_one_patch(&self, i: usize, j: usize) -> bool {
+        self.is_empty() || self.patch[i] == self.patch[j]
+    }
+
+    /// Whether point `i` lies on a crease.
+    pub(super) fn holds(&self, i: usize) -> bool {
+        !self.is_empty() && !self.patches_of(self.particle[i]).is_empty()
+    }
+
+    /// The patches of a particle on a crease.
+    fn patches_of(&self, particle: u32) -> &[(u32, u32)] {
+        let start = self.on_creases.partition_point(|&(other, _)| other < particle);
+        let end = self.on_creases.partition_point(|&(other, _)| other <= particle);
+        &self.on_creases[start..end]
+    }
+
+    /// Whether two points of one patch are the first rows of their particles that are: particles that follow each other along a
+    /// crease are neighbours on each of its patches.
+    pub(super) fn is_first_pair(&self, i: usize, j: usize) -> bool {
+        if self.is_empty() {
+            return true;
+        }
+        let (of_i, of_j) = (self.patches_of(self.particle[i]), self.patches_of(self.particle[j]));
+        let is_common = |patch: u32| of_j.iter().any(|&(_, other)| other == patch);
+        of_i.iter()
+            .map(|&(_, patch)| patch)
+            .find(|&patch| is_common(patch))
+            .is_none_or(|patch| patch == self.patch[i])
+    }
+
+    /// f and ∇f at the points of a range, each on its own patch.
+    pub(super) fn exact_gradients(
+        &self,
+        field: &mut dyn Field,
+        range: Range<usize>,
+        position: &[Vec3],
+        value: &mut [f64],
+        gradient: &mut [DVec3],
+    ) {
+        let Some(patch) = self.patch.get(range) else {
+            field.exact_gradients(position, value, gradient);
+            return;
+        };
+        let mut done = 0;
+        while done < position.len() {
+            // Near points are on few patches, in long runs.
+            let run = patch[done..].iter().take_while(|&&other| other == patch[done]).count();
+            field.select_branch(Some(patch[done]));
+            let end = done + run;
+            field.exact_gradients(&position[done..end], &mut value[done..end], &mut gradient[done..end]);
+            done = end;
+        }
+        field.select_branch(None);
+    }
+
+    /// Has the field evaluated on the patch of point `i`, until [`Creases::release`].
+    pub(super) fn select(&self, field: &mut dyn Field, i: usize) {
+        if let Some(&patch) = self.patch.get(i) {
+            field.select_branch(Some(patch));
+        }
+    }
+
+    /// Has the field evaluated as it is.
+    pub(super) fn release(&self, field: &mut dyn Field) {
+        if !self.is_empty() {
+            field.select_branch(None);
+        }
+    }
+
+    /// Whether a place is on the patch of point `i`, and not on what lies beyond its creases.
+    pub(super) fn reaches(&self, field: &mut dyn Field, i: usize, p: Vec3) -> bool {
+        self.patch.get(i).is_none_or(|&patch| field.branch_at(p.as_dvec3()) == patch)
+    }
+
+    /// The triangles over points with these normals, each patch up to its creases.
+    pub(super) async fn mesh(
+        &self,
+        tree: &Tree,
+        normal: &[Vec3],
+        patches: Patches<'_>,
+        options: &MeshOptions<'_>,
+    ) -> Vec<[u32; 3]> {
+        let count = patches.patch.len();
+        // Rows that are left out have no position.
+        let mut particles = Particles {
+            position: vec![Vec3::NAN; count],
+            normal: vec![Vec3::ZERO; count],
+            patch: patches.patch.to_vec(),
+            twins: patches.twins.to_vec(),
+            segments: patches.segments.to_vec(),
+            ..Particles::default()
+        };
+        let mut place = vec![u32::MAX; count];
+        for (k, &row) in tree.origin.iter().enumerate() {
+            let row = row as usize;
+            (particles.position[row], particles.normal[row]) = (tree.position[k], normal[k]);
+            place[row] = k as u32;
+        }
+        let mesh = particles_in_slices(&particles, options).await;
+        mesh.triangles.into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
+    }
+}
