@@ -338,18 +338,25 @@ pub trait Bounded: Field {
         0
     }
 
-    /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
+    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1. Once [creases](Field::find_creases)
+    /// were found, those of each branch.
     fn factors(&mut self) -> usize {
         1
     }
 
     /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says about being defined and continuous
-    /// holds for f as a whole.
+    /// holds for f as a whole. That of a branch is empty where the branch gives f nowhere in the box.
     ///
     /// # Panics
     ///
     /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]);
+
+    /// Whether a zero of factor `factor` is one of f: one of a branch is, where the branch gives f.
+    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
+        let _ = (factor, zero);
+        true
+    }
 
     /// Bounds of the second derivatives of factor `factor` over each box. They are meaningless where f is undefined or its
     /// gradient jumps.

@@ -169,6 +169,10 @@ impl Bounded for Scaled<'_> {
         self.bounds().factors()
     }
 
+    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
+        self.bounds().is_zero_of(factor, zero)
+    }
+
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         let scale = f64::from(self.scale);
         self.bounds().enclose(factor, boxes, out);

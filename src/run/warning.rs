@@ -179,7 +179,7 @@ impl<F: Field> Run<F> {
         // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already. No model from
         // points has bounds, which the row of the report says.
         let is_told = |doubt: &Doubt| match doubt {
-            Doubt::NoBounds => false,
+            Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
             _ => true,
         };
@@ -324,6 +324,10 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
         Doubt::NoBounds => f.write_str(
             "The field has no bounds to prove by that every component was found: one that is smaller than the grid of the survey can \
              be missing.",
+        ),
+        Doubt::Creases => f.write_str(
+            "The creases of the surface were searched, not proven to be all: a component whose creases are finer than the cells of that \
+             search can be missing.",
         ),
         Doubt::Unfinished => {
             f.write_str("The run ended before the search for components did: one can be missing.")

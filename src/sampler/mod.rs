@@ -157,7 +157,9 @@ impl Sampler {
     /// The doubts that are left about the components; empty where everything is proven.
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
-        self.components.doubts(self.survey.nearness, self.least_gap())
+        let mut doubts = self.components.doubts(self.survey.nearness, self.least_gap());
+        doubts.extend(self.creases.are_there().then_some(Doubt::Creases));
+        doubts
     }
 
     /// Sheets nearer to each other than this are not told apart.
@@ -286,6 +288,11 @@ impl Sampler {
     /// Surveys the field, unless it `is_known`. Where the survey finds no point, the search is carried to its end at once: the
     /// area is then that of spheres with the curvature at the points that it finds.
     fn look_over(&mut self, field: &mut dyn Field, is_known: bool) {
+        if !is_known {
+            self.creases = Creases::default();
+        }
+        // Bounds are those of the branches, where there are creases.
+        let is_creased = !is_known && field.find_creases(&self.bounds);
         self.components.begin(field, &self.bounds);
         self.components.expect(0.0);
         if is_known {
@@ -299,7 +306,9 @@ impl Sampler {
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
-            self.creases = Creases::find(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds);
+            if is_creased {
+                self.creases = Creases::find(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds);
+            }
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,

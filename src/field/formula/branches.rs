@@ -12,6 +12,7 @@ use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::interval::{self, Range};
 use super::operations::{Binary, Unary};
+use crate::field::Enclosure;
 use crate::math::Bounds;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -244,6 +245,8 @@ pub(super) struct Branches {
     numbered: Vec<usize>,
     /// The part that is evaluated in the place of f.
     selected: Option<usize>,
+    /// The branches of the surface in a box, if it was found that some meet in creases there.
+    pub(super) creased: Vec<u32>,
     walk: Walk,
     doubles: Vec<f64>,
     ranges: Vec<Range>,
@@ -417,15 +420,76 @@ impl Branches {
     /// If there is no such branch.
     pub(super) fn select(&mut self, branch: Option<u32>, values: &[f64]) {
         self.selected = None;
+        self.selected = branch.and_then(|number| self.compiled_part(number, values));
+    }
+
+    /// Index of the part of a branch, which is compiled; none if f is its only branch.
+    fn compiled_part(&mut self, number: u32, values: &[f64]) -> Option<usize> {
         let is_piecewise = self.parts.first().is_some_and(|part| part.number.is_none());
-        let Some(number) = branch.filter(|_| is_piecewise) else { return };
+        if !is_piecewise {
+            return None;
+        }
         self.number_first(values);
         let index = *self.numbered.get(number as usize).expect("a number that a branch was given");
-        self.selected = Some(index);
         let part = &mut self.parts[index];
         if part.compiled.is_none() {
             let (graph, root) = self.base.graph.part(part.root);
             part.compiled = Some(Box::new(Compiled::from_graph(graph, root, values)));
+        }
+        Some(index)
+    }
+
+    /// Programs for the bounds of the factors of a branch.
+    fn factors_of(&mut self, number: u32, values: &[f64]) -> &mut [interval::FactorProgram] {
+        let part = self.compiled_part(number, values);
+        let compiled = part.and_then(|index| self.parts[index].compiled.as_deref_mut());
+        compiled.map_or(&mut [], |compiled| compiled.factors(values))
+    }
+
+    /// Number of factors of the branches of a surface with creases; 0 if it has none.
+    pub(super) fn factor_count(&mut self, values: &[f64]) -> usize {
+        let creased = self.creased.clone();
+        creased.into_iter().map(|number| self.factors_of(number, values).len()).sum()
+    }
+
+    /// The branch to which a factor belongs, and the factor's number there.
+    fn branch_of_factor(&mut self, factor: usize, values: &[f64]) -> (u32, usize) {
+        let mut own = factor;
+        for k in 0..self.creased.len() {
+            let number = self.creased[k];
+            let count = self.factors_of(number, values).len();
+            if own < count {
+                return (number, own);
+            }
+            own -= count;
+        }
+        panic!("the surface has no factor {factor}");
+    }
+
+    /// The program for the bounds of a factor.
+    pub(super) fn factor(&mut self, factor: usize, values: &[f64]) -> &mut interval::FactorProgram {
+        let (number, own) = self.branch_of_factor(factor, values);
+        &mut self.factors_of(number, values)[own]
+    }
+
+    /// Whether the branch of a factor gives f at `p`.
+    pub(super) fn is_given_by(&mut self, factor: usize, values: &[f64], p: DVec3) -> bool {
+        self.branch_of_factor(factor, values).0 == self.at(values, p)
+    }
+
+    /// Empties the enclosures of a factor over boxes where its branch has no zero of f.
+    pub(super) fn leave_out(
+        &mut self,
+        factor: usize,
+        values: &[f64],
+        boxes: &[Bounds],
+        out: &mut [Enclosure],
+    ) {
+        let (number, _) = self.branch_of_factor(factor, values);
+        for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
+            if self.within(values, bounds).is_some_and(|within| !within.contains(&number)) {
+                *out = Enclosure::NOWHERE;
+            }
         }
     }
 

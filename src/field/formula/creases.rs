@@ -68,6 +68,9 @@ impl Branches {
         let smooth = |id: &Id| !has_creases || kinds.get(id) == Some(&Kind::Seam);
         let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
         self.begin_again(values, &smooth);
+        if has_creases {
+            self.creased = self.within(values, bounds).unwrap_or_default();
+        }
         has_creases
     }
 }

@@ -234,6 +234,15 @@ impl Formula {
         self
     }
 
+    /// The program for the bounds of a factor of f, or of its branches.
+    fn factor(&mut self, factor: usize) -> &mut interval::FactorProgram {
+        if self.branches.creased.is_empty() {
+            &mut self.compiled.factors(&self.values)[factor]
+        } else {
+            self.branches.factor(factor, &self.values)
+        }
+    }
+
     /// Text that was parsed.
     #[must_use]
     pub fn text(&self) -> &str {
@@ -563,21 +572,28 @@ impl Bounded for Formula {
     }
 
     fn factors(&mut self) -> usize {
-        self.compiled.factors(&self.values).len()
+        let of_branches = self.branches.factor_count(&self.values);
+        if of_branches > 0 { of_branches } else { self.compiled.factors(&self.values).len() }
     }
 
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         self.on_formula_boxes(boxes, |field, boxes| {
-            field.compiled.factors(&field.values)[factor].first.enclose(boxes, out);
+            field.factor(factor).first.enclose(boxes, out);
+            if !field.branches.creased.is_empty() {
+                field.branches.leave_out(factor, &field.values, boxes, out);
+            }
         });
     }
 
+    fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
+        let place = place(self.origin, zero);
+        self.branches.creased.is_empty() || self.branches.is_given_by(factor, &self.values, place)
+    }
+
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
-        self.on_formula_boxes(boxes, |field, boxes| {
-            match &mut field.compiled.factors(&field.values)[factor].second {
-                Some(program) => program.enclose_second(boxes, out),
-                None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),
-            }
+        self.on_formula_boxes(boxes, |field, boxes| match &mut field.factor(factor).second {
+            Some(program) => program.enclose_second(boxes, out),
+            None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),
         });
     }
 }

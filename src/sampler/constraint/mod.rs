@@ -66,11 +66,8 @@ pub(super) struct Creases {
 }
 
 impl Creases {
-    /// Finds the creases of a field in `bounds`.
+    /// Finds the creases of a field that has some in `bounds`.
     pub(super) fn find(probe: &mut Probe, bounds: &Bounds) -> Self {
-        if !probe.field.find_creases(bounds) {
-            return Self::default();
-        }
         let cells = search::cells(probe.field, bounds, CELL * bounds.diagonal());
         let mut creases = Self::default();
         let step = 0.5 * CELL * bounds.diagonal();

@@ -8,7 +8,10 @@ use crate::sampler::probe::ProbeMemory;
 fn creases(text: &str, half: f64) -> (Formula, Creases) {
     let mut field = Formula::as_written(text, &[]).expect("a formula");
     let mut memory = ProbeMemory::default();
-    let creases = Creases::find(&mut Probe::new(&mut field, &mut memory), &Bounds::cube(half));
+    let bounds = Bounds::cube(half);
+    let probe = &mut Probe::new(&mut field, &mut memory);
+    let is_creased = probe.field.find_creases(&bounds);
+    let creases = if is_creased { Creases::find(probe, &bounds) } else { Creases::default() };
     (field, creases)
 }
 

@@ -56,6 +56,8 @@ pub struct Unsampled {
 pub enum Doubt {
     /// The field has no bounds to prove anything by.
     NoBounds,
+    /// The surface has creases, which are searched: the proof holds for components that have none.
+    Creases,
     /// The run ended before the search or the audit did.
     Unfinished,
     /// Two sheets are so near each other that single precision may hold them at one place.
@@ -89,7 +91,7 @@ impl Doubt {
     /// Returns the doubt with its place, if it has one, mapped by `to`.
     pub(crate) fn moved(mut self, to: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         match &mut self {
-            Self::NoBounds | Self::Unfinished => {}
+            Self::NoBounds | Self::Creases | Self::Unfinished => {}
             Self::Unresolved { position, .. }
             | Self::Cells { position, .. }
             | Self::Witnesses { position, .. } => {

@@ -91,6 +91,8 @@ impl ComponentSearch {
     fn starts(&mut self, field: &mut dyn Bounded, bounds: &Bounds, tolerance: Tolerance) -> Vec<Witness> {
         let slack = f64::from(2.0 * tolerance.residual);
         let mut prover = Prover { field, factor: 0, slack, region: self.octree.region };
+        // A zero of a branch that does not give f there is no point of the surface.
+        self.octree.witnesses.retain(|witness| prover.field.is_zero_of(witness.factor, witness.position));
         self.octree.witnesses = thinned_out(&mut prover, &self.octree.witnesses);
         // A witness whose component lies in the margin alone is not needed.
         let start = |&Witness { position, factor }: &Witness| {
