@@ -6,7 +6,7 @@ use crate::extent::Reach;
 use crate::field::Field;
 use crate::particles::{SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
-use crate::sampler::{FateCounts, Sampled, Search, StopReason};
+use crate::sampler::{Blur, FateCounts, Sampled, Search, StopReason};
 use crate::slices;
 use glam::Vec3;
 use serde::{Serialize, Serializer};
@@ -178,6 +178,7 @@ impl<F: Field> Run<F> {
 
     fn reported(&mut self, facing: usize) -> Report {
         let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
+        let blur = self.sampler.blur(&mut self.field);
         let particles = self.sampler.particles();
         let count = particles.len();
         let measured = &self.measuring.measured;
@@ -190,6 +191,11 @@ impl<F: Field> Run<F> {
         let is_outside = |slots: &&Slots| (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
         let mut warnings = self.warnings_of_run(&proof.sampled, facing);
+        warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
+            position: particles.place(particle).to_array(),
+            distance,
+            spacing: 2.0 * f64::from(particles.radius[particle]),
+        }));
         warnings.extend(is_overflowing.then_some(Warning::Overflow));
         Report {
             count,

@@ -99,6 +99,15 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
+    /// Rounding in double precision may move the surface by more than 10⁻⁴ of the distance between neighbours.
+    Digits {
+        /// The particle, of a selection, at which it does so most.
+        position: [f64; 3],
+        /// Bound of the distance by which the surface is moved there.
+        distance: f64,
+        /// Wanted distance between neighbours there.
+        spacing: f64,
+    },
     /// The search was left open beside places where f is beyond double precision.
     Overflow,
 }
@@ -264,6 +273,14 @@ impl fmt::Display for Warning {
                 )
             }
             Self::Unproven { doubt, length } => unproven(f, doubt, *length),
+            Self::Digits { position, distance, spacing } => write!(
+                f,
+                "f loses digits: near {} its rounding in double precision may move the surface by up to {}, {} times the distance between \
+                 neighbours. It is small beside its terms there: enter it in a form in which they do not cancel.",
+                place(*position, *spacing),
+                about_length(*distance),
+                about_length(distance / spacing)
+            ),
             Self::Overflow => f.write_str(
                 "f is too large for double precision in a part of the box, where components may be missed: enter it in a form with \
                  smaller numbers, each factor by its logarithm for example, or make the box smaller.",

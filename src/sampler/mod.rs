@@ -33,6 +33,7 @@ pub use settings::{COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, S
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
+pub(crate) use discovery::precision::Blur;
 
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale, spread};
@@ -334,6 +335,11 @@ impl Sampler {
     pub(crate) fn is_open_by_overflow(&self, field: &mut dyn Field) -> bool {
         self.undecided_cells().is_some_and(|cells| cells > 0)
             && precision::overflows_double(field, &self.bounds)
+    }
+
+    /// The particle that rounding in double precision moves most, where it does by more than a particle may lie off the surface.
+    pub(crate) fn blur(&self, field: &mut dyn Field) -> Option<Blur> {
+        precision::blur(field, &self.output.particles)
     }
 
     /// Refuses runs that need more than about `bytes` from now on.

@@ -1,14 +1,14 @@
 //! Tests on formulas without a regular surface: poles, jumps, self-intersections, singular points, open surfaces. The
 //! sampler ends on all of them, places particles only on zeros, and reports what it met.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use marching_particles::Field;
-use marching_particles::Report;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Phase, Progress, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldRequest, Session};
+use marching_particles::{Report, Warning};
 
 /// Samples `formula` in the cube of half-width `half`.
 fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress, Report) {
@@ -337,6 +337,29 @@ fn a_surface_that_is_small_for_its_box_is_not_called_a_point() {
         );
         assert!(message.contains("could not decide near (0, 0, "), "{formula}: {message}");
         assert_eq!(report.proof.singular_points, Some(0), "{formula}");
+    }
+}
+
+#[test]
+fn digits_that_double_precision_does_not_hold_are_said_with_where_and_how_much() {
+    // Spheres of radius 1, written as the small differences of numbers near 1.
+    for (formula, is_blurred) in [
+        ("sqrt(1 + 1e-5*(x^2 + y^2 + z^2)) - sqrt(1.00001)", false),
+        ("sqrt(1 + 1e-13*(x^2 + y^2 + z^2)) - sqrt(1 + 1e-13)", true),
+        ("cos(1e-6*hypot(x, y, z)) - cos(1e-6)", true),
+    ] {
+        let (session, _, report) = sampled(formula, 1.5, &coarse());
+        let blur = report.warnings.iter().find_map(|warning| match warning {
+            Warning::Digits { position, distance, .. } => Some((DVec3::from_array(*position), *distance)),
+            _ => None,
+        });
+        assert_eq!(blur.is_some(), is_blurred, "{formula}: {:?}", report.warnings);
+        let Some((position, distance)) = blur else { continue };
+        let off = |p: DVec3| (p.length() - 1.0).abs();
+        let farthest = session.run.particles().position.iter().map(|p| off(p.as_dvec3())).fold(0.0, f64::max);
+        // The bound is that of every rounding at its worst, the cosine's with room.
+        assert!((5e-3..1.0).contains(&(farthest / distance)), "{formula}: {farthest} against {distance}");
+        assert!(off(position) <= distance, "{formula}: {position}");
     }
 }
 

@@ -3,8 +3,9 @@
 
 use super::grid::CELLS;
 use super::survey::ulps;
-use crate::field::Field;
+use crate::field::{Enclosure, Field};
 use crate::math::{Bounds, sort_numbers};
+use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 
 /// Nodes along each side of the grid on which both precisions are compared: 729 in all, of which the share below is 15.
@@ -22,6 +23,45 @@ const FINE_SIDE: usize = 16;
 const MOST_ROOTS: usize = 64;
 /// Halvings of an edge between two nodes: more than the bits of a number.
 const HALVINGS: u32 = 60;
+
+/// Number of particles at which the rounding of double precision is looked at. It is much the same at neighbours.
+const LOOKED_AT: usize = 256;
+/// Share of the distance between neighbours by which rounding may move a particle.
+const MOST_MOVED: f64 = 1e-4;
+
+/// Rounding of f at a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Blur {
+    /// Index of the particle.
+    pub(crate) particle: usize,
+    /// Largest distance by which rounding in double precision moves the level set there.
+    pub(crate) distance: f64,
+}
+
+/// Of a selection of the particles, the one at which rounding in double precision moves the level set by most for its size; none if
+/// it does so by less than [`MOST_MOVED`], or f has no bounds to tell it by. The bounds of f at a single point are as wide as what
+/// rounding may do to it.
+pub(crate) fn blur(field: &mut dyn Field, particles: &Particles) -> Option<Blur> {
+    let field = field.bounded()?;
+    let mut most = (MOST_MOVED, None);
+    for particle in (0..particles.len()).step_by(particles.len().div_ceil(LOOKED_AT).max(1)) {
+        let at = [Bounds::point(particles.position[particle].as_dvec3())];
+        // The particle lies on the nearest of the factors.
+        let of_factors = (0..field.factors()).map(|factor| {
+            let mut known = [Enclosure::UNKNOWN];
+            field.enclose(factor, &at, &mut known);
+            let (value, gradient) = known[0].middle();
+            let half_width = 0.5 * (known[0].value.hi - known[0].value.lo);
+            [value.abs(), half_width].map(|difference| difference / gradient.length())
+        });
+        let [_, distance] = of_factors.min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        let share = distance / (2.0 * f64::from(particles.radius[particle]));
+        if share.is_finite() && share > most.0 {
+            most = (share, Some(Blur { particle, distance }));
+        }
+    }
+    most.1
+}
 
 /// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
 /// a value, beyond underflow, at nearly all places where double precision has one, and if its rounding moves level sets by hardly
