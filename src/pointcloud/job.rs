@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, FitError, interpolate};
 use super::models;
-use super::normals::estimate;
+use super::normals::{Settled, settle};
 use super::read::{ReadError, Reader};
 use super::thin::{check_spread, corners, merge, spread, thin};
 use super::{Cloud, CloudError, ModelInfo};
@@ -142,6 +142,7 @@ const MERGING: JobPart = part(JobStage::Thinning, "Joining equal points", 0.45, 
 /// The number of grids that thinning takes is not known, so its fraction stands still.
 const THINNING: JobPart = part(JobStage::Thinning, "Thinning out", 0.6, 0.05);
 const ESTIMATING: JobPart = part(JobStage::Normals, "Estimating normals", 0.65, 0.1);
+const COMPARING: JobPart = part(JobStage::Normals, "Comparing normals", 0.65, 0.1);
 const SPREADING: JobPart = part(JobStage::Thinning, "Choosing centres", 0.75, 0.05);
 const SOLVING: JobPart = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
 const DONE: JobPart = part(JobStage::Done, "Done", 1.0, 0.0);
@@ -274,16 +275,21 @@ async fn of_file(
 ) -> Result<Fit, JobError> {
     let mesh = reader.read(status.begin(&READING)).await?;
     info.points = mesh.position.len() as u32;
+    let has_faces = !mesh.faces.is_empty();
     let (cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
     info.warnings = warnings;
     let mut cloud = merge(cloud, status.begin(&MERGING)).await?;
     check_spread(&cloud.position)?;
     info.warnings.extend(bring_near(&mut cloud.position));
-    let given = cloud.position.clone();
+    let mut given = cloud.position.clone();
     status.begin(&THINNING)(0.0);
     let mut cloud = thin(cloud).await?;
-    if cloud.normal.is_empty() {
-        info.warnings.extend(estimate(&mut cloud, status.begin(&ESTIMATING)).await?);
+    // The points of a mesh belong together by its faces, which tell their normals too.
+    if cloud.normal.is_empty() || !has_faces {
+        let part = if cloud.normal.is_empty() { &ESTIMATING } else { &COMPARING };
+        let Settled { outliers, warnings } = settle(&mut cloud, status.begin(part)).await?;
+        given.retain(|p| !outliers.contains(p));
+        info.warnings.extend(warnings);
     }
     of_cloud(cloud, given, wanted, info, status).await
 }

@@ -1,4 +1,5 @@
-//! Estimation of consistently oriented normals.
+//! What the neighbours of a point tell of it: its normal where none is given, whether the given one has the wrong sign, and whether the
+//! point is an outlier.
 //!
 //! The normal of a point is that of the plane through its neighbours, and its sign is propagated from point to point
 //! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points",
@@ -15,7 +16,7 @@
 
 use super::thin::{corners, covariance};
 use super::{Cloud, CloudError, NormalSource, eigen};
-use crate::math::unkey;
+use crate::math::{shortest_text, sort_numbers, unkey};
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
@@ -32,20 +33,89 @@ const NEIGHBOURS: usize = 12;
 /// of particles tells sheets apart by the same angle.
 const OPPOSITE_COS: f64 = -0.5;
 
+/// A point is an outlier if the median distance of its neighbours is more than this times that of their own, and of all points. On
+/// 200 to 20,000 random points of spheres, tori and plates the largest ratio is 1.7.
+const FAR: f64 = 5.0;
+/// Largest share of the points that are outliers; where more are far from the rest, they are a part of the surface.
+const MOST_OUTLIERS: f64 = 0.02;
+/// A given normal is turned round if those of the neighbours disagree with it by more than this share of their weight: two thirds of
+/// them. Where 10 % or 20 % of the normals of tori and plates are flipped at random, 0.1 to 0.3 find all of them and 0.5 nearly all. On
+/// 2,000 random points of a plate that is thinner than they are apart, 0.1 turns 9 right normals round, 0.3 one.
+const DISAGREEING: f64 = 0.3;
+/// Largest number of times that all given normals are compared with their neighbours: each time those beside turned ones are clearer.
+const MOST_ROUNDS: u32 = 16;
+
 /// Planes fitted in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const PLANES: usize = 20;
 
 /// Share of such pairs above which the user is warned. Half and double warn of the same ones of twelve random clouds.
 const WARN_SHARE: f64 = 0.01;
 
-/// Estimates the normals of a cloud, outward, and returns warnings for the user. The points must be distinct and not in one plane.
-/// `tell` gets the fraction of the points to which a plane is fitted.
+/// What was changed of a cloud.
+#[derive(Clone, Debug, Default)]
+pub struct Settled {
+    /// Points that were left out because they are far from all others.
+    pub outliers: Vec<DVec3>,
+    /// Warnings for the user.
+    pub warnings: Vec<String>,
+}
+
+/// Leaves the outliers of a cloud out, and estimates its normals, outward, or turns the given ones round that disagree with those of
+/// their neighbours. The points must be distinct and not in one plane. `tell` gets the fraction of the points that are done.
 ///
 /// # Errors
 ///
 /// If there is not enough memory.
-pub async fn estimate(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Vec<String>, CloudError> {
+pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Settled, CloudError> {
+    let mut settled = Settled::default();
     let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
+    let is_outlier = graph.outliers();
+    let count = is_outlier.iter().filter(|&&is_outlier| is_outlier).count();
+    if count > 0 && count as f64 <= MOST_OUTLIERS * cloud.len() as f64 {
+        let of_kind = |kind: bool| -> Vec<u32> {
+            (0..cloud.len() as u32).filter(|&i| is_outlier[i as usize] == kind).collect()
+        };
+        settled.outliers = cloud.only(&of_kind(true)).position;
+        *cloud = cloud.only(&of_kind(false));
+        let [x, y, z] =
+            settled.outliers[0].to_array().map(|c| shortest_text(format!("{c:.3e}").parse().unwrap_or(c)));
+        let are = if count == 1 { "1 point is" } else { &format!("{count} points are") };
+        settled.warnings.push(format!(
+            "{are} far from all others, for the distances between those, and left out as noise: the first at ({x}, {y}, {z})."
+        ));
+        graph = NeighbourGraph::new(&cloud.position, |_| {}).await;
+    }
+    let warnings = if cloud.normal.is_empty() { estimate(cloud, graph)? } else { turn(cloud, graph).await };
+    settled.warnings.extend(warnings);
+    Ok(settled)
+}
+
+/// Turns the given normals round that disagree with those of their neighbours, and returns warnings for the user.
+async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
+    let mut warnings = Vec::new();
+    graph.normal.clone_from(&cloud.normal);
+    let turned = graph.turn_minority().await;
+    if turned > 0 {
+        warnings.push(format!(
+            "The normals of {turned} of {} points disagree with those of the points around them: they were turned round.",
+            cloud.len()
+        ));
+    }
+    let contrary = graph.pairs().filter(|&(i, j)| graph.agreement(i, j) < OPPOSITE_COS).count();
+    let share = contrary as f64 / graph.neighbours.len().max(1) as f64;
+    if share > WARN_SHARE {
+        warnings.push(format!(
+            "{:.0} % of neighbouring points have normals that contradict each other for their places: normals are wrong, the points are \
+             noisy, or the surface is thinner than they are apart. Expect flaps and holes.",
+            100.0 * share
+        ));
+    }
+    cloud.normal = graph.normal;
+    warnings
+}
+
+/// Takes the normals of the planes through the neighbours, outward, and returns warnings for the user.
+fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Result<Vec<String>, CloudError> {
     let edges = graph.edges()?;
     let components = graph.orient(&edges);
     let mut warnings = vec![
@@ -113,6 +183,52 @@ impl NeighbourGraph {
             pause().await;
         }
         Self { local, per_point, neighbours, normal }
+    }
+
+    /// Whether each point is far from all others, for the distances between those.
+    fn outliers(&self) -> Vec<bool> {
+        let middle = |values: &mut Vec<f64>| {
+            sort_numbers(values);
+            values.get(values.len() / 2).copied().unwrap_or(0.0)
+        };
+        let of_neighbours = |i: usize, value: &dyn Fn(usize) -> f64| {
+            let near = &self.neighbours[i * self.per_point..(i + 1) * self.per_point];
+            middle(&mut near.iter().map(|&j| value(j as usize)).collect())
+        };
+        let all = 0..self.local.len();
+        let distance = |i: usize| of_neighbours(i, &|j| self.local[i].distance(self.local[j]));
+        let reach: Vec<f64> = all.clone().map(distance).collect();
+        let usual = middle(&mut reach.clone());
+        let is_far = |i: usize| reach[i] > FAR * usual.max(of_neighbours(i, &|j| reach[j]));
+        all.map(is_far).collect()
+    }
+
+    /// Turns the normals round with which those of the neighbours disagree, until there are none, and returns their number.
+    async fn turn_minority(&mut self) -> usize {
+        let mut is_turned = vec![false; self.local.len()];
+        for _ in 0..MOST_ROUNDS {
+            let mut is_settled = true;
+            for range in ranges(self.local.len(), PLANES) {
+                for i in range {
+                    let near = &self.neighbours[i * self.per_point..(i + 1) * self.per_point];
+                    let (mut sum, mut weight) = (0.0, 0.0);
+                    for &j in near {
+                        let agreement = self.agreement(i, j as usize);
+                        (sum, weight) = (sum + agreement, weight + agreement.abs());
+                    }
+                    if sum < -DISAGREEING * weight {
+                        self.normal[i] = -self.normal[i];
+                        is_turned[i] = !is_turned[i];
+                        is_settled = false;
+                    }
+                }
+                pause().await;
+            }
+            if is_settled {
+                break;
+            }
+        }
+        is_turned.iter().filter(|&&is_turned| is_turned).count()
     }
 
     /// Pairs of each point and each of its neighbours.

@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::DVec3;
-use marching_particles::pointcloud::normals::estimate;
+use marching_particles::pointcloud::normals::settle;
 use marching_particles::pointcloud::thin::{KEPT, check_spread, merge, spread, thin};
 use marching_particles::pointcloud::{Cloud, CloudError, NormalSource};
 use marching_particles::slices::complete;
@@ -16,7 +16,7 @@ fn thinned(cloud: Cloud) -> Cloud {
 }
 
 fn estimated(cloud: &mut Cloud) -> Vec<String> {
-    complete(estimate(cloud, |_| {})).expect("memory enough")
+    complete(settle(cloud, |_| {})).expect("memory enough").warnings
 }
 
 /// Points of a Fibonacci spiral on the unit sphere.

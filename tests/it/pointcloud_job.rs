@@ -142,6 +142,36 @@ fn a_field_passes_through_its_points_and_is_bounded() {
 }
 
 #[test]
+fn flipped_normals_are_turned_round_and_an_outlier_is_left_out() {
+    let right = ellipsoid(8, true);
+    let fit = file(&right, 200).expect("a good cloud");
+    // About a fifth of the normals is flipped, some of them beside each other.
+    let mut flipped = String::new();
+    let mut count = 0;
+    for (i, line) in right.lines().enumerate() {
+        let n: Vec<f64> = line.split(' ').map(|x| x.parse().expect("a number")).collect();
+        let sign = if i * i % 7 == 2 && i % 3 != 0 { -1.0 } else { 1.0 };
+        count += usize::from(sign < 0.0);
+        let _ =
+            writeln!(flipped, "{} {} {} {} {} {}", n[0], n[1], n[2], sign * n[3], sign * n[4], sign * n[5]);
+    }
+    let turned = file(&flipped, 200).expect("a good cloud");
+    assert_eq!(turned.data.to_bytes(), fit.data.to_bytes());
+    let said = format!("The normals of {count} of {} points", fit.info.points);
+    assert!(count > 200 && turned.info.warnings[0].starts_with(&said), "{count}: {:?}", turned.info.warnings);
+    assert_eq!(turned.info.warnings.len(), 1, "{:?}", turned.info.warnings);
+    // At the larger distances the system could not be solved.
+    for distance in [3, 300, 30_000] {
+        let far = file(&format!("{right}0 0 {distance} 0 0 1\n"), 200).expect("a good cloud");
+        assert_eq!((far.data.to_bytes(), far.bounds), (fit.data.to_bytes(), fit.bounds), "{distance}");
+        let said = format!(
+            "1 point is far from all others, for the distances between those, and left out as noise: the first at (0, 0, {distance})."
+        );
+        assert_eq!(far.info.warnings, [said]);
+    }
+}
+
+#[test]
 fn points_far_from_the_origin_are_moved_to_it_by_round_numbers() {
     let text: String = ellipsoid(6, true)
         .lines()
