@@ -164,6 +164,24 @@ const theme = EditorView.theme({
   '.cm-completionInfo': { padding: '0.25rem 0.5rem', font: '0.75rem/1.0625rem var(--font)', maxWidth: '14rem' },
 });
 
+/**
+ * Text typed over a selection is put in its place here. If the browser did it, Chromium would keep the look of an underlined
+ * name by an inline style, which the content security policy forbids.
+ */
+const typedOver = EditorView.domEventHandlers({
+  beforeinput(event, view) {
+    const { from, to } = view.state.selection.main;
+    const text = event.data;
+    if (event.inputType !== 'insertText' || event.isComposing || !text || from === to) return false;
+    event.preventDefault();
+    const insert = () =>
+      view.state.update(view.state.replaceSelection(text), { userEvent: 'input.type', scrollIntoView: true });
+    const handlers = view.state.facet(EditorView.inputHandler);
+    if (!handlers.some((handle) => handle(view, from, to, text, insert))) view.dispatch(insert());
+    return true;
+  },
+});
+
 /** @param {CodeEditorOptions} options @returns {Editor} */
 export function createCodeEditor({ text, selection, functions, names, change }) {
   const element = h('div', { class: 'code-host' });
@@ -187,6 +205,7 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
         tokens(functions),
         completion(functions, names),
         theme,
+        typedOver,
         EditorView.lineWrapping,
         keymap.of([...closeBracketsKeymap, ...completionKeymap, ...historyKeymap, ...defaultKeymap]),
         EditorView.updateListener.of((update) => {
