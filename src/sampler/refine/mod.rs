@@ -49,8 +49,8 @@ use tally::Tally;
 /// Rounds in which the spacing and the number of edges on the border are found from each other.
 const BORDER_ROUNDS: u32 = 4;
 
-/// Units that a trial of surgery counts for: it moves some twenty particles four times.
-const TRIAL_UNITS: u32 = 64;
+/// Units that a trial of surgery counts for: it moves some twenty particles twice.
+const TRIAL_UNITS: u32 = 32;
 /// Half-edges looked at for a unit.
 const HALF_EDGES_PER_UNIT: u32 = 12;
 /// Faces measured for a unit.
@@ -354,6 +354,7 @@ impl Refinement {
         let mut units = BLOCK as u32;
         match kind {
             Pass::Size { is_whole } => {
+                self.memory.surgeon.forget();
                 if let Some(sizing) = sizing {
                     net.find_sizes(&mut ground, sizing, self.target.radius, is_whole, next..last);
                 }
@@ -368,10 +369,7 @@ impl Refinement {
             Pass::Sweep => net.relax(&mut ground, springs, next..last),
             Pass::Flip => net.flip(next..last),
             Pass::Mend { loss } => {
-                let slack =
-                    if self.level.to_come == self.target.halvings { TUNING.slack } else { f32::INFINITY };
-                let aim =
-                    Aim { springs, delta: self.level.recipe.delta, faces: self.level.faces, slack, loss };
+                let aim = Aim { springs, delta: self.level.recipe.delta, faces: self.level.faces, loss };
                 for v in next..last {
                     units += TRIAL_UNITS * u32::from(self.memory.surgeon.mend(net, &mut ground, aim, v));
                 }
@@ -400,7 +398,14 @@ impl Refinement {
             return Ok((Task::Pass { pass, next: last, end }, units));
         }
         self.end_pass(kind)?;
-        Ok((self.begin_pass(pass + 1), units))
+        let mut following = pass + 1;
+        if matches!(kind, Pass::Mend { .. }) && !self.memory.surgeon.take_kept() {
+            // There is nothing new to be brought to rest.
+            let is_calm = |pass: &Pass| matches!(pass, Pass::Sweep | Pass::Flip);
+            following +=
+                self.level.recipe.passes[following..].iter().take_while(|pass| is_calm(pass)).count();
+        }
+        Ok((self.begin_pass(following), units))
     }
 
     /// Largest slope of the sizes at this level, per unit of length.

@@ -2,7 +2,7 @@
 
 use super::walls::{Site, Walls};
 use crate::differential::Curvature;
-use crate::mesh::half_edge::{HalfEdges, NONE, previous};
+use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
 use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
@@ -16,9 +16,6 @@ const MAX_MOVE: f32 = 0.3;
 /// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. No run on 57
 /// smooth random surfaces does that, and 3 on 59 with creases, near sheets and singular points.
 const MAX_CORRECTION: f32 = 0.5;
-/// A move that turns the normal by more than 72° is taken back: it has crossed to another sheet, or to the other side of its own. Without,
-/// one of 114 runs on random surfaces differs, and no figure.
-const MIN_AGREEMENT: f32 = 0.3;
 /// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
 const FLIP_SLACK: f32 = 1e-5;
 
@@ -130,19 +127,30 @@ impl Net {
         springs: Springs,
         particles: impl Iterator<Item = u32>,
     ) {
+        self.shift(ground, springs.spacing, particles, |net, v| net.pull(springs, v));
+    }
+
+    /// Moves each particle by its springs along its tangent plane, and does not bring it back onto the surface.
+    pub(super) fn drift(&mut self, springs: Springs, particles: impl Iterator<Item = u32>) {
+        for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
+            self.position[v as usize] = self.moved(v, springs.spacing, self.pull(springs, v));
+        }
+    }
+
+    /// The step by which the springs move a particle.
+    #[inline]
+    fn pull(&self, springs: Springs, v: u32) -> Vec3 {
         let rest = springs.rest();
         // The second derivative of the energy, averaged over all directions, is this per neighbour.
         let stiffness = 1.0 - 0.5 * springs.theta;
-        self.shift(ground, springs.spacing, particles, |net, v| {
-            let p = net.position[v as usize];
-            let (mut force, mut degree) = (Vec3::ZERO, 0.0_f32);
-            for other in net.mesh.neighbours(v) {
-                let offset = p - net.position[other as usize];
-                force += offset * (rest * net.size_between(v, other) / offset.length() - 1.0);
-                degree += 1.0;
-            }
-            force * (springs.omega / (degree * stiffness))
-        });
+        let p = self.position[v as usize];
+        let (mut force, mut degree) = (Vec3::ZERO, 0.0_f32);
+        for other in self.mesh.neighbours(v) {
+            let offset = p - self.position[other as usize];
+            force += offset * (rest * self.size_between(v, other) / offset.length() - 1.0);
+            degree += 1.0;
+        }
+        force * (springs.omega / (degree * stiffness))
     }
 
     /// Mean length of the edges of `v`, in units of the wanted ones.
@@ -210,21 +218,28 @@ impl Net {
             if !self.mesh.has_vertex(v) {
                 continue;
             }
-            let (p, n) = (self.position[v as usize], self.normal[v as usize]);
-            let mut step = step(self, v);
-            let planes = self.walls.planes(v);
-            step = if planes.is_inner() { step - n * step.dot(n) } else { self.walls.along(planes, n, step) };
-            let length = step.length();
-            let farthest = MAX_MOVE * spacing * self.size_of(v);
-            if length > farthest {
-                step *= farthest / length;
-            }
-            // Two particles at one place have no direction.
-            let moved = if step.is_finite() { p + step } else { p };
+            let p = self.position[v as usize];
+            let moved = self.moved(v, spacing, step(self, v));
             self.position[v as usize] = moved;
             ground.block.add(v, p, moved);
         }
         self.settle(ground, spacing);
+    }
+
+    /// The position of a particle after the tangential part of a step, which is no longer than a share of the spacing.
+    #[inline]
+    fn moved(&self, v: u32, spacing: f32, step: Vec3) -> Vec3 {
+        let (p, n) = (self.position[v as usize], self.normal[v as usize]);
+        let planes = self.walls.planes(v);
+        let mut step =
+            if planes.is_inner() { step - n * step.dot(n) } else { self.walls.along(planes, n, step) };
+        let length = step.length();
+        let farthest = MAX_MOVE * spacing * self.size_of(v);
+        if length > farthest {
+            step *= farthest / length;
+        }
+        // Two particles at one place have no direction.
+        if step.is_finite() { p + step } else { p }
     }
 
     /// Brings particles that were put near the surface onto it.
@@ -270,10 +285,7 @@ impl Net {
         } else {
             (correction.abs() <= longest).then(|| p - normal * correction)
         };
-        // Written so that NaN fails.
-        position
-            .filter(|_| normal.dot(self.normal[v as usize]) >= MIN_AGREEMENT)
-            .map(|position| (position, normal))
+        position.map(|position| (position, normal))
     }
 
     /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its
@@ -321,6 +333,13 @@ impl Net {
     pub(super) fn area_vector(&self, [a, b, c]: [u32; 3]) -> Vec3 {
         let a = self.position[a as usize];
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
+    }
+
+    /// A half-edge of the widest face at `v`.
+    pub(super) fn widest(&self, v: u32) -> Option<u32> {
+        let corners = |h: u32| [h, next(h), previous(h)].map(|h| self.mesh.origin(h));
+        let area = |h: u32| self.area_vector(corners(h)).length_squared();
+        self.mesh.around(v).max_by(|&g, &h| area(g).total_cmp(&area(h)))
     }
 
     /// The site of a particle.
