@@ -55,4 +55,5 @@ mod session;
 mod shaders;
 mod sizing;
 mod smooth;
+mod solids;
 mod systems;

@@ -24,60 +24,68 @@ const MAX_LISTED: usize = 64;
 /// Maximum number of branches whose numbers do not depend on the order in which they are met: as many as eight choices have.
 const MAX_NUMBERED: usize = 256;
 
+/// What decides a choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Condition {
+    /// The first node is at most the second.
+    AtMost(Id, Id),
+    /// The node is at least 0.
+    NotNegative(Id),
+}
+
 /// What a node is to the walk from f to the operands that it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// All operands count.
     Plain,
-    /// The first operand where it is at most the second.
-    Min(Id, Id),
-    /// The first operand where it is at least the second.
-    Max(Id, Id),
-    /// The operand where it is at least 0, else its negative.
-    Abs(Id),
     /// A power of the absolute value of this node, smooth as it is.
     Raised(Id),
+    /// One thing where the condition holds, another elsewhere.
+    Choice(Condition),
 }
 
-impl Role {
-    pub(super) fn is_choice(self) -> bool {
-        matches!(self, Self::Min(..) | Self::Max(..) | Self::Abs(_))
+/// The operand of a choice that counts where its condition holds, or elsewhere; none if its value is a number there.
+pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
+    match choice {
+        Node::Binary(_, a, b) | Node::Smin(a, b, _) => Some(if holds { a } else { b }),
+        Node::Unary(Unary::Abs, u) => Some(u),
+        Node::IfLe(_, _, value) => holds.then_some(value),
+        Node::IfGt(_, _, value) => (!holds).then_some(value),
+        _ => None,
     }
 }
 
-/// The operands that a choice may take.
+/// Where a condition holds.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Sides {
-    First,
-    Second,
-    Both,
+pub(super) enum Holds {
+    Always,
+    Never,
+    Somewhere,
 }
 
-impl Sides {
-    fn first_if(is_first: bool) -> Self {
-        if is_first { Self::First } else { Self::Second }
-    }
-
-    /// The side that `role` takes at a point, from the values of its operands.
-    fn at_point(role: Role, value: impl Fn(Id) -> f64) -> Self {
-        Self::first_if(match role {
-            Role::Min(a, b) => value(a) <= value(b),
-            Role::Max(a, b) => value(a) >= value(b),
-            Role::Abs(u) => value(u) >= 0.0,
-            Role::Plain | Role::Raised(_) => true,
-        })
-    }
-
-    /// The sides that `role` may take in a box, from the bounds of its operands. Both may at a tie.
-    pub(super) fn in_box(role: Role, range: impl Fn(Id) -> Range) -> Self {
-        let below = |a: Id, b: Id| range(a).bounds.hi < range(b).bounds.lo;
-        let (first, second) = match role {
-            Role::Min(a, b) => (below(a, b), below(b, a)),
-            Role::Max(a, b) => (below(b, a), below(a, b)),
-            Role::Abs(u) => (range(u).bounds.lo > 0.0, range(u).bounds.hi < 0.0),
-            Role::Plain | Role::Raised(_) => (true, false),
+impl Condition {
+    fn at_point(self, value: impl Fn(Id) -> f64) -> Holds {
+        let holds = match self {
+            Self::AtMost(a, b) => value(a) <= value(b),
+            Self::NotNegative(u) => value(u) >= 0.0,
         };
-        if first || second { Self::first_if(first) } else { Self::Both }
+        if holds { Holds::Always } else { Holds::Never }
+    }
+
+    /// Where the condition holds in a box, from the bounds of the nodes. A tie belongs to both sides.
+    pub(super) fn in_box(self, range: impl Fn(Id) -> Range) -> Holds {
+        let below = |a: Id, b: Id| range(a).bounds.hi < range(b).bounds.lo;
+        let (always, never) = match self {
+            Self::AtMost(a, b) => (below(a, b), below(b, a)),
+            Self::NotNegative(u) => (range(u).bounds.lo > 0.0, range(u).bounds.hi < 0.0),
+        };
+        if always {
+            Holds::Always
+        } else if never {
+            Holds::Never
+        } else {
+            Holds::Somewhere
+        }
     }
 }
 
@@ -89,7 +97,7 @@ pub(super) struct Part {
     pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
-    /// The part for each way to take sides, which are in the order of [`Walk`].
+    /// The part for each way in which the conditions hold or do not, in the order of [`Walk`].
     taken: BTreeMap<Vec<bool>, usize>,
     /// The branch compiled, once it has been selected.
     compiled: Option<Box<Compiled>>,
@@ -102,8 +110,10 @@ struct Walk {
     left: usize,
     /// Whether each node is on the way; false for all at the end.
     needed: Vec<bool>,
-    /// Whether each choice on the way has taken its second operand.
-    sides: Vec<bool>,
+    /// The conditions of the choices on the way.
+    conditions: Vec<Condition>,
+    /// Whether each condition holds.
+    holds: Vec<bool>,
 }
 
 impl Walk {
@@ -111,49 +121,53 @@ impl Walk {
         self.needed.resize(graph.len(), false);
         self.needed[part.root as usize] = true;
         self.left = part.nodes.len();
-        self.sides.clear();
+        self.conditions.clear();
+        self.holds.clear();
     }
 
-    fn take(&mut self, (first, second): (Id, Id), is_second: bool) {
-        self.needed[if is_second { second } else { first } as usize] = true;
-        self.sides.push(is_second);
-    }
-
-    /// Walks to the end. `decide` is called with each node on the way and says which sides a choice takes; where it takes both, the
-    /// walk through the second is left in `forks`.
+    /// Walks to the end. `decide` is called with each new condition; where that holds somewhere only, the walk through the places where
+    /// it does not is left in `forks`. `visit` is called with each node on the way, and whether its condition holds.
     fn run(
         &mut self,
         nodes: &[Id],
         base: &Base,
-        mut decide: impl FnMut(Id, Role) -> Sides,
+        mut decide: impl FnMut(Condition) -> Holds,
+        mut visit: impl FnMut(Id, bool),
         forks: &mut Vec<Self>,
     ) {
         while self.left > 0 {
-            self.left -= 1;
-            let id = nodes[self.left];
-            if !core::mem::take(&mut self.needed[id as usize]) {
+            let id = nodes[self.left - 1];
+            if !self.needed[id as usize] {
+                self.left -= 1;
                 continue;
             }
-            let role = base.roles[id as usize];
-            let sides = decide(id, role);
-            let operands = match role {
-                Role::Plain => {
-                    base.graph.node(id).operands(|operand| self.needed[operand as usize] = true);
-                    continue;
-                }
-                Role::Raised(u) => {
-                    self.needed[u as usize] = true;
-                    continue;
-                }
-                Role::Min(a, b) | Role::Max(a, b) => (a, b),
-                Role::Abs(u) => (u, u),
-            };
-            if sides == Sides::Both {
-                let mut fork = self.clone();
-                fork.take(operands, true);
-                forks.push(fork);
+            let mut holds = true;
+            if let Role::Choice(condition) = base.roles[id as usize] {
+                holds = match self.conditions.iter().position(|&known| known == condition) {
+                    Some(known) => self.holds[known],
+                    None => {
+                        let holds = decide(condition);
+                        self.conditions.push(condition);
+                        if holds == Holds::Somewhere {
+                            // The other walk finds the condition known when it comes to this node again.
+                            let mut fork = self.clone();
+                            fork.holds.push(false);
+                            forks.push(fork);
+                        }
+                        self.holds.push(holds != Holds::Never);
+                        holds != Holds::Never
+                    }
+                };
             }
-            self.take(operands, sides == Sides::Second);
+            visit(id, holds);
+            let mut need = |operand: Id| self.needed[operand as usize] = true;
+            match base.roles[id as usize] {
+                Role::Plain => base.graph.node(id).operands(need),
+                Role::Raised(u) => need(u),
+                Role::Choice(_) => taken(base.graph.node(id), holds).into_iter().for_each(need),
+            }
+            self.needed[id as usize] = false;
+            self.left -= 1;
         }
     }
 }
@@ -184,10 +198,15 @@ impl Base {
             };
             let role = match node {
                 _ if is_uniform || self.smooth.binary_search(&id).is_ok() => Role::Plain,
-                Node::Binary(Binary::Min, a, b) => Role::Min(a, b),
-                Node::Binary(Binary::Max, a, b) => Role::Max(a, b),
-                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => Role::Min(a, b),
-                Node::Unary(Unary::Abs, u) => Role::Abs(u),
+                Node::Binary(Binary::Min, a, b) => Role::Choice(Condition::AtMost(a, b)),
+                Node::Binary(Binary::Max, a, b) => Role::Choice(Condition::AtMost(b, a)),
+                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => Role::Choice(Condition::AtMost(a, b)),
+                Node::Unary(Unary::Abs, u) => Role::Choice(Condition::NotNegative(u)),
+                // The slopes of minima, maxima and absolute values.
+                Node::IfLe(a, b, _) | Node::IfGt(a, b, _) => Role::Choice(Condition::AtMost(a, b)),
+                Node::Unary(Unary::Sign, u) if self.graph.find(Node::Unary(Unary::Abs, u)).is_some() => {
+                    Role::Choice(Condition::NotNegative(u))
+                }
                 Node::Power(a, n) if n > 1 => magnitude(a).map_or(Role::Plain, Role::Raised),
                 Node::Binary(Binary::Pow, a, b) if uniform(b) > 1.0 => {
                     magnitude(a).map_or(Role::Plain, Role::Raised)
@@ -198,33 +217,33 @@ impl Base {
         }
     }
 
-    /// The root of `part` with the choices on the way from it replaced by the operands that `sides` names.
-    fn specialised(&mut self, part: &Part, sides: &[bool], values: &[f64], walk: &mut Walk) -> Id {
-        let (mut way, mut rest) = (Vec::new(), sides.iter());
+    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says.
+    fn specialised(&mut self, part: &Part, holds: &[bool], values: &[f64], walk: &mut Walk) -> Id {
+        let (mut way, mut rest) = (Vec::new(), holds.iter());
+        let next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
         walk.begin(part, &self.graph);
-        let next = |id: Id, role: Role| {
-            let is_second = role.is_choice() && rest.next() == Some(&true);
-            way.push((id, role, is_second));
-            Sides::first_if(!is_second)
-        };
-        walk.run(&part.nodes, self, next, &mut Vec::new());
+        walk.run(&part.nodes, self, next, |id, holds| way.push((id, holds)), &mut Vec::new());
         let graph = &mut self.graph;
         let mut map: Vec<Id> = (0..graph.len() as Id).collect();
-        for (id, role, is_second) in way.into_iter().rev() {
+        for (id, holds) in way.into_iter().rev() {
             let new = |id: Id| map[id as usize];
-            map[id as usize] = match role {
-                Role::Plain => graph.built(graph.node(id).mapped(new)),
-                Role::Min(a, b) | Role::Max(a, b) => new(if is_second { b } else { a }),
-                Role::Abs(u) if is_second => graph.neg(new(u)),
-                Role::Abs(u) => new(u),
-                Role::Raised(u) => {
-                    let size = graph.unary(Unary::Abs, new(u));
-                    match graph.node(id) {
-                        Node::Power(_, n) => graph.power(size, n),
-                        Node::Binary(operation, _, exponent) => graph.binary(operation, size, exponent),
-                        _ => unreachable!("a power"),
-                    }
+            let node = graph.node(id);
+            map[id as usize] = match (self.roles[id as usize], node) {
+                (Role::Plain, _) => graph.built(node.mapped(new)),
+                (Role::Raised(u), _) => {
+                    let (u, size) = (new(u), graph.find(Node::Unary(Unary::Abs, u)));
+                    let new_size = graph.unary(Unary::Abs, u);
+                    // The exponent depends on no coordinate and stays.
+                    graph.built(node.mapped(|operand| if Some(operand) == size { new_size } else { operand }))
                 }
+                (Role::Choice(_), Node::Unary(Unary::Sign, _)) => {
+                    graph.constant(if holds { 1.0 } else { -1.0 })
+                }
+                (Role::Choice(_), _) => match taken(node, holds).map(new) {
+                    Some(u) if !holds && matches!(node, Node::Unary(..)) => graph.neg(u),
+                    Some(operand) => operand,
+                    None => graph.constant(0.0),
+                },
             };
         }
         let root = map[part.root as usize];
@@ -299,12 +318,12 @@ impl Branches {
         };
         let index = self.parts.len();
         let mut has_choice = false;
-        let look = |_, role: Role| {
-            has_choice |= role.is_choice();
-            Sides::First
+        let look = |_| {
+            has_choice = true;
+            Holds::Always
         };
         self.walk.begin(&part, &self.base.graph);
-        self.walk.run(&part.nodes, &self.base, look, &mut Vec::new());
+        self.walk.run(&part.nodes, &self.base, look, |_, _| {}, &mut Vec::new());
         self.parts.push(part);
         self.by_root.insert(root, index);
         if !has_choice {
@@ -314,19 +333,19 @@ impl Branches {
         index
     }
 
-    /// Index of the part that part `of` becomes where its choices take these sides.
-    fn taken(&mut self, of: usize, sides: &[bool], values: &[f64]) -> usize {
-        if let Some(&known) = self.parts[of].taken.get(sides) {
+    /// Index of the part that part `of` becomes where its conditions hold or do not.
+    fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> usize {
+        if let Some(&known) = self.parts[of].taken.get(holds) {
             return known;
         }
-        let root = self.base.specialised(&self.parts[of], sides, values, &mut self.walk);
+        let root = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
         let part = self.part(root);
-        self.parts[of].taken.insert(sides.to_vec(), part);
+        self.parts[of].taken.insert(holds.to_vec(), part);
         part
     }
 
-    /// The ways to take sides in part `of`, at most `limit`, first operands first.
-    fn ways(&self, of: usize, limit: usize, mut decide: impl FnMut(Role) -> Sides) -> Vec<Vec<bool>> {
+    /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that hold first.
+    fn ways(&self, of: usize, limit: usize, mut decide: impl FnMut(Condition) -> Holds) -> Vec<Vec<bool>> {
         let part = &self.parts[of];
         let mut first = Walk::default();
         first.begin(part, &self.base.graph);
@@ -334,8 +353,8 @@ impl Branches {
         while found.len() < limit
             && let Some(mut walk) = open.pop()
         {
-            walk.run(&part.nodes, &self.base, |_, role| decide(role), &mut open);
-            found.push(walk.sides);
+            walk.run(&part.nodes, &self.base, &mut decide, |_, _| {}, &mut open);
+            found.push(walk.holds);
         }
         found
     }
@@ -346,8 +365,8 @@ impl Branches {
             *left = left.saturating_sub(1);
             return;
         }
-        for sides in self.ways(of, *left, |_| Sides::Both) {
-            let part = self.taken(of, &sides, values);
+        for holds in self.ways(of, *left, |_| Holds::Somewhere) {
+            let part = self.taken(of, &holds, values);
             self.number(part, left, values);
         }
     }
@@ -372,22 +391,22 @@ impl Branches {
             }
             self.base.graph.evaluate(&part.nodes, values, p, &mut self.doubles);
             self.walk.begin(part, &self.base.graph);
-            let decide = |_, role| Sides::at_point(role, |id| self.doubles[id as usize]);
-            self.walk.run(&part.nodes, &self.base, decide, &mut Vec::new());
-            let sides = core::mem::take(&mut self.walk.sides);
-            at = self.taken(at, &sides, values);
-            self.walk.sides = sides;
+            let decide = |condition: Condition| condition.at_point(|id| self.doubles[id as usize]);
+            self.walk.run(&part.nodes, &self.base, decide, |_, _| {}, &mut Vec::new());
+            let holds = core::mem::take(&mut self.walk.holds);
+            at = self.taken(at, &holds, values);
+            self.walk.holds = holds;
         }
     }
 
     /// The numbers of the branches that may have a zero in the box where they give f, ascending; none if there are more than
-    /// [`MAX_LISTED`] ways to take sides.
+    /// [`MAX_LISTED`] ways in which conditions may hold.
     pub(super) fn within(&mut self, values: &[f64], bounds: &Bounds) -> Option<Vec<u32>> {
         if self.parts.is_empty() {
             return Some(vec![0]);
         }
         self.number_first(values);
-        let (mut open, mut found, mut ways) = (vec![0], Vec::new(), 0);
+        let (mut open, mut numbers, mut ways) = (vec![0], Vec::new(), 0);
         while let Some(at) = open.pop() {
             let part = &self.parts[at];
             interval::bounds(&self.base.graph, &part.nodes, values, bounds, &mut self.ranges);
@@ -396,21 +415,21 @@ impl Branches {
                 continue;
             }
             if let Some(number) = part.number {
-                found.push(number);
+                numbers.push(number);
                 continue;
             }
-            let sides = self.ways(at, MAX_LISTED + 1 - ways, |role| Sides::in_box(role, range));
-            ways += sides.len();
+            let found = self.ways(at, MAX_LISTED + 1 - ways, |condition| condition.in_box(range));
+            ways += found.len();
             if ways > MAX_LISTED {
                 return None;
             }
-            for sides in sides {
-                open.push(self.taken(at, &sides, values));
+            for holds in found {
+                open.push(self.taken(at, &holds, values));
             }
         }
-        found.sort_unstable();
-        found.dedup();
-        Some(found)
+        numbers.sort_unstable();
+        numbers.dedup();
+        Some(numbers)
     }
 
     /// Makes [`Branches::active`] the branch of this number, or f.

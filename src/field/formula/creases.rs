@@ -6,7 +6,7 @@
 //! choice has both a tie and an effect on f. In a cell that is left, Newton's method finds a place where f and the difference of the
 //! operands vanish, and the gradients on both sides of it are compared.
 
-use super::branches::{Base, Branches, Part, Role, Sides};
+use super::branches::{Base, Branches, Condition, Holds, Part, Role, taken};
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::{interval, scalar};
 use crate::math::Bounds;
@@ -61,7 +61,7 @@ impl Branches {
     pub(super) fn find_creases(&mut self, values: &[f64], bounds: &Bounds) -> bool {
         self.begin_again(values, &[]);
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return false };
-        let is_choice = |id: &Id| self.base.roles[*id as usize].is_choice();
+        let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], Role::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let kinds = Search { base: &self.base, part, values, bounds }.kinds(&choices);
         let has_creases = kinds.values().any(|kind| *kind == Kind::Crease);
@@ -148,15 +148,21 @@ impl Search<'_> {
             if reach == Reach::Nowhere {
                 continue;
             }
-            let role = base.roles[id as usize];
-            let sides = Sides::in_box(role, range);
-            if role.is_choice() && sides == Sides::Both {
-                tied.insert(id, reach);
-            }
+            let (role, node) = (base.roles[id as usize], base.graph.node(id));
             let mut need = |id: Id, reach: Reach| reaches[id as usize] = reaches[id as usize].max(reach);
-            match (role, base.graph.node(id)) {
-                (Role::Min(a, _) | Role::Max(a, _), _) if sides == Sides::First => need(a, reach),
-                (Role::Min(_, b) | Role::Max(_, b), _) if sides == Sides::Second => need(b, reach),
+            match (role, node) {
+                (Role::Choice(condition), _) => {
+                    let holds = condition.in_box(range);
+                    if holds == Holds::Somewhere {
+                        tied.insert(id, reach);
+                    }
+                    for (side, other) in [(true, Holds::Never), (false, Holds::Always)] {
+                        taken(node, side)
+                            .filter(|_| holds != other)
+                            .into_iter()
+                            .for_each(|id| need(id, reach));
+                    }
+                }
                 (Role::Raised(u), _) => need(u, reach),
                 // Where the operands differ by more than the width, the blend is one of them.
                 (Role::Plain, Node::Smin(a, b, k)) => {
@@ -166,7 +172,7 @@ impl Search<'_> {
                     need(b, if is_far_below(a, b) { Reach::Blended } else { reach });
                     need(k, reach);
                 }
-                (_, node) => node.operands(|operand| need(operand, reach)),
+                (Role::Plain, _) => node.operands(|operand| need(operand, reach)),
             }
         }
         tied
@@ -183,15 +189,14 @@ impl Search<'_> {
             let jet = scalar::jet(graph, id, self.values, p, jets);
             (jet.value, jet.gradient)
         };
-        let tie =
-            |p: DVec3, jet: &mut dyn FnMut(Id, DVec3) -> (f64, DVec3)| match self.base.roles[id as usize] {
-                Role::Min(a, b) | Role::Max(a, b) => {
-                    let ((a, of_a), (b, of_b)) = (jet(a, p), jet(b, p));
-                    (a - b, of_a - of_b)
-                }
-                Role::Abs(u) => jet(u, p),
-                Role::Plain | Role::Raised(_) => unreachable!("no choice"),
-            };
+        let Role::Choice(condition) = self.base.roles[id as usize] else { return None };
+        let tie = |p: DVec3, jet: &mut dyn FnMut(Id, DVec3) -> (f64, DVec3)| match condition {
+            Condition::AtMost(a, b) => {
+                let ((a, of_a), (b, of_b)) = (jet(a, p), jet(b, p));
+                (a - b, of_a - of_b)
+            }
+            Condition::NotNegative(u) => jet(u, p),
+        };
         let mut best = None;
         // Off the planes of symmetry, on which other choices may be tied.
         for start in cell.spread(2) {
@@ -201,7 +206,7 @@ impl Search<'_> {
                 let (gg, gh, hh) = (g.dot(g), g.dot(h), h.dot(h));
                 let determinant = gg * hh - gh * gh;
                 // Gradients that are parallel to three digits.
-                if !(determinant > 1e-6 * gg * hh) {
+                if determinant.is_nan() || determinant <= 1e-6 * gg * hh {
                     let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
                     if is_near(f, gg) && is_near(t, hh) {
                         return Some(Kind::Crease);

@@ -47,6 +47,7 @@ mod program;
 mod registers;
 mod repair;
 mod scalar;
+mod solids;
 #[cfg(test)]
 mod tests;
 mod token;
@@ -62,6 +63,7 @@ use branches::Branches;
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+use solids::Solid;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed.
 pub const MAX_FORMULA_BYTES: usize = 4096;
@@ -132,6 +134,8 @@ pub struct Formula {
     equation: Equation,
     /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
     simplified: Option<Equation>,
+    /// What the surface is made to before it is evaluated.
+    solid: Solid,
     parameters: Vec<Parameter>,
     /// Names of the parameters that were not declared.
     automatic: Vec<String>,
@@ -200,6 +204,7 @@ impl Formula {
         Ok(Self {
             text: text.to_owned(),
             simplified: None,
+            solid: Solid::default(),
             branches: Branches::new(compiled.graph(), &values),
             values,
             automatic,
@@ -228,8 +233,8 @@ impl Formula {
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
             self.simplified = Some(simplified);
-            self.branches = Branches::new(compiled.graph(), &self.values);
-            self.compiled = compiled;
+            self.use_compiled(compiled);
+            self.make_solid();
         }
         self
     }
@@ -241,6 +246,45 @@ impl Formula {
         } else {
             self.branches.factor(factor, &self.values)
         }
+    }
+
+    /// Field of the solid that the faces of a box close: max(f, x − `bounds.max[0]`, `bounds.min[0]` − x, …), which is negative in the
+    /// box where f is. It is to be sampled in a larger box. The faces of the box are creases of the surface. Text and MathML remain
+    /// those of the formula, whose surface is no longer periodic.
+    #[must_use]
+    pub fn closed_by(mut self, bounds: &Bounds) -> Self {
+        self.solid.closed = Some(*bounds);
+        self.make_solid();
+        self
+    }
+
+    /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative where the distance from the surface
+    /// is less than t/2 to first order. A box [closes](Formula::closed_by) the sheet, not the solid. Text and MathML remain those of
+    /// the formula.
+    #[must_use]
+    pub fn thickened(mut self, thickness: f64) -> Self {
+        self.solid.thickness = Some(thickness);
+        self.make_solid();
+        self
+    }
+
+    /// Compiles what the surface is made to, anew from f.
+    fn make_solid(&mut self) {
+        if self.solid == Solid::default() {
+            return;
+        }
+        let equation = self.simplified.as_ref().unwrap_or(&self.equation);
+        let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut graph = graph::Graph::default();
+        let f = build::build(&mut graph, equation, &names).expect("it was built before");
+        let root = self.solid.made_of(&mut graph, f);
+        let (graph, root) = graph.part(root);
+        self.use_compiled(Compiled::from_graph(graph, root, &self.values));
+    }
+
+    fn use_compiled(&mut self, compiled: Compiled) {
+        self.branches = Branches::new(compiled.graph(), &self.values);
+        self.compiled = compiled;
     }
 
     /// Text that was parsed.
@@ -450,6 +494,9 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
 
 impl Field for Formula {
     fn periods(&self) -> [Option<f64>; 3] {
+        if self.solid.closed.is_some() {
+            return [None; 3];
+        }
         let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
         [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
     }

@@ -1,0 +1,124 @@
+//! Solids made of the surface of a formula: a sheet of some thickness, and what the faces of a box close.
+//!
+//! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as for any formula.
+
+use super::derivative;
+use super::graph::{Graph, Id, Node};
+use super::operations::{Binary, Unary};
+use crate::math::Bounds;
+
+/// Maximum number of smooth functions that the sheets of a thickened surface are put together from. Beyond it the choices of f are
+/// taken as they are, and edges of a sheet may be off where gradients of different length meet.
+const MAX_SHEETS: usize = 128;
+
+/// What a surface is made to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Solid {
+    /// Thickness of the sheet around the surface.
+    pub(super) thickness: Option<f64>,
+    /// The box whose faces close the solid.
+    pub(super) closed: Option<Bounds>,
+}
+
+impl Solid {
+    /// The node of the function that is at most 0 in the solid made of f, which is node `root`.
+    pub(super) fn made_of(&self, graph: &mut Graph, root: Id) -> Id {
+        let mut solid = root;
+        if let Some(thickness) = self.thickness {
+            graph.let_zero_annihilate();
+            solid = thickened(graph, root, thickness);
+        }
+        if let Some(bounds) = &self.closed {
+            for axis in 0..3_u8 {
+                let at = graph.intern(Node::Coordinate(axis));
+                let [low, high] =
+                    [bounds.min, bounds.max].map(|corner| graph.constant(corner[usize::from(axis)]));
+                for face in [graph.sub(at, high), graph.sub(low, at)] {
+                    solid = graph.binary(Binary::Max, solid, face);
+                }
+            }
+        }
+        solid
+    }
+}
+
+/// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to first order.
+///
+/// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0 and b = 0, each by its own gradient.
+/// They meet in edges, which they would miss by the jump of |∇f|.
+fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
+    let half = graph.constant(0.5 * thickness);
+    let mut sheets = Sheets { graph, half, left: MAX_SHEETS };
+    let zero = sheets.graph.constant(0.0);
+    let [above, below] =
+        [false, true].map(|is_negative| sheets.side(&Signed { node: root, is_negative, shift: zero }));
+    graph.binary(Binary::Max, above, below)
+}
+
+/// The function shift + node, or shift − node; the shift depends on no coordinate.
+struct Signed {
+    node: Id,
+    is_negative: bool,
+    shift: Id,
+}
+
+struct Sheets<'a> {
+    graph: &'a mut Graph,
+    /// Half of the thickness.
+    half: Id,
+    /// Number of smooth functions that may still be added.
+    left: usize,
+}
+
+impl Sheets<'_> {
+    /// The node of a function that is at most 0 where f/|∇f| ≤ t/2, for the function f.
+    fn side(&mut self, f: &Signed) -> Id {
+        let &Signed { node, is_negative, shift } = f;
+        let shifted = |node: Id, shift: Id| Signed { node, is_negative, shift };
+        let turned = |node: Id, shift: Id| Signed { node, is_negative: !is_negative, shift };
+        let is_uniform = |graph: &Graph, id: Id| graph.is_uniform(id);
+        match self.graph.node(node) {
+            Node::Unary(Unary::Neg, u) => self.side(&turned(u, shift)),
+            Node::Binary(Binary::Add, v, u) if is_uniform(self.graph, u) => {
+                let shift = if is_negative { self.graph.sub(shift, u) } else { self.graph.add(shift, u) };
+                self.side(&shifted(v, shift))
+            }
+            Node::Binary(Binary::Sub, u, v) if is_uniform(self.graph, u) => {
+                let shift = if is_negative { self.graph.sub(shift, u) } else { self.graph.add(shift, u) };
+                self.side(&turned(v, shift))
+            }
+            // The zeros are those of v + shift/factor.
+            Node::Binary(Binary::Mul, v, u) if self.graph.as_constant(u).is_some_and(|u| u != 0.0) => {
+                let size = self.graph.unary(Unary::Abs, u);
+                let shift = self.graph.div(shift, size);
+                let is_reversed = self.graph.as_constant(u) < Some(0.0);
+                self.side(&if is_reversed { turned(v, shift) } else { shifted(v, shift) })
+            }
+            Node::Binary(operation @ (Binary::Min | Binary::Max), a, b) if self.left > 1 => {
+                let is_max = (operation == Binary::Max) != is_negative;
+                self.both(is_max, &shifted(a, shift), &shifted(b, shift))
+            }
+            Node::Unary(Unary::Abs, u) if self.left > 1 => {
+                self.both(!is_negative, &shifted(u, shift), &turned(u, shift))
+            }
+            _ => {
+                let gradient = derivative::gradient(self.graph, node);
+                let squares = gradient.map(|slope| self.graph.power(slope, 2));
+                let sum = self.graph.add(squares[0], squares[1]);
+                let sum = self.graph.add(sum, squares[2]);
+                let slope = self.graph.unary(Unary::Sqrt, sum);
+                let value =
+                    if is_negative { self.graph.sub(shift, node) } else { self.graph.add(node, shift) };
+                let offset = self.graph.mul(slope, self.half);
+                self.graph.sub(value, offset)
+            }
+        }
+    }
+
+    /// The greater or the lesser of two functions, each with its own gradient.
+    fn both(&mut self, is_max: bool, a: &Signed, b: &Signed) -> Id {
+        self.left -= 1;
+        let (a, b) = (self.side(a), self.side(b));
+        self.graph.binary(if is_max { Binary::Max } else { Binary::Min }, a, b)
+    }
+}
