@@ -32,7 +32,8 @@ impl MeshFormat {
 }
 
 /// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
-/// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every particle is a vertex, whether it is in a
+/// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every row of a particle is a vertex, so that normals are
+/// split at creases, whether it is in a
 /// triangle or not, so that indices stay. `measured` is as for [`write`](super::write).
 ///
 /// # Errors

@@ -66,6 +66,8 @@ pub struct Column {
     pub kind: ColumnKind,
     /// Whether the column is known only once the particles are measured.
     pub measured: bool,
+    /// Whether the column is there only where the surface has creases.
+    pub creases: bool,
     /// Returns the value of a particle, given by its index.
     #[serde(skip)]
     read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
@@ -120,7 +122,7 @@ fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
 type Read = fn(&Particles, &quality::Measurements, usize) -> CellValue;
 
 const fn float(name: &'static str, read: Read) -> Column {
-    Column { name, kind: ColumnKind::Float, measured: false, read }
+    Column { name, kind: ColumnKind::Float, measured: false, creases: false, read }
 }
 
 /// The columns of PLY and CSV files, in their order.
@@ -162,15 +164,26 @@ pub const COLUMNS: &[Column] = &[
         kind: ColumnKind::Uchar,
         ..float("singular", |particles, _, i| CellValue::Uchar(particles.slots[i].is_singular().into()))
     },
+    Column {
+        kind: ColumnKind::Uint,
+        creases: true,
+        ..float("patch", |particles, _, i| CellValue::Uint(particles.patch.get(i).copied().unwrap_or(0)))
+    },
+    // The first row of the particle: a particle on a crease has one for each patch.
+    Column {
+        kind: ColumnKind::Uint,
+        creases: true,
+        ..float("particle", |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
+    },
 ];
 
-/// The columns of a file: all, or those that need no measurement where nothing was measured.
-fn columns(measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
-    let is_measured = !measured.valence.is_empty();
-    COLUMNS.iter().filter(move |column| is_measured || !column.measured)
+/// The columns of a file: all, but those of measurements where nothing was measured, and those of patches where there are no creases.
+fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
+    let (is_measured, is_creased) = (!measured.valence.is_empty(), !particles.patch.is_empty());
+    COLUMNS.iter().filter(move |column| (is_measured || !column.measured) && (is_creased || !column.creases))
 }
 
-/// Writes `particles` to `out`, which should be buffered. `measured` is the report on them: where it is empty, its columns are left
+/// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them: where it is empty, its columns are left
 /// out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the
 /// same bits.
 ///
@@ -203,7 +216,7 @@ fn ply(
         ply_header(particles, measured, triangles, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
-        for column in columns(measured) {
+        for column in columns(particles, measured) {
             (column.read)(particles, measured, i).write_binary(out)?;
         }
     }
@@ -226,7 +239,7 @@ fn ply_header(
 ) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     writeln!(out, "element vertex {}", particles.len())?;
-    for column in columns(measured) {
+    for column in columns(particles, measured) {
         let kind = match column.kind {
             ColumnKind::Coordinate if is_double(particles) => "double",
             ColumnKind::Coordinate | ColumnKind::Float => "float",
@@ -243,10 +256,10 @@ fn ply_header(
 }
 
 fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
-    let names: Vec<&str> = columns(measured).map(|column| column.name).collect();
+    let names: Vec<&str> = columns(particles, measured).map(|column| column.name).collect();
     writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
-        for (k, column) in columns(measured).enumerate() {
+        for (k, column) in columns(particles, measured).enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;
             (column.read)(particles, measured, i).write_text(out)?;
         }
@@ -369,6 +382,20 @@ mod tests {
         assert_eq!(second[..10], [1.0 / 3.0, 4.0, 5.0, 0.6, 0.8, 0.0, 0.5, 1.0, 0.0, 0.0]);
         assert!(second[10].is_nan() && second[11].is_nan() && second[12] == 1.0);
         assert_eq!(lines.next(), None);
+    }
+
+    #[test]
+    fn rows_of_a_particle_on_a_crease_tell_their_patch_and_their_particle() {
+        let mut particles = two();
+        particles.position[1] = particles.position[0];
+        (particles.patch, particles.twins) = (vec![4, 9], vec![0, 0]);
+        let mut out = Vec::new();
+        write(Format::Csv, &particles, &quality::Measurements::default(), &mut out)
+            .expect("writing to memory does not fail");
+        let text = String::from_utf8(out).expect("text");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "x,y,z,nx,ny,nz,radius,level,parent,singular,patch,particle");
+        assert!(lines[1].ends_with(",0,4,0") && lines[2].ends_with(",1,9,0"), "{text}");
     }
 
     #[test]

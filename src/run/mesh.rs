@@ -62,6 +62,14 @@ enum MeshState {
 }
 
 impl Meshing {
+    /// The mesh, if it is there.
+    pub(super) fn joined(&self) -> Option<&Triangulation> {
+        match &self.state {
+            MeshState::Joined(mesh) => Some(mesh),
+            _ => None,
+        }
+    }
+
     /// Joins particles to triangles, or takes those that are `known`, in slices of work.
     fn work(particles: &Particles, count: usize, known: &[[u32; 3]], bounds: Bounds) -> Work<Triangulation> {
         let mut copy = Particles::default();
@@ -127,17 +135,13 @@ impl<F: Field> Run<F> {
         if let MeshState::Joining(work) = &mut self.meshing.state {
             self.meshing.state = MeshState::Joined(slices::advance(work.as_mut(), budget)?);
         }
-        let MeshState::Joined(mesh) = &self.meshing.state else { return None };
-        Some(mesh.into())
+        self.meshing.joined().map(Into::into)
     }
 
     /// The triangles: triples of particles, counter-clockwise seen from outside. There are none before [`Run::join`] is done.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        match &self.meshing.state {
-            MeshState::Joined(mesh) => &mesh.triangles,
-            _ => &[],
-        }
+        self.meshing.joined().map_or(&[], |mesh| &mesh.triangles)
     }
 
     /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of a thousand rows each; the

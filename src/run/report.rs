@@ -4,7 +4,8 @@ use super::measuring::{Measuring, MeasuringInput, MeasuringResult, ParticleCopy}
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
-use crate::particles::{SlotFate, Slots};
+use crate::math::Forest;
+use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{Blur, FateCounts, Sampled, Search, StopReason};
 use crate::slices;
@@ -109,6 +110,10 @@ pub struct Proof {
     pub undecided_cells: Option<u64>,
     /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
     pub singular_points: Option<u64>,
+    /// Curves along which particles lie on creases, from corner to corner or closed; none where the surface has no creases.
+    pub creases: Option<usize>,
+    /// Particles at which creases meet or end; none where the surface has no creases.
+    pub corners: Option<usize>,
 }
 
 /// Figures of quality of a run.
@@ -128,6 +133,21 @@ pub struct Measures {
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
 fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S::Error> {
     Some(*count).filter(|&count| count > 0).serialize(serializer)
+}
+
+/// Number of curves of the segments along creases, and of the particles at which they meet or end.
+fn creases_of(Particles { twins, segments, .. }: &Particles) -> (usize, usize) {
+    // The segments at each particle.
+    let mut at = vec![Vec::new(); twins.len()];
+    for (k, segment) in (0..).zip(segments) {
+        segment.iter().for_each(|&first| at[first as usize].push(k));
+    }
+    let mut curves = Forest::new(segments.len());
+    for way in at.iter().filter(|segments| segments.len() == 2) {
+        curves.join(way[0], way[1]);
+    }
+    let count = (0..segments.len() as u32).filter(|&k| curves.find(k) == k).count();
+    (count, at.iter().filter(|segments| !matches!(segments.len(), 0 | 2)).count())
 }
 
 impl<F: Field> Run<F> {
@@ -180,7 +200,7 @@ impl<F: Field> Run<F> {
         let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
         let blur = self.sampler.blur(&mut self.field);
         let particles = self.sampler.particles();
-        let count = particles.len();
+        let count = particles.count();
         let measured = &self.measuring.measured;
         let proof = self.proof(measured.figures.connectivity.components);
         let mut places = measured.places.clone();
@@ -188,14 +208,14 @@ impl<F: Field> Run<F> {
             hole.position =
                 (particles.origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
         }
-        let is_outside = |slots: &&Slots| (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside);
-        let border = particles.slots.iter().filter(is_outside).count();
+        let border = self.at_border();
         let mut warnings = self.warnings_of_run(&proof.sampled, facing);
         warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
             position: particles.place(particle).to_array(),
             distance,
             spacing: 2.0 * f64::from(particles.radius[particle]),
         }));
+        warnings.extend(self.meshing.joined().and_then(|mesh| Warning::of_mesh(measured, mesh)));
         warnings.extend(is_overflowing.then_some(Warning::Overflow));
         Report {
             count,
@@ -214,6 +234,24 @@ impl<F: Field> Run<F> {
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
             digest: format!("{:016x}", particles.digest()),
         }
+    }
+
+    /// Number of particles at the border of the box, with a child that fell outside. A child beyond a crease is outside of its patch, which is
+    /// told apart by the distance from the box: a child is two radii away.
+    fn at_border(&self) -> usize {
+        let (particles, bounds) = (self.particles(), self.local_bounds());
+        let is_at = |&i: &usize| {
+            let slots = particles.slots[i];
+            let reach = Vec3::splat(2.0 * particles.radius[i]);
+            let is_inside = |p: Vec3| bounds.contains(p - reach) && bounds.contains(p + reach);
+            (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside)
+                && (particles.patch.is_empty() || !is_inside(particles.position[i]))
+        };
+        let mut firsts: Vec<usize> =
+            (0..particles.len()).filter(is_at).map(|i| particles.first_row(i)).collect();
+        firsts.sort_unstable();
+        firsts.dedup();
+        firsts.len()
     }
 
     /// The reason why particles lie at the border of the box, if some do.
@@ -235,7 +273,10 @@ impl<F: Field> Run<F> {
     fn growth(&self) -> Growth {
         let particles = self.particles();
         let mut level_counts = Vec::new();
-        for &level in &particles.level {
+        for (i, &level) in particles.level.iter().enumerate() {
+            if particles.first_row(i) != i {
+                continue;
+            }
             if level_counts.len() <= level as usize {
                 level_counts.resize(level as usize + 1, 0);
             }
@@ -251,7 +292,7 @@ impl<F: Field> Run<F> {
             gaps_filled: counts.gaps_filled,
             fates: counts.fates,
             evaluations,
-            evaluations_per_particle: counts.front_evaluations as f64 / particles.len().max(1) as f64,
+            evaluations_per_particle: counts.front_evaluations as f64 / particles.count().max(1) as f64,
             refined_levels: counts.refined_levels,
             energy: Some(self.sampler.energy()).filter(|energy| !energy.is_empty()).map(<[f64]>::to_vec),
         }
@@ -262,12 +303,16 @@ impl<F: Field> Run<F> {
         for witness in &mut sampled.without {
             witness.position = self.place(witness.position);
         }
+        let particles = self.particles();
+        let creases = (!particles.segments.is_empty()).then(|| creases_of(particles));
         Proof {
             components,
             search: self.sampler.search(),
             sampled,
             undecided_cells: self.sampler.undecided_cells(),
             singular_points: self.sampler.singular_points(),
+            creases: creases.map(|(curves, _)| curves),
+            corners: creases.map(|(_, corners)| corners),
         }
     }
 }

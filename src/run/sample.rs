@@ -1,7 +1,7 @@
 //! The whole job in one call, and its result.
 
 use super::mesh::Meshing;
-use super::{Error, Report, Run};
+use super::{Error, Report, Run, Warning};
 use crate::export::{self, Format, MeshFormat};
 use crate::field::Field;
 use crate::math::Bounds;
@@ -21,7 +21,7 @@ use std::io::{self, Write};
 /// # Errors
 ///
 /// If a setting or the box is out of its range, the memory does not hold the particles to expect, or no particle could be placed: the
-/// error says why. Anything else that a field may do wrong is a [`Warning`](super::Warning) in the report.
+/// error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
 ///
 /// ```
 /// use marching_particles::{Formula, Format, Settings, sample};
@@ -96,6 +96,12 @@ impl Sample {
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         self.mesh.get_or_init(|| Meshing::join(&self.particles, &self.known, &self.local_bounds))
+    }
+
+    /// The warning about the [mesh](Sample::mesh) if it has another topology than the particles as they were measured.
+    #[must_use]
+    pub fn mesh_warning(&self) -> Option<Warning> {
+        Warning::of_mesh(&self.measured, self.mesh())
     }
 
     /// Writes the particles with what was measured of them to `out`, which should be buffered.

@@ -3,6 +3,9 @@
 use super::{Run, check};
 use crate::field::Field;
 use crate::math::{grouped, shortest_text};
+use crate::mesh::build::Triangulation;
+use crate::quality::Measurements;
+use crate::quality::figures::Connectivity;
 use crate::sampler::{COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SizeMode, StopReason, Unsampled};
 use core::fmt;
 use serde::{Serialize, Serializer};
@@ -92,6 +95,13 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
+    /// The mesh and the triangles between the particles have different topologies.
+    MeshDiffers {
+        /// Components and Euler number of the mesh.
+        mesh: (usize, i64),
+        /// Components and Euler number of the sample.
+        sample: (usize, i64),
+    },
     /// It is not proven that every component has been found.
     Unproven {
         /// The reason. Its position is in the coordinates of the field.
@@ -116,6 +126,19 @@ impl Serialize for Warning {
     /// Writes the warning as its sentence.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
+    }
+}
+
+impl Warning {
+    /// The warning about a mesh, if its topology is another one than that of the particles as they were measured. Where a box cuts the
+    /// surface, the two end in different ways beside its faces, and only the components are compared.
+    pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Option<Self> {
+        let Connectivity { components, euler, .. } = measured.figures.connectivity;
+        let is_cut = measured.figures.boundary_excluded > 0;
+        let sample = (components, euler);
+        let mesh = (mesh.topology.components.len(), mesh.topology.euler());
+        let differs = mesh.0 != sample.0 || !is_cut && mesh.1 != sample.1;
+        (differs && !measured.valence.is_empty()).then_some(Self::MeshDiffers { mesh, sample })
     }
 }
 
@@ -144,7 +167,7 @@ impl<F: Field> Run<F> {
     /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing` is the number of particles that
     /// face another sheet.
     pub(super) fn warnings_of_run(&self, sampled: &Sampled, facing: usize) -> Vec<Warning> {
-        let total = self.particles().len();
+        let total = self.particles().count();
         let (length, settings, counts) =
             (self.sampler.radius(), self.sampler.settings(), self.sampler.counts());
         let mut warnings = self.start.warnings.clone();
@@ -270,6 +293,18 @@ impl fmt::Display for Warning {
                      sample need not be those of the surface. The surface has an edge, a point or an end there, or is thinner or bends \
                      more sharply than the particles are large; then choose a smaller radius.",
                     place(*position, *length)
+                )
+            }
+            Self::MeshDiffers { mesh, sample } => {
+                let told = |&(components, euler): &(usize, i64)| {
+                    format!("{} and Euler number {euler}", counted(components, "component", "components"))
+                };
+                write!(
+                    f,
+                    "The mesh has {}, the sample {}: at this radius one of them, or both, do not have the topology of the surface. A \
+                     smaller radius may show which.",
+                    told(mesh),
+                    told(sample)
                 )
             }
             Self::Unproven { doubt, length } => unproven(f, doubt, *length),

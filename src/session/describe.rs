@@ -483,6 +483,14 @@ const REPORT: &[ReportRow] = &[
         ("", None),
         "Places where f has no gradient on the surface, such as the tip of a cone; a curve of them counts as one. Particles within 2r of one are marked in the exported files.",
     ),
+    row(
+        "creases",
+        "Creases",
+        ("Surface", "", 0),
+        ("", None),
+        "Curves on which the surface has an edge, from corner to corner or closed. Particles lie on them exactly, with a normal for each side.",
+    ),
+    row("corners", "Corners", ("Surface", "", 0), ("", None), "Particles at which creases meet or end."),
 ];
 
 const FATES: &[Fate] = &[

@@ -194,6 +194,18 @@ impl Core {
         self.session.run.measured().nearest.clone()
     }
 
+    /// Patch of each particle, by the number of its branch; empty without creases.
+    pub fn patch(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().patch, 0)
+    }
+
+    /// For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
+    pub fn particle(&self) -> Vec<u32> {
+        let particles = self.session.run.particles();
+        let rows = self.session.run.count().min(particles.patch.len());
+        (0..rows).map(|row| particles.first_row(row) as u32).collect()
+    }
+
     /// |f|/|∇f| per particle, as of the last report.
     pub fn residual(&self) -> Vec<f32> {
         self.session.run.measured().residual.clone()

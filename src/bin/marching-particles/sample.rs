@@ -91,6 +91,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     seconds.writing = clock.seconds();
 
     let mut report = sample.report().clone();
+    report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
     if has_own_box {
         report.cut = None;
     }

@@ -43,6 +43,8 @@ export type Column = {
   kind: ColumnKind,
   /** Whether the column is known only once the particles are measured. */
   measured: boolean,
+  /** Whether the column is there only where the surface has creases. */
+  creases: boolean,
 };
 
 /** Type of the values of a column, by its name in PLY. */
@@ -975,6 +977,10 @@ export type Report = {
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,
+  /** Curves along which particles lie on creases, from corner to corner or closed; none where the surface has no creases. */
+  creases: number | null,
+  /** Particles at which creases meet or end; none where the surface has no creases. */
+  corners: number | null,
   /** Quality of the present particles; none if there are none, or where they were not measured. */
   quality: Figures | null,
   /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */

@@ -308,6 +308,8 @@ describe('colours of particles', () => {
       residual: Float32Array.of(0, 1e-6, 1),
       energy: Float32Array.of(0.2, 1, 1.4),
       component: new Uint32Array(3),
+      patch: new Uint32Array(0),
+      particle: new Uint32Array(0),
     });
     const ramp = PALETTES.light.sequential;
     const [first, middle, last] = [ramp[0], ramp[Math.round((ramp.length - 1) / 2)], ramp[ramp.length - 1]];

@@ -306,6 +306,19 @@ describe('exports', () => {
     }
   });
 
+  test('CSV has the columns of patches where there are creases', async () => {
+    const columns = sphere(3);
+    columns.patch = Uint32Array.of(4, 9, 9);
+    columns.particle = Uint32Array.of(0, 0, 2);
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
+    expect(lines[0]).toMatch(/,singular,patch,particle$/);
+    expect(lines.slice(1).map((line) => line.split(',').slice(-2).map(Number))).toEqual([
+      [4, 0],
+      [9, 0],
+      [9, 2],
+    ]);
+  });
+
   test('PLY without a report has no column of it', async () => {
     const text = await ply(sphere(3), description.columns, { comment: '' }).text();
     expect(text).not.toMatch(/valence|nearest|residual/);

@@ -25,7 +25,7 @@ const setting = (name, change) => ({
 });
 
 /** @param {string} name @param {Column['kind']} kind @returns {Column} */
-const column = (name, kind, measured = false) => ({ name, kind, measured });
+const column = (name, kind, measured = false, creases = false) => ({ name, kind, measured, creases });
 
 /** @type {Description} */
 export const description = {
@@ -85,6 +85,8 @@ export const description = {
     column('nearest', 'float', true),
     column('residual', 'float', true),
     column('singular', 'uchar'),
+    column('patch', 'uint', false, true),
+    column('particle', 'uint', false, true),
   ],
   new_parameter: { name: '', label: '', value: 1, min: 0, max: 3, step: 0.01 },
   limits: {

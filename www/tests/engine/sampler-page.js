@@ -83,6 +83,8 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
   residual: new Float32Array(n),
   energy: new Float32Array(n),
   component: new Uint32Array(n),
+  patch: new Uint32Array(0),
+  particle: new Uint32Array(0),
 });
 
 /**

@@ -37,15 +37,19 @@ const READ = {
   nearest: ({ nearest }, i) => nearest?.[i],
   residual: ({ residual }, i) => residual?.[i],
   singular: ({ slots }, i) => (slots[i] & SINGULAR ? 1 : 0),
+  patch: ({ patch }, i) => patch?.[i],
+  particle: ({ particle }, i) => particle?.[i],
 };
 
 /**
- * Columns whose values are known; some are known only after the particles were measured.
+ * Columns whose values are known; some are known only after the particles were measured, and some only where there are creases.
  * @param {Columns} columns
  * @param {readonly Column[]} all
  */
-const known = ({ valence, nearest, residual }, all) =>
-  all.filter(({ measured }) => !measured || (valence && nearest && residual));
+const known = ({ valence, nearest, residual, patch, particle }, all) =>
+  all.filter(
+    ({ measured, creases }) => (!measured || (valence && nearest && residual)) && (!creases || (patch && particle)),
+  );
 
 /** Size of a value in bytes, and the method that writes it, by the type of the column. */
 const BINARY = {

@@ -96,6 +96,14 @@ export class Core {
      */
     parents(from: number): Uint32Array<ArrayBuffer>;
     /**
+     * For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
+     */
+    particle(): Uint32Array<ArrayBuffer>;
+    /**
+     * Patch of each particle, by the number of its branch; empty without creases.
+     */
+    patch(): Uint32Array<ArrayBuffer>;
+    /**
      * Positions from particle `from` on, rounded to single precision.
      */
     positions(from: number): Float32Array<ArrayBuffer>;
