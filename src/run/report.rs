@@ -130,7 +130,6 @@ pub struct Measures {
     pub places: Places,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
 fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S::Error> {
     Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
