@@ -172,7 +172,7 @@ pub(crate) fn polyhedron(faces: Vec<Face>, spacing: f64) -> Creased {
                 match other {
                     Some((_, _, crease)) => crease.patches[1] = *patch,
                     None => {
-                        creases.push((a, b, Crease { points: along(a, b, spacing), patches: [*patch; 2] }))
+                        creases.push((a, b, Crease { points: along(a, b, spacing), patches: [*patch; 2] }));
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! Particles on a surface with creases: each patch is a sheet of its own, which ends at its creases.
 
+use crate::math::unkey;
 use crate::particles::Particles;
 use crate::spatial::tree::Tree;
 use glam::Vec3;
@@ -7,6 +8,10 @@ use glam::Vec3;
 /// A row of particles votes for the side of a crease on which it lies if it is nearer to a segment of it than this many lengths of
 /// the segment. In a hexagonal lattice the nearest is 0.87 away; farther ones may belong to another part of the patch.
 const NEAR: f32 = 2.0;
+
+/// Least sine of the angle between a segment and the way from its middle to a row that votes: one ahead says nothing. It is that
+/// of 30°: in a lattice that of the nearest row is 1.
+const BESIDE: f32 = 0.5;
 
 /// The rows of one patch, and its border.
 #[derive(Debug, Default)]
@@ -63,19 +68,39 @@ impl Sheet {
         let position: Vec<Vec3> = self.rows.iter().map(|&row| particles.position[row as usize]).collect();
         let normal = |v: u32| particles.normal[self.rows[v as usize] as usize];
         let on_creases = self.rows.partition_point(|&row| (row as usize) < particles.twins.len());
-        let inner = Tree::new(&position[on_creases..]);
+        let [inner, others] = [&position[on_creases..], &position[..on_creases]].map(Tree::new);
         let mut border = Vec::with_capacity(segments.len());
-        for mut chain in chains(segments, position.len()) {
-            let side = |&[a, b]: &[u32; 2]| {
-                let (p, q) = (position[a as usize], position[b as usize]);
-                let (middle, reach) = (0.5 * (p + q), NEAR * p.distance(q));
-                let left = (normal(a) + normal(b)).cross(q - p);
-                let (_, nearest) = inner.nearest(middle, u32::MAX, reach * reach);
-                inner.position.get(nearest as usize).map_or(0.0, |at| (at - middle).dot(left).signum())
+        let chains = chains(segments, position.len());
+        let mut chain_of = vec![usize::MAX; on_creases];
+        for (k, chain) in chains.iter().enumerate() {
+            chain.as_flattened().iter().for_each(|&v| chain_of[v as usize] = k);
+        }
+        let mut keys = Vec::new();
+        for (k, mut chain) in chains.into_iter().enumerate() {
+            // The rows beside the chain: those on no crease, or else those of other creases around a narrow patch.
+            let mut votes = |tree: &Tree, is_beside: &dyn Fn(usize) -> bool| {
+                let side = |&[a, b]: &[u32; 2]| {
+                    let (p, q) = (position[a as usize], position[b as usize]);
+                    let (middle, reach) = (0.5 * (p + q), NEAR * p.distance(q));
+                    tree.nearest_many(middle, 1, |j| is_beside(tree.origin[j as usize] as usize), &mut keys);
+                    let nearest = keys.first().map(|&key| tree.position[unkey(key).1 as usize]);
+                    let left = (normal(a) + normal(b)).cross(q - p).normalize_or_zero();
+                    let beside = nearest.map(|at| at - middle).filter(|beside| beside.length() < reach);
+                    let sine = beside.map_or(0.0, |beside| beside.normalize_or_zero().dot(left));
+                    if sine.abs() > BESIDE { sine.signum() } else { 0.0 }
+                };
+                chain.iter().map(side).sum::<f32>()
             };
-            let mut on_left: f32 = chain.iter().map(side).sum();
+            let mut on_left = votes(&inner, &|_| true);
             if on_left == 0.0 {
-                // No row but those on the creases: the way leads counter-clockwise round the patch.
+                on_left = votes(&others, &|v| chain_of[v] != k);
+                // A crease of another part of the patch may be near a few of the segments.
+                if 2.0 * on_left.abs() <= chain.len() as f32 {
+                    on_left = 0.0;
+                }
+            }
+            if on_left == 0.0 {
+                // There is no row but those of the chain: the way leads counter-clockwise round the patch.
                 let start = position[chain[0][0] as usize];
                 let area = |&[a, b]: &[u32; 2]| {
                     (position[a as usize] - start)

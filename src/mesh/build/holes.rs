@@ -185,13 +185,13 @@ impl Cutter {
     }
 }
 
-/// Removes all fans but the largest at every vertex with several, so that the surface does not touch itself.
-pub(super) fn unpinch(patch: &mut Patch) {
+/// Removes all fans but the largest at every vertex with several, so that the surface does not touch itself but where its rim does.
+pub(super) fn unpinch(patch: &mut Patch, rim: &Rim) {
     let mut open: Vec<u32> = patch.changed().to_vec();
     while let Some(v) = open.pop() {
         let mut fans = patch.fans(v);
         sort_few(&mut fans, |a, b| a.len() < b.len());
-        fans.pop();
+        fans.truncate(fans.len().saturating_sub(rim.fans(v)));
         for id in fans.into_iter().flatten() {
             open.extend(patch.triangle(id));
             patch.remove(id);

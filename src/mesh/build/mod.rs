@@ -228,7 +228,7 @@ impl JoinablePoints {
         place.sort_unstable();
         let in_tree = |i: u32| place.binary_search_by_key(&i, |&(i, _)| i).ok().map(|k| place[k].1);
         let edges = edges.iter().filter_map(|&[a, b]| Some([in_tree(a)?, in_tree(b)?]));
-        Rim::new(edges.collect(), self.tree.len())
+        Rim::new(edges.collect(), &self.tree.position, &self.normal)
     }
 
     async fn join(&self, stars: &Stars, options: &MeshOptions<'_>) -> Joined {
@@ -249,7 +249,7 @@ impl JoinablePoints {
             }
             pause().await;
         }
-        holes::unpinch(&mut patch);
+        holes::unpinch(&mut patch, &rim);
         pause().await;
 
         let origin = |v: u32| self.tree.origin[v as usize];

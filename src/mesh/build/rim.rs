@@ -5,36 +5,40 @@ use super::SLICE;
 use super::patch::{Gap, NONE, Patch, quarter_turns};
 use crate::math::tangent_frame;
 use crate::slices::pause;
+use glam::Vec3;
 
 /// Edges with the surface on their left, seen from outside, in the numbers of a tree.
 #[derive(Debug, Default)]
 pub(super) struct Rim {
     /// The edges, sorted.
     edges: Vec<[u32; 2]>,
-    /// The vertices before and after each vertex along the rim; none off the rim, at an end of it, and where it meets itself.
-    previous: Vec<u32>,
-    next: Vec<u32>,
+    /// The ways of the rim through its vertices, sorted: vertex, the one before it and the one after it, of which one is none at an end.
+    /// Where the rim meets itself a vertex has several.
+    ways: Vec<[u32; 3]>,
 }
 
 impl Rim {
-    /// The rim of `count` vertices.
-    pub(super) fn new(mut edges: Vec<[u32; 2]>, count: usize) -> Self {
-        if edges.is_empty() {
-            return Self::default();
-        }
+    /// The rim of points with normals.
+    pub(super) fn new(mut edges: Vec<[u32; 2]>, position: &[Vec3], normal: &[Vec3]) -> Self {
         edges.sort_unstable();
         edges.dedup();
-        let (mut previous, mut next) = (vec![NONE; count], vec![NONE; count]);
-        let (mut ways_in, mut ways_out) = (vec![0_u32; count], vec![0_u32; count]);
-        for &[a, b] in &edges {
-            let (a, b) = (a as usize, b as usize);
-            (next[a], previous[b]) = (b as u32, a as u32);
-            (ways_out[a], ways_in[b]) = (ways_out[a] + 1, ways_in[b] + 1);
+        // The ends of the edges at each vertex: those that lead to it, and those that lead from it.
+        let mut ends: Vec<[u32; 3]> = edges.iter().flat_map(|&[a, b]| [[a, NONE, b], [b, a, NONE]]).collect();
+        ends.sort_unstable();
+        let mut ways = Vec::new();
+        for at in ends.chunk_by(|one, other| one[0] == other[0]) {
+            let v = at[0][0];
+            let turns = Turns::new(position, normal, v);
+            let mut after: Vec<u32> = at.iter().map(|end| end[2]).filter(|&w| w != NONE).collect();
+            for before in at.iter().map(|end| end[1]).filter(|&u| u != NONE) {
+                // What lies beyond the rim is counter-clockwise from the way in to the next way out.
+                let turn = |w: u32| turns.between(before, w);
+                let next = (0..after.len()).min_by(|&k, &l| turn(after[k]).total_cmp(&turn(after[l])));
+                ways.push([v, before, next.map_or(NONE, |k| after.swap_remove(k))]);
+            }
+            ways.extend(after.into_iter().map(|after| [v, NONE, after]));
         }
-        for v in (0..count).filter(|&v| ways_in[v].max(ways_out[v]) > 1) {
-            (previous[v], next[v]) = (NONE, NONE);
-        }
-        Self { edges, previous, next }
+        Self { edges, ways }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -46,10 +50,21 @@ impl Rim {
         self.edges.binary_search(&[a, b]).is_ok()
     }
 
+    /// The ways of the rim through a vertex.
+    fn ways(&self, v: u32) -> &[[u32; 3]] {
+        let start = self.ways.partition_point(|way| way[0] < v);
+        let end = self.ways.partition_point(|way| way[0] <= v);
+        &self.ways[start..end]
+    }
+
     /// Whether a vertex lies on the rim.
     pub(super) fn holds(&self, v: u32) -> bool {
-        let at = |list: &[u32]| list.get(v as usize).is_some_and(|&other| other != NONE);
-        at(&self.previous) || at(&self.next)
+        !self.ways(v).is_empty()
+    }
+
+    /// Number of fans that a vertex may have: one, or one between every two ways of the rim that meet there.
+    pub(super) fn fans(&self, v: u32) -> usize {
+        self.ways(v).len().max(1)
     }
 
     /// Whether a loop around a hole, which lies on the left, has an edge of the rim.
@@ -90,47 +105,67 @@ impl Rim {
 
     /// Takes what lies beyond the rim out of the gaps of a vertex, those from `first` on.
     pub(super) fn narrow(&self, patch: &Patch, v: u32, gaps: &mut Vec<Gap>, first: usize) {
-        if !self.holds(v) {
-            return;
-        }
-        let (before, after) = (self.previous[v as usize], self.next[v as usize]);
+        let ways = self.ways(v);
+        let turns = Turns::new(patch.position, patch.normal, v);
         if gaps.len() == first {
-            // Without a triangle the whole sector on the left of the rim is a gap.
-            if before != NONE && after != NONE {
-                gaps.push(Gap { vertex: v, to: after, from: before });
+            // Without a triangle each sector on the left of the rim is a gap.
+            for &[_, _, after] in ways.iter().filter(|way| way[2] != NONE) {
+                let before = ways.iter().map(|way| way[1]).filter(|&before| before != NONE);
+                let to_next = |u: &u32| turns.between(after, *u);
+                if let Some(from) = before.min_by(|one, other| to_next(one).total_cmp(&to_next(other))) {
+                    gaps.push(Gap { vertex: v, to: after, from });
+                }
             }
             return;
         }
-        let Some(k) = (first..gaps.len()).find(|&k| is_beyond(patch, gaps[k], before, after)) else { return };
-        let Gap { to, from, .. } = gaps.remove(k);
-        if before != NONE && to != before {
-            gaps.push(Gap { vertex: v, to, from: before });
-        }
-        if after != NONE && from != after {
-            gaps.push(Gap { vertex: v, to: after, from });
+        for &[_, before, after] in ways {
+            let is_beyond = |k: &usize| turns.is_beyond(gaps[*k], before, after);
+            let Some(k) = (first..gaps.len()).find(is_beyond) else { continue };
+            let Gap { to, from, .. } = gaps.remove(k);
+            if before != NONE && to != before {
+                gaps.push(Gap { vertex: v, to, from: before });
+            }
+            if after != NONE && from != after {
+                gaps.push(Gap { vertex: v, to: after, from });
+            }
         }
     }
 }
 
-/// Whether a gap holds the outside of the rim, counter-clockwise from the vertex `before` to the one `after`, of which one may be
-/// none.
-fn is_beyond(patch: &Patch, gap: Gap, before: u32, after: u32) -> bool {
-    if gap.to == before || gap.from == after {
-        return true;
+/// Angles around a vertex, counter-clockwise seen from outside, in quarter turns.
+struct Turns<'a> {
+    position: &'a [Vec3],
+    centre: Vec3,
+    frame: (Vec3, Vec3),
+}
+
+impl<'a> Turns<'a> {
+    fn new(position: &'a [Vec3], normal: &[Vec3], v: u32) -> Self {
+        Self { position, centre: position[v as usize], frame: tangent_frame(normal[v as usize]) }
     }
-    let (x, y) = tangent_frame(patch.normal[gap.vertex as usize]);
-    let angle = |w: u32| {
-        let offset = patch.position[w as usize] - patch.position[gap.vertex as usize];
-        quarter_turns(offset.dot(x), offset.dot(y))
-    };
-    let start = angle(gap.to);
-    let turn = |w: u32| (angle(w) - start + 4.0) % 4.0;
-    let end = turn(gap.from);
-    // A lone fan without breadth starts where it ends: its gap is a whole turn.
-    let end = if end == 0.0 { 4.0 } else { end };
-    let is_in = |w: u32| w == NONE || turn(w) < end;
-    let is_ordered = before == NONE || after == NONE || turn(before) < turn(after);
-    is_in(before) && is_in(after) && is_ordered
+
+    /// The angle from one vertex to another, in 0 … 4; 4 from a vertex to itself.
+    fn between(&self, from: u32, to: u32) -> f32 {
+        let [from, to] = [from, to].map(|v| {
+            let offset = self.position[v as usize] - self.centre;
+            quarter_turns(offset.dot(self.frame.0), offset.dot(self.frame.1))
+        });
+        let turn = to - from;
+        if turn > 0.0 { turn } else { turn + 4.0 }
+    }
+
+    /// Whether a gap holds what lies beyond a way of the rim: counter-clockwise from the vertex `before` to the one `after`, of which one
+    /// may be none.
+    fn is_beyond(&self, Gap { to, from, .. }: Gap, before: u32, after: u32) -> bool {
+        if to == before || from == after {
+            return true;
+        }
+        let end = self.between(to, from);
+        let is_in = |w: u32| w == NONE || self.between(to, w) < end;
+        let is_ordered =
+            before == NONE || after == NONE || self.between(to, before) < self.between(to, after);
+        is_in(before) && is_in(after) && is_ordered
+    }
 }
 
 /// Removes the triangles that the edge between `a` and `b` crosses, seen along the normals there.

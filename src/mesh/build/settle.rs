@@ -2,6 +2,7 @@
 //! the others in its own tangent plane. On a lattice they do so everywhere.
 
 use super::patch::Patch;
+use super::rim::Rim;
 use super::{SLICE, holes};
 use crate::slices::pause;
 
@@ -18,7 +19,7 @@ pub(super) async fn settle(patch: &mut Patch<'_>) {
             patch.add([a, b, c]);
         }
     }
-    holes::unpinch(patch);
+    holes::unpinch(patch, &Rim::default());
 }
 
 /// Triangles that one corner sees or two, in the order in which they are tried. From the top bit on a key has whether it is only one,
