@@ -269,7 +269,10 @@ impl Sampler {
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.scale);
             let curvature = refine::largest_curvatures(field, &self.survey.position);
-            self.counts.refusal = self.attempt.refine(settings, &self.survey.position, curvature);
+            self.counts.refusal = match self.creases.first() {
+                Some(at) => Some(Refusal::Creased { at: at.into() }),
+                None => self.attempt.refine(settings, &self.survey.position, curvature),
+            };
         }
         let predicted = self.attempt.predicted_count(settings);
         self.components.expect(predicted.min(f64::from(settings.max_particles)));

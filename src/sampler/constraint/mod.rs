@@ -20,7 +20,7 @@ mod trace;
 
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use meeting::{Meeting, SHARP};
 use serde::Serialize;
 
@@ -122,6 +122,11 @@ impl Creases {
     /// Whether patches of the surface meet.
     pub(super) fn are_there(&self) -> bool {
         !self.curves.is_empty()
+    }
+
+    /// A point of a crease, if there is one.
+    pub(super) fn first(&self) -> Option<Vec3> {
+        self.curves.first().map(|curve| curve.points[0].as_vec3())
     }
 
     /// Numbers of creases and corners.

@@ -40,6 +40,14 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
+    /// The surface has creases.
+    #[error(
+        "The front stands, and is not refined: near {at} the surface has a crease, of which the refined method knows nothing."
+    )]
+    Creased {
+        /// Position of a point of a crease.
+        at: Spot,
+    },
     /// The surface has a border that is not at the box.
     #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
@@ -105,6 +113,7 @@ impl Refusal {
         match &mut self {
             Self::Few { .. } | Self::Full => {}
             Self::Bent { at }
+            | Self::Creased { at }
             | Self::Singular { at }
             | Self::Border { at }
             | Self::Cut { at }
@@ -119,7 +128,12 @@ impl Refusal {
     pub(crate) fn is_coarse(self) -> bool {
         !matches!(
             self,
-            Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. }
+            Self::Few { .. }
+                | Self::Full
+                | Self::Bent { .. }
+                | Self::Creased { .. }
+                | Self::Singular { .. }
+                | Self::Border { .. }
         )
     }
 }
