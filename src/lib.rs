@@ -60,6 +60,10 @@
 //! | undecided cell | A cell of the octree that may hold a component and could not be decided. |
 //! | front | The particles of the newest generation level, which grow over the surface. |
 //! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. |
+//! | branch | A smooth function that gives f where its maxima, minima and absolute values take certain operands. |
+//! | patch | A part of the surface on which one branch gives f. |
+//! | crease, corner | A curve along which two patches meet at an angle; a point at which creases meet. |
+//! | row | An entry of the particle columns. A particle on a crease has one for each patch. |
 //! | parent, child | A particle, and one that it proposed. |
 //! | slot | One of a parent's places for children; six of them 60° apart in uniform sampling. |
 //! | arc | An interval of directions around a parent that is free for children, in adaptive sampling. |
