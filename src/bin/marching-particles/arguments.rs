@@ -56,6 +56,7 @@ Examples:
   marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
   marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
   marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
+  marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
@@ -137,6 +138,14 @@ pub(crate) struct SurfaceArguments {
         help_heading = "Surface"
     )]
     pub(crate) bounds: Option<BoxChoice>,
+
+    /// Close with the faces of the box what they cut: the solid f ≤ 0 in the box, whose edges are sharp. For formulas
+    #[arg(long, conflicts_with = "points", help_heading = "Surface")]
+    pub(crate) closed: bool,
+
+    /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For formulas
+    #[arg(long, value_name = "T", conflicts_with = "points", value_parser = thickness, help_heading = "Surface")]
+    pub(crate) thickness: Option<f64>,
 }
 
 /// Choice of the box that is sampled.
@@ -188,6 +197,16 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// A length above 0.
+fn thickness(text: &str) -> Result<f64, String> {
+    let thickness: f64 = text.trim().parse().map_err(|_| "give a length, such as 0.2".to_owned())?;
+    if thickness.is_finite() && thickness > 0.0 {
+        Ok(thickness)
+    } else {
+        Err("a thickness is larger than 0".to_owned())
     }
 }
 

@@ -8,6 +8,7 @@ use crate::outcome::{Outcome, Seconds};
 use crate::output::Output;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
+use marching_particles::extent;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
@@ -188,6 +189,9 @@ fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure
 fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
     let given = arguments.bounds.and_then(BoxChoice::given);
     if let Some(fit) = fit(arguments, quiet)? {
+        if arguments.closed || arguments.thickness.is_some() {
+            return Err(Failure::Usage("--closed and --thickness are for formulas, not for models from points".into()));
+        }
         return Ok(Chosen {
             field: Box::new(fit.field()),
             name: arguments.surface.clone(),
@@ -208,19 +212,39 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
     // A formula of the user's has neither the name nor the box of the surface that it replaces.
     let surface = named.filter(|surface| surface.formula == text);
     let own = surface.map(|surface| surface.bounds);
+    let parameters = formula.parameters().iter().map(|p| (p.name.clone(), p.value)).collect();
+    let bounds = match arguments.bounds {
+        Some(BoxChoice::Given(bounds)) => Some(bounds),
+        Some(BoxChoice::Fixed) => Some(named.map_or(FORMULA_BOX, |surface| surface.bounds)),
+        Some(BoxChoice::Fit) | None => own,
+    };
+    let (formula, bounds) = solid(formula, arguments, bounds);
     Ok(Chosen {
         name: surface.map(|surface| surface.id.to_owned()),
         formula: text.to_owned(),
-        parameters: formula.parameters().iter().map(|p| (p.name.clone(), p.value)).collect(),
+        parameters,
         field: Box::new(formula),
         model: None,
-        bounds: match arguments.bounds {
-            Some(BoxChoice::Given(bounds)) => Some(bounds),
-            Some(BoxChoice::Fixed) => Some(named.map_or(FORMULA_BOX, |surface| surface.bounds)),
-            Some(BoxChoice::Fit) | None => own,
-        },
+        bounds,
         has_own_box: own.is_some() && given.is_none(),
     })
+}
+
+/// The formula with what the arguments make of its surface, and the box to sample it in. Around a solid that a box closes there has to be
+/// some room, so that its box is fitted.
+fn solid(
+    mut formula: Formula,
+    arguments: &SurfaceArguments,
+    bounds: Option<Bounds>,
+) -> (Formula, Option<Bounds>) {
+    if let Some(thickness) = arguments.thickness {
+        formula = formula.thickened(thickness);
+    }
+    if !arguments.closed {
+        return (formula, bounds);
+    }
+    let faces = bounds.unwrap_or_else(|| extent::find(&mut formula).bounds);
+    (formula.closed_by(&faces), None)
 }
 
 /// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.
