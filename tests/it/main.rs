@@ -53,6 +53,7 @@ mod refine;
 mod relax;
 mod session;
 mod shaders;
+mod sharp;
 mod sizing;
 mod smooth;
 mod solids;
