@@ -23,7 +23,6 @@ mod settings;
 pub(crate) mod sheet;
 mod sizing;
 
-pub use constraint::CreaseCounts;
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
@@ -186,13 +185,6 @@ impl Sampler {
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
         self.components.open_questions().map(|_| discovery::singular::places(self.components.singular()))
-    }
-
-    /// Numbers of the creases and corners that were found. They are searched: bounds leave no place for others but within a hundredth
-    /// of the box's diagonal of a crease of the same two patches.
-    #[must_use]
-    pub fn creases(&self) -> CreaseCounts {
-        self.creases.counts()
     }
 
     /// The scale at which the field of the last start is evaluated in double precision, if it is.

@@ -27,7 +27,7 @@ const fn solid(
 /// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
-const SOLIDS: [Solid; 14] = [
+const SOLIDS: [Solid; 13] = [
     solid("cube", "max(abs(x), abs(y), abs(z)) - 1", 2, 8.0, [12, 8]),
     solid(
         "turned cube",
@@ -61,7 +61,6 @@ const SOLIDS: [Solid; 14] = [
         0.4 * (4.0 - 0.16 * PI),
         [20, 8],
     ),
-    solid("three cylinders", "max(x^2 + y^2, y^2 + z^2, z^2 + x^2) - 1", 2, 4.686_291_501, [24, 14]),
     solid(
         "L",
         "max(min(max(abs(x - 0.5) - 0.5, abs(y - 1) - 1), max(abs(x - 1) - 1, abs(y - 0.5) - 0.5)), abs(z) - 0.5)",
@@ -108,8 +107,8 @@ fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges() {
             let slack = 8.0 / f64::from(count);
             assert!((found / exact - 1.0).abs() <= slack, "{name}: volume {found} for {exact}");
             let rows = sample.particles();
-            let counted = sample.report().creases;
-            assert_eq!([counted.creases, counted.corners], creases, "{name}");
+            let proof = &sample.report().proof;
+            assert_eq!([proof.creases, proof.corners], creases.map(Some), "{name}");
             for (i, &first) in rows.twins.iter().enumerate() {
                 assert_eq!(rows.position[i], rows.position[first as usize], "{name}: row {i}");
             }

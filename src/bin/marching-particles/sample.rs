@@ -190,7 +190,9 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
     let given = arguments.bounds.and_then(BoxChoice::given);
     if let Some(fit) = fit(arguments, quiet)? {
         if arguments.closed || arguments.thickness.is_some() {
-            return Err(Failure::Usage("--closed and --thickness are for formulas, not for models from points".into()));
+            return Err(Failure::Usage(
+                "--closed and --thickness are for formulas, not for models from points".into(),
+            ));
         }
         return Ok(Chosen {
             field: Box::new(fit.field()),

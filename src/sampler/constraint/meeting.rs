@@ -52,7 +52,8 @@ impl Meeting {
             p -= step;
             // Written so that NaN fails.
             let is_steep = size > (least_sine * least_sine) * u.length_squared() * v.length_squared();
-            if !is_steep || !(p.distance(start) <= reach) {
+            let is_near = p.distance(start) <= reach;
+            if !is_steep || !is_near {
                 return None;
             }
             if step.length() <= AT_REST * reach {
@@ -97,13 +98,12 @@ pub(super) fn common_point(
         };
         let scale = [u, v, w].map(DVec3::length);
         let rows = DMat3::from_cols(u / scale[0], v / scale[1], w / scale[2]).transpose();
-        // Written so that NaN fails.
-        if !(rows.determinant().abs() > FADED * FADED) {
-            return None;
-        }
         let step = rows.inverse() * DVec3::new(f / scale[0], g / scale[1], h / scale[2]);
         p -= step;
-        if !(p.distance(start) <= reach) {
+        // Written so that NaN fails.
+        let is_regular = rows.determinant().abs() > FADED * FADED;
+        let is_near = p.distance(start) <= reach;
+        if !is_regular || !is_near {
             return None;
         }
         if step.length() <= AT_REST * reach {

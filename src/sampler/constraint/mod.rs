@@ -22,7 +22,6 @@ use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
 use meeting::{Meeting, SHARP};
-use serde::Serialize;
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
@@ -46,16 +45,6 @@ pub(super) struct Corner {
     position: DVec3,
     /// The patches that meet there, in ascending order.
     patches: Vec<u32>,
-}
-
-/// Numbers of the creases and corners of a surface in a box.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-pub struct CreaseCounts {
-    /// Curves along which two smooth patches of the surface meet.
-    pub creases: usize,
-    /// Points at which more than two creases meet.
-    pub corners: usize,
 }
 
 /// The creases and corners of a surface in a box.
@@ -127,16 +116,5 @@ impl Creases {
     /// A point of a crease, if there is one.
     pub(super) fn first(&self) -> Option<Vec3> {
         self.curves.first().map(|curve| curve.points[0].as_vec3())
-    }
-
-    /// Numbers of creases and corners.
-    pub(super) fn counts(&self) -> CreaseCounts {
-        let is_corner = |&corner: &usize| {
-            self.curves.iter().flat_map(|curve| curve.corners).filter(|&end| end == Some(corner)).count() > 2
-        };
-        CreaseCounts {
-            creases: self.curves.len(),
-            corners: (0..self.corners.len()).filter(is_corner).count(),
-        }
     }
 }

@@ -164,7 +164,7 @@ impl Walk<'_, '_> {
             let point = Meeting::of_branches(self.probe, branches, middle, way.length(), FADED);
             match point {
                 Some(point) if point.inward(self.probe, 1e-3 * self.step).is_some() => {
-                    active = point.position
+                    active = point.position;
                 }
                 _ => inactive = middle,
             }
