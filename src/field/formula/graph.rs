@@ -286,6 +286,14 @@ impl Graph {
             let sum = self.add(u, b);
             return self.add(v, sum);
         }
+        // (u − v) + w = (u + w) − v likewise: the faces of boxes that lie in one plane are then one function.
+        if self.is_uniform(b)
+            && let Node::Binary(Binary::Sub, u, v) = self.node(a)
+            && self.is_uniform(u)
+        {
+            let sum = self.add(u, b);
+            return self.sub(sum, v);
+        }
         self.folded(Node::Binary(Binary::Add, a, b))
     }
 
@@ -317,6 +325,10 @@ impl Graph {
         match self.node(a) {
             Node::Unary(Unary::Neg, inner) => inner,
             Node::Binary(Binary::Sub, left, right) => self.sub(right, left),
+            Node::Binary(Binary::Add, v, u) if self.is_uniform(u) && !self.is_uniform(v) => {
+                let negated = self.neg(u);
+                self.sub(negated, v)
+            }
             Node::Binary(Binary::Mul, v, u) if self.is_uniform(u) && !self.is_uniform(v) => {
                 let negated = self.neg(u);
                 self.mul(v, negated)
