@@ -75,7 +75,7 @@ pub struct Growth {
     pub levels: u32,
     /// Particles per generation level.
     pub level_counts: Vec<u32>,
-    /// Fronts started, each from a seed of its own.
+    /// Fronts started: each from a seed of its own, or from creases that hang together.
     pub components_seeded: u32,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,

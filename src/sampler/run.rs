@@ -189,6 +189,7 @@ impl Sampler {
             })
         });
         let along = filled.add_rows(probe, &mut self.output.particles);
+        self.counts.seeds += self.creases.pieces();
         self.counts.seeding_evaluations += probe.evaluations() - before;
         self.with_front(probe, |front, context| front.add_creases(context, &along));
     }

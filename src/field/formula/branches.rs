@@ -267,6 +267,8 @@ pub(super) struct Branches {
     /// The branches of the surface in a box, if it was found that some meet in creases there.
     pub(super) creased: Vec<u32>,
     walk: Walk,
+    /// Roles with the parameters before, kept for their memory.
+    before: Vec<Role>,
     doubles: Vec<f64>,
     ranges: Vec<Range>,
 }
@@ -523,10 +525,11 @@ impl Branches {
         if self.parts.is_empty() {
             return;
         }
-        let before = core::mem::take(&mut self.base.roles);
+        core::mem::swap(&mut self.base.roles, &mut self.before);
+        self.base.roles.clear();
         self.base.uniforms.clear();
         self.base.extend(values);
-        if self.base.roles == before {
+        if self.base.roles == self.before {
             let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
             compiled.for_each(|compiled| compiled.set_parameters(values));
         } else {

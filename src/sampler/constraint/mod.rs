@@ -18,7 +18,7 @@ mod search;
 mod tests;
 mod trace;
 
-use crate::math::Bounds;
+use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
 use meeting::{Meeting, SHARP};
@@ -111,6 +111,15 @@ impl Creases {
     /// Whether patches of the surface meet.
     pub(super) fn are_there(&self) -> bool {
         !self.curves.is_empty()
+    }
+
+    /// Number of sets of creases that hang together at corners.
+    pub(super) fn pieces(&self) -> u32 {
+        let mut joined = Forest::new(self.corners.len() + self.curves.len());
+        for (k, curve) in (self.corners.len() as u32..).zip(&self.curves) {
+            curve.corners.into_iter().flatten().for_each(|corner| joined.join(k, corner as u32));
+        }
+        (0..(self.corners.len() + self.curves.len()) as u32).filter(|&k| joined.find(k) == k).count() as u32
     }
 
     /// A point of a crease, if there is one.

@@ -950,7 +950,7 @@ export type Report = {
   levels: number,
   /** Particles per generation level. */
   level_counts: Array<number>,
-  /** Fronts started, each from a seed of its own. */
+  /** Fronts started: each from a seed of its own, or from creases that hang together. */
   components_seeded: number,
   /** Particles placed in gaps between fronts. */
   gaps_filled: number,
