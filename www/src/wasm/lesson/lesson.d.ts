@@ -50,7 +50,7 @@ export class Lesson {
      */
     life(particle: number): LessonLife | null;
     /**
-     * Nothing begun.
+     * A lesson without a run.
      */
     constructor();
     /**

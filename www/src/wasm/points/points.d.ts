@@ -9,7 +9,7 @@ import type {
 
 
 /**
- * From a built-in model or a file to a field. Answers are plain objects.
+ * Solver that makes a field from a built-in model or a file of points. Answers are plain objects.
  */
 export class Points {
     free(): void;
@@ -37,7 +37,7 @@ export class Points {
      */
     model(id: string, centres: number): Answer<PointsProgress, PointsFault>;
     /**
-     * Nothing begun.
+     * A solver without a job.
      */
     constructor();
     /**
