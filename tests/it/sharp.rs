@@ -27,7 +27,7 @@ const fn solid(
 /// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
-const SOLIDS: [Solid; 13] = [
+const SOLIDS: [Solid; 14] = [
     solid("cube", "max(abs(x), abs(y), abs(z)) - 1", 2, 8.0, [12, 8]),
     solid(
         "turned cube",
@@ -61,6 +61,8 @@ const SOLIDS: [Solid; 13] = [
         0.4 * (4.0 - 0.16 * PI),
         [20, 8],
     ),
+    // The edges of each pair cross where the surface is smooth.
+    solid("three cylinders", "max(x^2 + y^2, y^2 + z^2, z^2 + x^2) - 1", 2, 4.686_291_501, [24, 14]),
     solid(
         "L",
         "max(min(max(abs(x - 0.5) - 0.5, abs(y - 1) - 1), max(abs(x - 1) - 1, abs(y - 0.5) - 0.5)), abs(z) - 0.5)",

@@ -21,7 +21,8 @@ export const fateOf = (slots, k) => (slots >>> (SLOT_BITS * k)) & (FATES - 1);
 export const NO_LEVEL = 0xffffffff;
 
 /**
- * The columns of a report, one value per particle; `patch` and `particle` are empty without creases. A core has a method of each name.
+ * The columns of a report, one value per particle; `patch` and `particle` are empty without creases. A core has a
+ * method of each name.
  */
 export const MEASURED = /** @type {const} */ ([
   'valence',
@@ -65,8 +66,9 @@ export class Columns {
     /** Index of the particle's component; 0 is the largest. @type {Uint32Array | null} */
     this.component = null;
     /**
-     * Number of the smooth piece of the surface between creases on which the particle lies, and the index of the first of its
-     * rows: a particle on a crease has one on each side. Null where there are no creases. @type {Uint32Array | null}
+     * Number of the smooth piece of the surface between creases on which the particle lies, and the index of the first
+     * of its rows: a particle on a crease has one on each side. Null where there are no creases.
+     * @type {Uint32Array | null}
      */
     this.patch = null;
     /** @type {Uint32Array | null} */

@@ -137,7 +137,8 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
 test('PLY and CSV hold every particle', async () => {
   const p = await open();
   const { count } = p.particles();
-  const columns = p.engine.description.value?.columns.map(({ name }) => name) ?? [];
+  const all = p.engine.description.value?.columns.map(({ name }) => name) ?? [];
+  const columns = all.filter((name) => !['patch', 'particle'].includes(name));
   const ply = Buffer.from(await (await p.engine.exportFile('ply')).arrayBuffer()).toString('latin1');
   const header = ply.slice(0, ply.indexOf('end_header'));
   expect(header).toContain(`element vertex ${count}\n`);
@@ -146,6 +147,10 @@ test('PLY and CSV hold every particle', async () => {
   expect(names.split(',')).toEqual(columns);
   expect(first.split(',').filter((cell) => cell !== '' && Number.isFinite(Number(cell)))).toHaveLength(columns.length);
   expect(rows.length + 1).toBe(count);
+  // A surface with creases has two more.
+  p.engine.setFormula('max(abs(x), abs(y), abs(z)) = 1');
+  const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[0].split(',');
+  await eventually(creased).toEqual(all);
 });
 
 for (const [device, userAgent] of /** @type {const} */ ([

@@ -42,7 +42,8 @@ const READ = {
 };
 
 /**
- * Columns whose values are known; some are known only after the particles were measured, and some only where there are creases.
+ * Columns whose values are known; some are known only after the particles were measured, and some only where there are
+ * creases.
  * @param {Columns} columns
  * @param {readonly Column[]} all
  */

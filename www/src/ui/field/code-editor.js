@@ -165,8 +165,8 @@ const theme = EditorView.theme({
 });
 
 /**
- * Text typed over a selection is put in its place here. If the browser did it, Chromium would keep the look of an underlined
- * name by an inline style, which the content security policy forbids.
+ * Text typed over a selection is put in its place here. If the browser did it, Chromium would keep the look of an
+ * underlined name by an inline style, which the content security policy forbids.
  */
 const typedOver = EditorView.domEventHandlers({
   beforeinput(event, view) {
