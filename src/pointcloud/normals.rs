@@ -1,5 +1,5 @@
-//! What the neighbours of a point tell of it: its normal where none is given, whether the given one has the wrong sign, and whether the
-//! point is an outlier.
+//! Normals, signs of normals and outliers, as the neighbours of each point tell them. A normal is estimated where none is given; one
+//! that is given may have the wrong sign.
 //!
 //! The normal of a point is that of the plane through its neighbours, and its sign is propagated from point to point
 //! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points",
@@ -51,7 +51,7 @@ const PLANES: usize = 20;
 /// Share of such pairs above which the user is warned. Half and double warn of the same ones of twelve random clouds.
 const WARN_SHARE: f64 = 0.01;
 
-/// What was changed of a cloud.
+/// The changes that were made to a cloud of points, for the user.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
     /// Points that were left out because they are far from all others.

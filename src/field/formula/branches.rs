@@ -33,7 +33,7 @@ pub(super) enum Condition {
     NotNegative(Id),
 }
 
-/// What a node is to the walk from f to the operands that it takes.
+/// Role of a node in the walk from f to the operands that are taken: it has a condition, which takes one of them, or takes all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// All operands count.

@@ -91,7 +91,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What each of `choices` is where it is tied on the surface. Those that are tied nowhere there are left out.
+    /// The kind of each of the `choices` that is tied somewhere on the surface: it makes a seam or a crease there.
     fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, Kind> {
         let mut kinds = BTreeMap::new();
         let mut open = vec![Cell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];

@@ -134,7 +134,7 @@ pub struct Formula {
     equation: Equation,
     /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
     simplified: Option<Equation>,
-    /// What the surface is made to before it is evaluated.
+    /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness, closed by a box or not.
     solid: Solid,
     parameters: Vec<Parameter>,
     /// Names of the parameters that were not declared.

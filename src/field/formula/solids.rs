@@ -11,7 +11,7 @@ use crate::math::Bounds;
 /// taken as they are, and edges of a sheet may be off where gradients of different length meet.
 const MAX_SHEETS: usize = 128;
 
-/// What a surface is made to.
+/// The solid that is made of a surface: its thickness and the box that closes it. Without both it is the surface itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Solid {
     /// Thickness of the sheet around the surface.

@@ -113,7 +113,7 @@ pub(super) fn common_point(
     None
 }
 
-/// What two branches meet at a corner.
+/// The third function that is zero at a corner, beside two branches.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Third {
     /// Another branch.

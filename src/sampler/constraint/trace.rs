@@ -14,7 +14,8 @@ const HALVINGS: u32 = 12;
 const BISECTIONS: u32 = 30;
 /// Corners nearer to each other than this share of a step are one.
 const ONE_CORNER: f64 = 1e-3;
-/// The same where creases fade out, which is not known as precisely: at an angle of [`FADED`], less than a hundredth of a step away.
+/// Ends of creases that fade out are one corner if they are nearer to each other than this share of a step. They are known less
+/// precisely than corners: a walk ends at an angle of [`FADED`], less than a hundredth of a step before.
 const ONE_END: f64 = 0.1;
 /// Largest number of steps on one curve. One that is 80 times as long as the diagonal of the box is cut there.
 const MOST_STEPS: usize = 20_000;
