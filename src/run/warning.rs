@@ -6,7 +6,9 @@ use crate::math::{grouped, shortest_text};
 use crate::mesh::build::Triangulation;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
-use crate::sampler::{COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SizeMode, StopReason, Unsampled};
+use crate::sampler::{
+    COUNT_TOLERANCE, Doubt, FateCounts, Refusal, Sampled, SingularKind, SizeMode, StopReason, Unsampled,
+};
 use core::fmt;
 use serde::{Serialize, Serializer};
 
@@ -64,6 +66,17 @@ pub enum Warning {
     CloseSheets {
         /// Number of these particles.
         count: usize,
+    },
+    /// The surface crosses itself along curves, or touches itself at points, where f has no gradient.
+    Meets {
+        /// Number of sets of curves along which it crosses itself.
+        crossings: usize,
+        /// Number of points at which it touches itself.
+        touches: usize,
+        /// A place where it does.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
     },
     /// The run was ended because too many seeds stayed alone beside other particles.
     EndedEarly {
@@ -189,7 +202,11 @@ impl<F: Field> Run<F> {
         if not_converged > 0 || undefined > 0 {
             warnings.push(Warning::Children { not_converged, undefined });
         }
-        if !is_unresolved && facing >= CLOSE_COUNT && facing as f64 >= CLOSE_SHARE * total as f64 {
+        let meets = self.places_of_meeting();
+        // A smaller radius takes no sheets apart that meet.
+        let is_close = !is_unresolved && meets.is_none() && facing >= CLOSE_COUNT;
+        warnings.extend(meets);
+        if is_close && facing as f64 >= CLOSE_SHARE * total as f64 {
             warnings.push(Warning::CloseSheets { count: facing });
         }
         if counts.ended_early {
@@ -218,6 +235,16 @@ impl<F: Field> Run<F> {
         let moved = doubts.into_iter().filter(is_told).map(|doubt| doubt.moved(|place| self.place(place)));
         warnings.extend(moved.map(|doubt| Warning::Unproven { doubt, length }));
         warnings
+    }
+
+    /// The warning that the surface crosses or touches itself, if it does.
+    fn places_of_meeting(&self) -> Option<Warning> {
+        let mut places = self.sampler.singular_places();
+        places.retain(|place| matches!(place.kind, SingularKind::Crossing | SingularKind::Touch));
+        let crossings = places.iter().filter(|place| place.kind == SingularKind::Crossing).count();
+        let position = self.place(places.first()?.position.to_array());
+        let (touches, length) = (places.len() - crossings, self.sampler.radius());
+        Some(Warning::Meets { crossings, touches, position, length })
     }
 }
 
@@ -266,6 +293,21 @@ impl fmt::Display for Warning {
                 "{count} particles face another sheet of the surface within 2r. The sheets are kept apart, but the particles are \
                  too large to tell them apart by position alone: choose a smaller radius."
             ),
+            Self::Meets { crossings, touches, position, length } => {
+                let along = format!("crosses itself along {}", counted(*crossings, "curve", "curves"));
+                let at = format!("touches itself at {}", counted(*touches, "point", "points"));
+                let meets = match (crossings, touches) {
+                    (_, 0) => along,
+                    (0, _) => at,
+                    _ => format!("{along} and {at}"),
+                };
+                write!(
+                    f,
+                    "The surface {meets}, first near {}. f has no gradient there, and the sheets are sampled up to it: the components \
+                     and the Euler number of the sample are not those of the sheets. Of a product, sample one factor at a time.",
+                    place(*position, *length)
+                )
+            }
             Self::EndedEarly { seeds } => write!(
                 f,
                 "The run was ended early: {seeds} seeds had stayed alone beside other particles, because the particles are larger \

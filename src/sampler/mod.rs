@@ -33,6 +33,7 @@ pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
+pub(crate) use discovery::singular::{SingularKind, SingularPlace};
 
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale, spread};
@@ -40,9 +41,10 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use attempt::Attempt;
 use constraint::Creases;
-use discovery::precision;
 use discovery::search::ComponentSearch;
-use discovery::survey::{Absence, Survey, survey};
+use discovery::singular::Singular;
+use discovery::survey::{Absence, Survey, spacing, survey};
+use discovery::{precision, singular};
 use front::Front;
 use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
@@ -72,6 +74,8 @@ pub struct Sampler {
     bounds: Bounds,
     survey: Survey,
     creases: Creases,
+    /// The singular points near those of the survey.
+    singular: Vec<Singular>,
     attempt: Attempt,
     phase: PhaseState,
     components: ComponentSearch,
@@ -184,7 +188,12 @@ impl Sampler {
     /// searched.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
-        self.components.open_questions().map(|_| discovery::singular::places(self.components.singular()))
+        self.components.open_questions().map(|_| self.singular_places().len() as u64)
+    }
+
+    /// The places of the surface where f has no gradient, as far as they are known.
+    pub(crate) fn singular_places(&self) -> Vec<SingularPlace> {
+        singular::places(self.components.singular())
     }
 
     /// The scale at which the field of the last start is evaluated in double precision, if it is.
@@ -286,11 +295,10 @@ impl Sampler {
     fn look_over(&mut self, field: &mut dyn Field, is_known: bool) {
         if !is_known {
             self.creases = Creases::default();
+            self.singular.clear();
         }
         // Bounds are those of the branches, where there are creases.
         let is_creased = !is_known && field.find_creases(&self.bounds);
-        self.components.begin(field, &self.bounds);
-        self.components.expect(0.0);
         if is_known {
             field.use_double(self.survey.double);
         } else {
@@ -310,7 +318,15 @@ impl Sampler {
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,
                 absence => absence,
             };
+            // Where f touches zero only, all of the surface is singular.
+            if !is_dense && !self.survey.touches {
+                let scaled = &mut Scaled::new(field, scale);
+                self.singular =
+                    singular::near_survey(scaled, &self.survey.position, spacing(&self.bounds), &self.bounds);
+            }
         }
+        self.components.begin(field, &self.bounds, &self.singular);
+        self.components.expect(0.0);
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);
             let (tolerance, least_gap) = (self.survey.tolerance(), self.least_gap());

@@ -176,6 +176,8 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
         ("y^2 = x^3", 1.0, 1),
         ("x^2 = y^2", 1.0, 1),
         ("x^2 + y^2 + z^2 = 0.7", 1.0, 0),
+        // Its second derivatives vanish at the point, too.
+        ("x^4 + y^4 = z^4", 1.0, 1),
     ] {
         let formula = formula.replace("mu", "(1.3)").replace("+ t", "");
         let (session, _, report) = sampled(&formula, half, &coarse());
@@ -193,6 +195,38 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
             let share = distance(p) / (2.0 * columns.radius[i]);
             assert!((share - 1.0).abs() < 0.01 || marked(i) == (share < 1.0), "{formula}: {p} at {share}");
         }
+    }
+}
+
+#[test]
+fn a_surface_that_crosses_or_touches_itself_is_told() {
+    let gallery = |id: &str| gallery::find(id).expect("in the gallery").formula.replace("r x", "x");
+    let text = str::to_owned;
+    for (formula, half, told) in [
+        (text("x y z"), 1.0, Some("crosses itself along 1 curve,")),
+        (text("((x - 0.5)^2 + y^2 + z^2 - 1)((x + 0.5)^2 + y^2 + z^2 - 1)"), 1.7, Some("crosses itself")),
+        (
+            text("((x - 1)^2 + y^2 + z^2 - 1)((x + 1)^2 + y^2 + z^2 - 1)"),
+            2.2,
+            Some("touches itself at 1 point,"),
+        ),
+        (text("((x - 1)^2 + y^2 + z^2 - 1)((x - 0.3)^2 + y^2 + z^2 - 0.09)"), 2.2, Some("touches itself")),
+        (text("(z - 0.1)(z - 0.1 - x^2 - 2y^2)"), 1.0, Some("touches itself at 1 point,")),
+        (gallery("roman"), 0.55, Some("crosses itself")),
+        (gallery("klein-bottle"), 6.0, Some("crosses itself along 1 curve,")),
+        // The tip of a cone, a cusp along a line, a curve on which the gradient vanishes and the surface is smooth.
+        (text("x^2 + y^2 = z^2"), 1.0, None),
+        (text("x^4 + y^4 = z^4"), 1.0, None),
+        (text("y^2 = x^3"), 1.0, None),
+        (gallery("heart").replace("d y", "2.25 y"), 1.4, None),
+        (gallery("cayley").replace("= t", "= 1"), 1.6, None),
+    ] {
+        let (_, _, report) = sampled(&formula, half, &coarse());
+        let warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+        let is_told = |words: &str| warnings.iter().any(|warning| warning.contains(words));
+        assert_eq!(is_told("itself"), told.is_some(), "{formula}: {warnings:?}");
+        assert!(told.is_none_or(is_told), "{formula}: {warnings:?}");
+        assert!(report.proof.singular_points > Some(0), "{formula}");
     }
 }
 

@@ -51,7 +51,7 @@ use crate::sampler::discovery::cell::{
     Axes, CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise,
 };
 use crate::sampler::discovery::interval_newton::narrowed;
-use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
+use crate::sampler::discovery::singular::{SAME, Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed. With 8, 6 of 43 random
@@ -77,8 +77,6 @@ const SINGULAR_EVERY: u8 = 2;
 /// Largest number of cells of a factor in which they are searched. There are more where they form a curve, of which half as many cells
 /// name half as many points.
 const MOST_TRIED: usize = 512;
-/// Two singular points count as one if they are nearer to each other than this share of a cell: Newton's method ends at 10⁻¹² of it.
-const SAME: f64 = 1e-6;
 /// Number of cells in a batch. The way in which a budget cuts the work does not change the result.
 const BATCH: usize = 32;
 /// Units of work that a cell counts for: on long formulas it takes as long as several particles.

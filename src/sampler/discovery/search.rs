@@ -37,9 +37,10 @@ pub(crate) struct ComponentSearch {
 }
 
 impl ComponentSearch {
-    /// Begins the search on a new field.
-    pub(crate) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+    /// Begins the search on a new field, of which these singular points are known.
+    pub(crate) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds, singular: &[Singular]) {
         self.octree.begin(field.bounded().is_some(), bounds);
+        self.octree.singular.extend_from_slice(singular);
         self.points.clear();
         (self.lost, self.unresolved) = (0, None);
         self.is_projected = false;

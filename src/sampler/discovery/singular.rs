@@ -13,9 +13,10 @@
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
 use crate::field::{Bounded, Enclosure, Field};
-use crate::math::{Bounds, Interval, Sym3};
+use crate::math::{Bounds, Forest, Interval, Sym3};
 use crate::particles::{Particles, Slots};
 use crate::sampler::discovery::interval_newton::ROUNDING;
+use crate::sampler::probe::BATCH;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
@@ -47,6 +48,21 @@ const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
 /// curve: the Newton step does not run along it. It is the root of the precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
+/// That share where a step leads too far: beside a curve of singular points it runs along it.
+const DAMPED: f64 = 0.1;
+/// Factors by which steps shrink where the first derivatives that do not vanish are of third to eighth order: (n − 2)/(n − 1). Such a
+/// step is lengthened to where the steps would end.
+const SLOW: core::ops::Range<f64> = 0.45..0.88;
+/// Two singular points count as one if they are nearer to each other than this share of the search distance: Newton's method ends at
+/// 10⁻¹² of it.
+pub(super) const SAME: f64 = 1e-6;
+/// Distance from a point of the survey within which a singular point is searched, in spacings of its grid: the diagonal of a cell.
+const NEAR: f64 = 1.75;
+/// Points of the survey from which one is searched, at most. On a surface that crosses itself along a curve there are many.
+const MOST_STARTS: usize = 2_048;
+/// Extent of linked points that are no curve, as a share of the search distance: at a point where sheets touch, Newton's method ends
+/// within a hundredth of it.
+const ONE_PLACE: f64 = 0.25;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
 #[derive(Clone, Copy, Debug)]
@@ -59,20 +75,105 @@ pub(crate) struct Singular {
     pub(crate) is_zero: bool,
     /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
     pub(crate) is_alone: bool,
+    /// Whether f has both signs on lines through the point, to second order.
+    has_two_signs: bool,
+    /// Whether f changes along one direction alone, to second order.
+    is_flat: bool,
+}
+
+impl Singular {
+    /// Whether two points belong to one place: they are the same one, or on one curve, found by searches that overlap.
+    fn is_linked(&self, other: &Self) -> bool {
+        let share = if self.is_alone { SAME } else { 2.0 };
+        let most = share * self.reach.min(other.reach);
+        self.is_alone == other.is_alone && self.position.distance_squared(other.position) <= most * most
+    }
+}
+
+/// What the surface is at a place where the gradient vanishes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SingularKind {
+    /// A point: the tip of a cone or of a cusp.
+    Point,
+    /// A point at which two sheets touch.
+    Touch,
+    /// A curve that is no crossing.
+    Curve,
+    /// A curve along which the surface crosses itself.
+    Crossing,
+}
+
+/// A place where the gradient vanishes on the surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SingularPlace {
+    /// A point of it.
+    pub(crate) position: DVec3,
+    pub(crate) kind: SingularKind,
+}
+
+/// The singular points near those of a survey, on a grid of this spacing: where the gradient vanishes within a distance d, it is no
+/// longer than the Hessian times d.
+pub(crate) fn near_survey(
+    field: &mut dyn Field,
+    survey: &[Vec3],
+    spacing: f64,
+    bounds: &Bounds,
+) -> Vec<Singular> {
+    let reach = NEAR * spacing;
+    let mut found: Vec<Singular> = Vec::new();
+    let mut starts = 0;
+    let mut value = [0.0; BATCH];
+    let mut gradient = [Vec3::ZERO; BATCH];
+    let mut hessian = [Sym3::splat(0.0); BATCH];
+    for points in survey.chunks(BATCH) {
+        field.hessians(points, &mut value, &mut gradient, &mut hessian);
+        for (k, p) in points.iter().enumerate() {
+            let (p, slope_sq) = (p.as_dvec3(), gradient[k].as_dvec3().length_squared());
+            let most_sq = size_sq(&matrix(&hessian[k].map(f64::from))) * reach * reach;
+            let is_within = |point: &Singular, most: f64| point.position.distance_squared(p) <= most * most;
+            // False for NaN.
+            let is_start = slope_sq <= most_sq
+                && starts < MOST_STARTS
+                && !found.iter().any(|point| is_within(point, 0.5 * spacing));
+            if !is_start {
+                continue;
+            }
+            starts += 1;
+            let new = singular_point(field, p, reach)
+                .filter(|point| point.is_zero && bounds.holds(point.position))
+                .filter(|point| !(point.is_alone && found.iter().any(|other| point.is_linked(other))));
+            found.extend(new);
+        }
+    }
+    found
 }
 
 /// Finds a singular point within `reach` of `start`, by Newton's method on the gradient.
 pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
-    let mut p = start;
+    let (mut p, mut last) = (start, f64::INFINITY);
+    let mut largest_sq = 0.0_f64;
     // False for NaN.
     let is_near = |offset: DVec3| offset.length_squared() <= reach * reach;
-    for _ in 0..MOST_STEPS {
+    for k in 0..MOST_STEPS {
         let jet = field.jet(p);
+        if jet.gradient == DVec3::ZERO {
+            break;
+        }
         let hessian = matrix(&jet.hessian);
         let size_sq = size_sq(&hessian);
+        largest_sq = largest_sq.max(size_sq);
         // The least squares solution of H δ = −∇f, which does not run along a curve of such points.
-        let normal = times(&hessian, &hessian) + DMat3::from_diagonal(DVec3::splat(SMALL * SMALL * size_sq));
-        let step = normal.inverse() * (hessian * jet.gradient);
+        let solved = |share: f64| {
+            let damping = DMat3::from_diagonal(DVec3::splat(share * share * size_sq));
+            (times(&hessian, &hessian) + damping).inverse() * (hessian * jet.gradient)
+        };
+        let step = solved(SMALL);
+        let mut step = if is_near(step) { step } else { solved(DAMPED) };
+        let factor = step.length() / last;
+        last = step.length();
+        if k % 3 == 2 && SLOW.contains(&factor) {
+            step /= 1.0 - factor;
+        }
         p -= step;
         if !is_near(step) || !is_near(p - start) {
             return None;
@@ -84,14 +185,20 @@ pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
     let jet = field.jet(p);
     let hessian = matrix(&jet.hessian);
     let size = size_sq(&hessian).sqrt();
-    let value = jet.value.abs() / (size * reach * reach);
+    let (value, most) = (jet.value.abs(), size * reach * reach);
     let settled = jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
-    (settled && value <= LARGEST_NECK).then(|| {
-        let is_alone = hessian.determinant().abs() > SMALL * size * size * size;
+    (settled && value <= LARGEST_NECK * most).then(|| {
+        // Where the Hessian vanishes, too, rounding decides its signs.
+        let vanishes = size <= SMALL.sqrt() * largest_sq.sqrt();
+        let is_alone = !vanishes && hessian.determinant().abs() > SMALL * size * size * size;
         let end = ENDS[usize::from(!is_alone)];
-        let is_zero = value <= end * end
-            || value <= LARGEST_VALUE && (has_two_signs(&jet.hessian) || may_be_zero(field, p));
-        Singular { position: p, reach, is_zero, is_alone }
+        let has_two_signs = !vanishes && has_two_signs(&jet.hessian);
+        let is_zero = value <= end * end * most
+            || value <= LARGEST_VALUE * most && (has_two_signs || may_be_zero(field, p));
+        // The sum of the products of two eigenvalues.
+        let trace = hessian.x_axis.x + hessian.y_axis.y + hessian.z_axis.z;
+        let is_flat = !is_alone && (trace * trace - size * size).abs() < SMALL.sqrt() * size * size;
+        Singular { position: p, reach, is_zero, is_alone, has_two_signs, is_flat }
     })
 }
 
@@ -112,26 +219,34 @@ fn may_be_zero(field: &mut dyn Field, p: DVec3) -> bool {
     })
 }
 
-/// Number of singular points and curves: one for each isolated point, and one for each group of the others that are linked by
-/// steps within their search distances.
-pub(crate) fn places(points: &[Singular]) -> u64 {
-    let alone = points.iter().filter(|point| point.is_alone).count();
-    let mut rest: Vec<Singular> = points.iter().filter(|point| !point.is_alone).copied().collect();
-    let mut groups = 0;
-    let mut linked = Vec::new();
-    while let Some(first) = rest.pop() {
-        groups += 1;
-        linked.push(first);
-        while let Some(point) = linked.pop() {
-            let is_linked = |other: &Singular| {
-                let most = point.reach.max(other.reach);
-                (other.position - point.position).length_squared() <= most * most
-            };
-            linked.extend(rest.iter().filter(|other| is_linked(other)).copied());
-            rest.retain(|other| !is_linked(other));
-        }
+/// The places at which these points are: isolated points, and groups of the others that are linked.
+pub(crate) fn places(points: &[Singular]) -> Vec<SingularPlace> {
+    let mut groups = Forest::new(points.len());
+    for (i, point) in (0..).zip(points) {
+        (0..i).filter(|&j| points[j as usize].is_linked(point)).for_each(|j| groups.join(i, j));
     }
-    (alone + groups) as u64
+    let mut places = Vec::new();
+    for (first, point) in (0..).zip(points) {
+        if groups.find(first) != first {
+            continue;
+        }
+        let group: Vec<&Singular> = (first..)
+            .zip(&points[first as usize..])
+            .filter(|&(i, _)| groups.find(i) == first)
+            .map(|(_, p)| p)
+            .collect();
+        let least = ONE_PLACE * group.iter().map(|other| other.reach).fold(0.0, f64::max);
+        let is_curve =
+            group.iter().any(|other| other.position.distance_squared(point.position) > least * least);
+        let kind = match is_curve {
+            true if group.iter().any(|point| point.has_two_signs) => SingularKind::Crossing,
+            true => SingularKind::Curve,
+            false if point.is_flat => SingularKind::Touch,
+            false => SingularKind::Point,
+        };
+        places.push(SingularPlace { position: point.position, kind });
+    }
+    places
 }
 
 /// Marks the particles within 2r of a singular point. The `points` of a curve are only some of it, so every particle near a curve

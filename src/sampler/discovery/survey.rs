@@ -209,6 +209,11 @@ impl Candidates {
     }
 }
 
+/// Distance between the nodes of the grid of a survey that is not dense.
+pub(crate) fn spacing(bounds: &Bounds) -> f64 {
+    Grid::over(bounds, false).spacing
+}
+
 /// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
 ///
 /// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose ends f has the other sign (two
