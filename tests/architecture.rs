@@ -103,10 +103,13 @@ const ROOMS: [Room; 4] = [
                 &["settings", "fates", "probe", "projection", "neighbours", "sheet", "discovery", "sizing"],
             ),
             ("relaxation", &["probe", "projection", "neighbours", "sheet", "sizing"]),
-            ("refine", &["probe", "sizing"]),
+            ("refine", &["probe", "sizing", "constraint"]),
             ("message", &["discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
-            ("attempt", &["settings", "projection", "neighbours", "discovery", "sizing", "refine"]),
+            (
+                "attempt",
+                &["settings", "projection", "neighbours", "constraint", "discovery", "sizing", "refine"],
+            ),
             // The state machine, which alone knows every room.
             (
                 "run",

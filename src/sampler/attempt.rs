@@ -1,10 +1,11 @@
 //! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
 
 use crate::math::{Bounds, sort_numbers};
+use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::projection::{Tolerance, tolerance};
-use crate::sampler::refine::{self, Refusal};
+use crate::sampler::refine::{self, Refusal, SurfaceFacts};
 use crate::sampler::settings::{Settings, SizeMode};
 use crate::sampler::sizing::{CELL_AREA, Sizing};
 use glam::Vec3;
@@ -65,12 +66,27 @@ pub(super) struct Refining {
     pub(super) halvings: u32,
     /// The radius field of the refined particles, where sizes differ: the front has one size.
     pub(super) sizing: Option<Sizing>,
+    /// The particles on creases at every level, where there are creases.
+    pub(super) ladder: Option<CreaseLadder>,
     /// Point of the surface with the largest curvature.
     pub(super) bend: Vec3,
     /// Number of refinements that could not go on.
     pub(super) failures: u32,
     /// Error of the last refinement that could not go on.
     pub(super) failure: Option<Refusal>,
+}
+
+impl Refining {
+    /// What is known of the surface in a box.
+    pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
+        SurfaceFacts {
+            bounds: *bounds,
+            sizing: self.sizing.as_ref(),
+            ladder: self.ladder.as_ref(),
+            bend: self.bend,
+            failures: self.failures,
+        }
+    }
 }
 
 impl Attempt {
@@ -139,7 +155,7 @@ impl Attempt {
         if let Some(sizing) = &mut sizing {
             sizing.scale_to(count / self.packing);
         }
-        self.refining = Some(Refining { halvings, sizing, bend, failures: 0, failure: None });
+        self.refining = Some(Refining { halvings, sizing, ladder: None, bend, failures: 0, failure: None });
         None
     }
 

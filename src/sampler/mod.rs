@@ -270,7 +270,9 @@ impl Sampler {
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.scale);
             let curvature = refine::largest_curvatures(field, &self.survey.position);
-            self.counts.refusal = match self.creases.first() {
+            let has_one_radius = settings.sampling == Sampling::Uniform;
+            let crease = if has_one_radius { self.creases.at_box() } else { self.creases.first() };
+            self.counts.refusal = match crease {
                 Some(at) => Some(Refusal::Creased { at: at.into() }),
                 None => self.attempt.refine(settings, &self.survey.position, curvature),
             };

@@ -3,14 +3,14 @@
 use super::Sampler;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
-use crate::sampler::attempt::{Attempt, Refining};
+use crate::sampler::attempt::Attempt;
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, Components, Next, Refusal, SurfaceFacts};
+use crate::sampler::refine::{self, Components, Next, Refusal};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
@@ -181,7 +181,8 @@ impl Sampler {
         let before = probe.evaluations();
         let uniform = self.attempt.front_radius() as f32;
         let sizing = self.attempt.sizing.as_ref();
-        let filled = self.creases.fill(probe, |probe, place| {
+        let halvings = self.attempt.refining.as_ref().map_or(0, |refining| refining.halvings);
+        let filled = self.creases.fill(probe, halvings, |probe, place| {
             sizing.map_or(uniform, |sizing| {
                 let mut curvature = [Curvature::default()];
                 curvatures(probe.field, &[place], &mut curvature);
@@ -189,6 +190,9 @@ impl Sampler {
             })
         });
         let along = filled.add_rows(probe, &mut self.output.particles);
+        if let Some(refining) = &mut self.attempt.refining {
+            refining.ladder = Some(filled.into_ladder(&self.output.particles));
+        }
         self.counts.seeds += self.creases.pieces();
         self.counts.seeding_evaluations += probe.evaluations() - before;
         self.with_front(probe, |front, context| front.add_creases(context, &along));
@@ -384,25 +388,20 @@ impl Sampler {
     /// where the front stands.
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
         let target = self.attempt.target(&self.settings)?;
-        let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;
+        let refining = self.attempt.refining.as_mut()?;
         let before = probe.evaluations();
         let next = if let Some(point) = self.components.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
         } else if self.tools.front.is_capped() {
             Err(Refusal::Full)
         } else {
-            let surface = SurfaceFacts {
-                bounds: self.bounds,
-                sizing: sizing.as_ref(),
-                bend: *bend,
-                failures: *failures,
-            };
+            let surface = refining.surface(&self.bounds);
             self.tools.coarse.take_in(probe, &surface, &mut self.output.particles, target)
         };
         self.counts.generation_evaluations += probe.evaluations() - before;
         Some(match next {
             Ok(Next::Front(fewer)) => {
-                *halvings = fewer;
+                refining.halvings = fewer;
                 self.begin_attempt()
             }
             Ok(Next::Refine(components)) => {
@@ -437,8 +436,9 @@ impl Sampler {
 
     fn refine(&mut self, probe: &mut Probe, left: &mut u32, mut refinement: Box<Components>) -> PhaseState {
         let before = probe.evaluations();
-        let sizing = self.attempt.refining.as_ref().and_then(|refining| refining.sizing.as_ref());
-        let step = refinement.step(probe, sizing, &mut self.output.particles, *left);
+        let Some(refining) = &self.attempt.refining else { return self.begin_audit(StopReason::Complete) };
+        let surface = refining.surface(&self.bounds);
+        let step = refinement.step(probe, &surface, &mut self.output.particles, *left);
         self.counts.generation_evaluations += probe.evaluations() - before;
         match step {
             Err(refusal) => {

@@ -388,7 +388,7 @@ pub fn settings() -> Vec<Setting> {
             "method",
             |settings| settings.method.into(),
             "Method",
-            "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on smooth surfaces.",
+            "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even.",
             METHODS,
         )),
         Setting {

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 use glam::DVec3;
-use marching_particles::{Formula, Sample, Settings, sample};
+use marching_particles::{Formula, Method, Sample, Settings, sample};
 
 /// A solid, with what is known of it.
 struct Solid {
@@ -97,10 +97,16 @@ fn volume(sample: &Sample) -> f64 {
 #[test]
 fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges() {
     for Solid { name, formula, euler, volume: exact, creases } in SOLIDS {
-        for count in [1_500, 6_000] {
+        let runs = [1_500, 6_000].into_iter().flat_map(|count| {
+            let settings = Settings::with_count(count);
+            [settings, settings.refined()]
+        });
+        for settings in runs {
+            let Settings { count, method, .. } = settings;
             let field = Formula::parse(formula).expect("a formula");
-            let sample = sample(field, &Settings::with_count(count)).expect("a sample");
-            let name = format!("{name}, {count} particles");
+            let sample = sample(field, &settings).expect("a sample");
+            let name = format!("{name}, {count} particles, {method:?}");
+            assert_eq!(sample.report().growth.refined_levels.is_some(), method == Method::Refined, "{name}");
             let components = &sample.mesh().topology.components;
             assert_eq!(components.len(), 1, "{name}");
             assert_eq!((components[0].euler(), components[0].border_edges), (euler, 0), "{name}");
@@ -131,5 +137,23 @@ fn particles_on_a_crease_lie_on_it() {
         let DVec3 { x, y, z } = particles.place(i);
         let off = x.abs().max(((y * y + z * z).sqrt() - 0.75_f64.sqrt()).abs());
         assert!(off < 1e-5 * spacing.max(1.0), "{off}");
+    }
+}
+
+/// Share of the particles with six neighbours.
+fn six(sample: &Sample) -> f64 {
+    sample.report().measures.quality.as_ref().expect("figures").order.six
+}
+
+#[test]
+fn a_refined_solid_has_fewer_defects_than_its_front() {
+    for Solid { name, formula, .. } in SOLIDS {
+        let settings = Settings::with_count(6_000);
+        let [front, refined] = [settings, settings.refined()].map(|settings| {
+            sample(Formula::parse(formula).expect("a formula"), &settings).expect("a sample")
+        });
+        // The faces of the octahedron have none.
+        let is_better = six(&refined) > six(&front) || six(&refined) == 1.0;
+        assert!(is_better, "{name}: {} after {}", six(&refined), six(&front));
     }
 }

@@ -1,5 +1,6 @@
 //! Particles on corners and along creases.
 
+use super::ladder::CreaseLadder;
 use super::meeting::{FADED, Meeting};
 use super::{Crease, Creases};
 use crate::particles::Particles;
@@ -23,6 +24,8 @@ pub(in super::super) struct CreaseParticle {
 pub(in super::super) struct CreaseParticles {
     pub(in super::super) list: Vec<CreaseParticle>,
     pub(in super::super) segments: Vec<[u32; 2]>,
+    /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end to its second.
+    between: Vec<Vec3>,
 }
 
 /// A point of a curve, as it is filled.
@@ -37,10 +40,11 @@ struct CurvePoint {
 
 impl Creases {
     /// Fills corners and curves with particles, whose radius at a point of a patch is that of `radius`: on each curve as many as come
-    /// nearest to it.
+    /// nearest to it. The way between two of them is to be halved `halvings` times.
     pub(in super::super) fn fill(
         &self,
         probe: &mut Probe,
+        halvings: u32,
         mut radius: impl FnMut(&mut Probe, Vec3) -> f32,
     ) -> CreaseParticles {
         let mut least = |probe: &mut Probe, place: DVec3, patches: &[u32]| {
@@ -68,35 +72,42 @@ impl Creases {
                 });
                 points.push(CurvePoint { position, radius, room });
             }
-            fill_curve(probe, curve, &points, &mut filled);
+            fill_curve(probe, curve, &points, halvings, &mut filled);
         }
         filled
     }
 }
 
 /// Fills a curve of these points, the last of which is the first one again if it is closed.
-fn fill_curve(probe: &mut Probe, curve: &Crease, points: &[CurvePoint], filled: &mut CreaseParticles) {
+fn fill_curve(
+    probe: &mut Probe,
+    curve: &Crease,
+    points: &[CurvePoint],
+    halvings: u32,
+    filled: &mut CreaseParticles,
+) {
     let room = points[points.len() - 1].room;
     // A closed curve of two particles would be a line there and back.
     let least = if curve.is_closed { 3.0 } else { 1.0 };
     let parts = room.round().max(least) as usize;
     let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
     let mut after = 1;
-    for k in 0..=parts {
-        let target = room * k as f64 / parts as f64;
+    let fine = parts << halvings;
+    for k in 0..=fine {
+        let target = room * k as f64 / fine as f64;
         while after + 1 < points.len() && points[after].room < target {
             after += 1;
         }
         let (a, b) = (points[after - 1], points[after]);
         let tangent = (b.position - a.position).normalize_or_zero().as_vec3();
-        let is_end = k == 0 || k == parts;
-        let corner = if is_end { curve.corners[usize::from(k == parts)] } else { None };
+        let is_end = k == 0 || k == fine;
+        let corner = if is_end { curve.corners[usize::from(k == fine)] } else { None };
         if let Some(corner) = corner {
             filled.list[corner].tangent = tangent;
             numbers.push(corner as u32);
             continue;
         }
-        if curve.is_closed && k == parts {
+        if curve.is_closed && k == fine {
             numbers.push(numbers[0]);
             continue;
         }
@@ -105,9 +116,14 @@ fn fill_curve(probe: &mut Probe, curve: &Crease, points: &[CurvePoint], filled: 
         // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
         let reach = a.position.distance(b.position);
         let found = Meeting::of_branches(probe, curve.patches, place, reach, FADED).filter(|_| !is_end);
+        let position = found.map_or(place, |meeting| meeting.position).as_vec3();
+        if !k.is_multiple_of(1 << halvings) {
+            filled.between.push(position);
+            continue;
+        }
         numbers.push(filled.list.len() as u32);
         filled.list.push(CreaseParticle {
-            position: found.map_or(place, |meeting| meeting.position).as_vec3(),
+            position,
             radius: radius as f32,
             tangent,
             patches: curve.patches.to_vec(),
@@ -146,5 +162,10 @@ impl CreaseParticles {
             }),
         );
         along
+    }
+
+    /// The particles on creases at every level of a refinement that begins with rows of these.
+    pub(in super::super) fn into_ladder(self, rows: &Particles) -> CreaseLadder {
+        CreaseLadder::new(rows, self.between)
     }
 }

@@ -9,9 +9,10 @@
 //!    looks for a point on each pair of branches.
 //! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
-//!    fronts start from them, patch by patch, and end at them.
+//!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once.
 
 mod fill;
+mod ladder;
 mod meeting;
 mod search;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod trace;
 use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
+pub(super) use ladder::CreaseLadder;
 use meeting::{Meeting, SHARP};
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
@@ -120,6 +122,15 @@ impl Creases {
             curve.corners.into_iter().flatten().for_each(|corner| joined.join(k, corner as u32));
         }
         (0..(self.corners.len() + self.curves.len()) as u32).filter(|&k| joined.find(k) == k).count() as u32
+    }
+
+    /// A point at which a crease runs to the box, if there is one.
+    pub(super) fn at_box(&self) -> Option<Vec3> {
+        let mut ends = self.curves.iter().filter(|curve| !curve.is_closed).flat_map(|curve| {
+            let points = [curve.points.first(), curve.points.last()];
+            points.into_iter().flatten().zip(curve.corners)
+        });
+        ends.find(|(_, corner)| corner.is_none()).map(|(point, _)| point.as_vec3())
     }
 
     /// A point of a crease, if there is one.

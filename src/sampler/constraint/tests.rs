@@ -3,6 +3,7 @@ use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::particles::Particles;
 use crate::sampler::probe::ProbeMemory;
+use std::collections::BTreeMap;
 
 /// The creases of a formula in the box from −`half` to `half`.
 fn creases(text: &str, half: f64) -> (Formula, Creases) {
@@ -74,7 +75,7 @@ fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
     let (mut field, creases) = creases("max(abs(x),abs(y),abs(z))-1", 1.3);
     let mut memory = ProbeMemory::default();
     let probe = &mut Probe::new(&mut field, &mut memory);
-    let filled = creases.fill(probe, |_, _| 0.0493);
+    let filled = creases.fill(probe, 0, |_, _| 0.0493);
     // An edge of length 2 has room for 20 particles at a distance of 0.1.
     assert_eq!(filled.list.len(), 8 + 12 * 19);
     assert_eq!(filled.segments.len(), 12 * 20);
@@ -91,4 +92,34 @@ fn particles_on_creases_are_evenly_spaced_and_have_a_row_for_each_patch() {
         assert_eq!(particles.position[i], particles.position[first]);
         assert!(first == i || particles.normal[i].dot(particles.normal[first]).abs() < 1e-6);
     }
+}
+
+#[test]
+fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
+    let (mut field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.8);
+    let mut memory = ProbeMemory::default();
+    let probe = &mut Probe::new(&mut field, &mut memory);
+    let filled = creases.fill(probe, 3, |_, _| 0.2);
+    let mut rows = Particles::default();
+    filled.add_rows(probe, &mut rows);
+    let ladder = filled.into_ladder(&rows);
+    // The circle of circumference 2π √¾ has room for 14 particles at a distance of 0.4.
+    let mut place: BTreeMap<u32, Vec3> =
+        (0..).zip(&rows.position).map(|(row, &p)| (rows.first_row(row) as u32, p)).collect();
+    for to_come in (0..3).rev() {
+        for [a, b] in ladder.pairs(to_come + 1) {
+            let (number, middle) = ladder.middle(a, b).expect("the middle of a pair");
+            assert_eq!(ladder.middle(b, a), Some((number, middle)));
+            place.insert(number, middle);
+        }
+        let parts = 14 << (3 - to_come);
+        assert_eq!((ladder.pairs(to_come).count(), place.len()), (parts, parts));
+        let chord = 2.0 * 0.75_f32.sqrt() * libm::sinf(core::f32::consts::PI / parts as f32);
+        for pair in ladder.pairs(to_come) {
+            let [p, q] = pair.map(|number| place[&number]);
+            assert!((p.distance(q) / chord - 1.0).abs() < 1e-3, "{p} {q}: not {chord} apart");
+        }
+    }
+    assert_eq!((ladder.len(), ladder.ambiguous()), (rows.len() + 14 * 7, None));
+    assert!(ladder.pairs(0).all(|[a, b]| ladder.middle(a, b).is_none() && !ladder.is_corner(a)));
 }

@@ -1,16 +1,17 @@
 //! The coarse front: how coarse it may be, and whether it is good enough.
 
-use super::LEAST_PARTICLES;
 use super::border;
 use super::net::{Ground, Net};
 use super::refusal::Refusal;
 use super::walls::Walls;
+use super::{LEAST_PARTICLES, SurfaceFacts};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
-use crate::math::Bounds;
-use crate::mesh::build::{MeshOptions, Triangulation, triangulate};
-use crate::mesh::half_edge::HalfEdges;
+use crate::math::{Bounds, Forest};
+use crate::mesh::build::{MeshOptions, Triangulation, triangulate_particles};
+use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::Particles;
+use crate::sampler::constraint::CreaseLadder;
 use glam::Vec3;
 
 /// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's front does, whose relaxation
@@ -47,33 +48,107 @@ pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     (1..=MAX_LEVELS).rev().find(is_coarse).or_else(once)
 }
 
-/// The particles of a front joined to a surface, if that can be had beyond doubt, and clipped by the box. Particles in no triangle
-/// are left out. The front is to be refined so many times.
-pub(super) fn join(
-    ground: &mut Ground,
-    particles: &Particles,
-    bounds: &Bounds,
-    halvings: u32,
-) -> Result<Net, Refusal> {
+/// The triangles between the particles of a front, if they can be had beyond doubt.
+pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u32; 3]>, Refusal> {
     let radius = particles.radius.first().copied().unwrap_or(0.0);
-    let spacing = 2.0 * radius;
     let grown = border::grown(bounds, f64::from(radius));
     let options = MeshOptions { bounds: Some(&grown), ..MeshOptions::default() };
-    let joined = triangulate(&particles.position, &particles.normal, &options);
+    let joined = triangulate_particles(particles, &options);
     judge_triangles(&joined, particles, bounds)?;
-    let mesh =
-        HalfEdges::from_triangles(particles.len(), &joined.triangles).map_err(|_| doubtful(particles, 0))?;
-    judge_size(&mesh, particles, bounds, halvings)?;
+    Ok(joined.triangles)
+}
+
+/// A part of a front that is refined by itself: a component of the surface, or a patch of it.
+pub(super) struct FrontPart<'a> {
+    /// The particles; where the surface has creases those on them come first, and `twins` has their numbers.
+    pub(super) particles: &'a Particles,
+    pub(super) triangles: &'a [[u32; 3]],
+    pub(super) patch: Option<u32>,
+}
+
+/// The surface between the particles of a part of a front, clipped by the box. Particles in no triangle are left out. The front is to be
+/// refined so many times.
+pub(super) fn join(
+    ground: &mut Ground,
+    part: &FrontPart,
+    surface: &SurfaceFacts,
+    halvings: u32,
+) -> Result<Net, Refusal> {
+    let &FrontPart { particles, triangles, .. } = part;
+    let &SurfaceFacts { ref bounds, ladder, .. } = surface;
+    let spacing = 2.0 * particles.radius.first().copied().unwrap_or(0.0);
+    let mut triangles = triangles.to_vec();
+    let rows = split_fans(&mut triangles, particles);
+    let mesh = HalfEdges::from_triangles(rows.len(), &triangles).map_err(|_| doubtful(particles, 0))?;
     let mut net = Net {
         mesh,
-        position: particles.position.clone(),
-        normal: particles.normal.clone(),
-        slots: particles.slots.clone(),
+        position: rows.iter().map(|&row| particles.position[row as usize]).collect(),
+        normal: rows.iter().map(|&row| particles.normal[row as usize]).collect(),
+        slots: rows.iter().map(|&row| particles.slots[row as usize]).collect(),
         size: Vec::new(),
         walls: Walls::new(bounds, &particles.position, spacing),
+        on_crease: Vec::new(),
     };
+    match ladder {
+        None => judge_size(&net.mesh, particles, bounds, halvings)?,
+        Some(ladder) => {
+            let number = |&row: &u32| particles.twins.get(row as usize).copied().unwrap_or(NONE);
+            net.hold_creases(ladder, rows.iter().map(number).collect());
+        }
+    }
     border::clip(&mut net, ground, spacing)?;
+    if let Some(ladder) = ladder {
+        judge_creases(&net, ladder)?;
+    }
     Ok(net)
+}
+
+/// Gives a particle on a crease a vertex for each of the fans of triangles around it: where a patch touches itself there are several.
+/// Returns the row of each vertex, which for the first ones is their own number.
+fn split_fans(triangles: &mut [[u32; 3]], particles: &Particles) -> Vec<u32> {
+    let mut rows: Vec<u32> = (0..particles.len() as u32).collect();
+    let on_creases = particles.twins.len();
+    let mut around: Vec<Vec<usize>> = vec![Vec::new(); on_creases];
+    for (k, triangle) in triangles.iter().enumerate() {
+        for &v in triangle.iter().filter(|&&v| (v as usize) < on_creases) {
+            around[v as usize].push(k);
+        }
+    }
+    for (v, own) in (0..).zip(&around) {
+        let mut fans = Forest::new(own.len());
+        for (i, &k) in (0..).zip(own) {
+            for (j, &l) in (0..i).zip(own) {
+                if triangles[k].iter().any(|w| *w != v && triangles[l].contains(w)) {
+                    fans.join(i, j);
+                }
+            }
+        }
+        // The first fan keeps the vertex.
+        for root in 1..own.len() as u32 {
+            if fans.find(root) != root {
+                continue;
+            }
+            let copy = rows.len() as u32;
+            rows.push(v);
+            for (_, &k) in (0..).zip(own).filter(|&(i, _)| fans.find(i) == root) {
+                triangles[k].iter_mut().filter(|w| **w == v).for_each(|w| *w = copy);
+            }
+        }
+    }
+    rows
+}
+
+/// Judges the border of a patch: it is made of creases, or lies at the box.
+fn judge_creases(net: &Net, ladder: &CreaseLadder) -> Result<(), Refusal> {
+    let is_open = |&h: &u32| {
+        let [a, b] = [net.mesh.origin(h), net.mesh.target(h)];
+        let is_on_crease = net.walls.planes(a).common(net.walls.planes(b)).is_crease();
+        net.mesh.twin(h) == NONE && is_on_crease && net.middle_on_crease(ladder, a, b).is_none()
+    };
+    match net.mesh.edges().find(is_open) {
+        Some(h) => Err(Refusal::Doubtful { at: net.position[net.mesh.origin(h) as usize].into() }),
+        None => Ok(()),
+    }
 }
 
 /// Judges the triangles in the box: beyond it they are cut away.
@@ -91,7 +166,7 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
     if joined.triangles.is_empty() { Err(doubtful(particles, 0)) } else { Ok(()) }
 }
 
-fn doubtful(particles: &Particles, v: u32) -> Refusal {
+pub(super) fn doubtful(particles: &Particles, v: u32) -> Refusal {
     Refusal::Doubtful { at: particles.position.get(v as usize).copied().unwrap_or_default().into() }
 }
 

@@ -3,14 +3,19 @@
 //! A first front covers all of them, with the radius at which each comes out well: the one that bends most, or is smallest,
 //! decides. For each component that may be coarser another front grows from one of its particles. The components are then refined
 //! level by level, the coarsest first.
+//!
+//! Where the surface has creases, each patch takes the place of a component. All are refined equally often, and have their particles on
+//! creases from one [`CreaseLadder`], so that they fit together at every level.
 
-use super::coarse::{halvings, largest_curvatures};
+use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target};
 use crate::differential::{Curvature, curvatures};
 use crate::math::{Bounds, Forest};
 use crate::mesh::build::{MeshOptions, triangulate};
+use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
+use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
 use core::mem;
@@ -26,7 +31,8 @@ struct AcceptedComponent {
     refinement: Refinement,
     /// Share of the particles that the component should have, relative to the other components.
     weight: f64,
-    /// The particles of the last finished level, or of the front.
+    /// The particles of the last finished level, or of the front. Those on creases come first, and `twins` has their numbers in the
+    /// [`CreaseLadder`].
     particles: Particles,
 }
 
@@ -43,6 +49,8 @@ pub(crate) struct SurfaceFacts<'a> {
     pub(crate) bounds: Bounds,
     /// The sizes that are wanted, where they differ.
     pub(crate) sizing: Option<&'a Sizing>,
+    /// The particles on creases at every level, where there are creases.
+    pub(crate) ladder: Option<&'a CreaseLadder>,
     /// Point of the surface with the largest curvature.
     pub(crate) bend: Vec3,
     /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is
@@ -127,6 +135,9 @@ impl CoarseFronts {
         particles: &Particles,
         target: Target,
     ) -> Result<(), Refusal> {
+        if let Some(ladder) = surface.ladder {
+            return self.take_patches(probe, surface, particles, target, ladder);
+        }
         let &SurfaceFacts { ref bounds, sizing, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
@@ -136,7 +147,7 @@ impl CoarseFronts {
             return Err(surface.bent());
         }
         for part in &parts {
-            let refinement = Refinement::new(probe, part, bounds, target)?;
+            let refinement = Refinement::of_component(probe, surface, part, target)?;
             let mut part = part.clone();
             part.keep_within(bounds);
             if self.are_several {
@@ -164,6 +175,45 @@ impl CoarseFronts {
         Ok(())
     }
 
+    /// Takes the patches of a front on a surface with creases.
+    fn take_patches(
+        &mut self,
+        probe: &mut Probe,
+        surface: &SurfaceFacts,
+        particles: &Particles,
+        target: Target,
+        ladder: &CreaseLadder,
+    ) -> Result<(), Refusal> {
+        *self = Self::default();
+        if target.halvings == 0 {
+            return Err(surface.bent());
+        }
+        let triangles = coarse::triangles(particles, &surface.bounds)?;
+        if let Some(at) = ladder.ambiguous() {
+            return Err(coarse::doubtful(particles, at));
+        }
+        let mut patches = particles.patch.clone();
+        patches.sort_unstable();
+        patches.dedup();
+        let number = |row: u32| {
+            let patch = particles.patch[row as usize];
+            patches.partition_point(|&other| other < patch)
+        };
+        let parts = gather(particles, (0..particles.len() as u32).map(number));
+        let mut faces: Vec<Vec<[u32; 3]>> = vec![Vec::new(); patches.len()];
+        for triangle in triangles {
+            faces[number(triangle[0])].push(triangle.map(|row| parts.place[row as usize]));
+        }
+        for ((mut part, triangles), &patch) in parts.particles.into_iter().zip(&faces).zip(&patches) {
+            let front = FrontPart { particles: &part, triangles, patch: Some(patch) };
+            let refinement = Refinement::new(probe, surface, &front, target)?;
+            let weight = refinement.area();
+            part.keep_within(&surface.bounds);
+            self.components.push(AcceptedComponent { refinement, weight, particles: part });
+        }
+        Ok(())
+    }
+
     /// Takes a coarser front of a component, or tries one that is less so.
     fn take_coarser(
         &mut self,
@@ -175,7 +225,7 @@ impl CoarseFronts {
     ) {
         let component = &mut self.components[tried.component];
         let known = &component.refinement;
-        if let Ok(refinement) = Refinement::new(probe, particles, &surface.bounds, target)
+        if let Ok(refinement) = Refinement::of_component(probe, surface, particles, target)
             && refinement.shape.euler == known.shape.euler
         {
             component.refinement = refinement;
@@ -203,23 +253,38 @@ fn split(particles: &Particles) -> Vec<Particles> {
         }
     }
     let mut part_of: Vec<usize> = Vec::with_capacity(particles.len());
-    let mut place: Vec<u32> = Vec::with_capacity(particles.len());
-    let mut parts: Vec<Particles> = Vec::new();
+    let mut parts = 0;
     for i in 0..particles.len() {
         let root = components.find(i as u32) as usize;
-        let part = if root == i { parts.len() } else { part_of[root] };
-        if root == i {
-            parts.push(Particles::default());
+        part_of.push(if root == i { parts } else { part_of[root] });
+        parts += usize::from(root == i);
+    }
+    gather(particles, part_of.into_iter()).particles
+}
+
+/// The particles of each part of a surface.
+struct Parts {
+    particles: Vec<Particles>,
+    /// Place of each particle in its part.
+    place: Vec<u32>,
+}
+
+/// Gathers the particles of each part, in their order; those on creases keep their first rows of all particles.
+fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts {
+    let mut parts = Parts { particles: Vec::new(), place: Vec::with_capacity(particles.len()) };
+    for (i, part) in part_of.enumerate() {
+        if parts.particles.len() <= part {
+            parts.particles.resize_with(part + 1, Particles::default);
         }
         let parent = match particles.parent[i] {
             Particles::NO_PARENT => Particles::NO_PARENT,
-            parent => place[parent as usize],
+            parent => parts.place[parent as usize],
         };
-        let own = &mut parts[part];
-        part_of.push(part);
-        place.push(own.len() as u32);
+        let own = &mut parts.particles[part];
+        parts.place.push(own.len() as u32);
         let (position, normal) = (particles.position[i], particles.normal[i]);
         own.push(position, normal, particles.radius[i], parent, particles.level[i], particles.slots[i]);
+        own.twins.extend(particles.twins.get(i));
     }
     parts
 }
@@ -245,10 +310,15 @@ pub(crate) struct Components {
     joint: Option<Joint>,
 }
 
-/// The particles of all components in one set of columns, as far as they are there.
+/// The particles of all components in one set of columns, as far as they are there: first those on creases of all patches, then the
+/// others.
 #[derive(Clone, Debug, Default)]
 struct Joint {
     particles: Particles,
+    /// Levels after the one that is put together.
+    to_come: u32,
+    /// Whether the particles on creases are all there.
+    has_creases: bool,
     /// The component under way, and its first particle that is not copied yet.
     component: usize,
     next: usize,
@@ -294,14 +364,15 @@ impl Components {
 
     /// The mesh of the last level, by the particles at the corners of its faces.
     pub(crate) fn into_corners(mut self) -> Vec<u32> {
-        let mut first = self.components.first().map_or(0, |component| component.particles.len() as u32);
-        let mut all =
-            self.components.first_mut().map(|c| mem::take(&mut c.refinement.corners)).unwrap_or_default();
-        for AcceptedComponent { refinement, particles, .. } in self.components.iter().skip(1) {
-            all.extend(refinement.corners.iter().map(|corner| first + corner));
-            first += particles.len() as u32;
+        if let [lone] = &mut self.components[..] {
+            return mem::take(&mut lone.refinement.corners);
         }
-        all
+        let places = RowPlaces::of(&self.components);
+        let corners =
+            self.components.iter().zip(&places).map(|(component, places)| {
+                component.refinement.corners.iter().map(|&corner| places.row(corner))
+            });
+        corners.flatten().collect()
     }
 
     /// Estimated share of the work that is done, that of the coarse fronts included.
@@ -319,17 +390,20 @@ impl Components {
     pub(crate) fn step(
         &mut self,
         probe: &mut Probe,
-        sizing: Option<&Sizing>,
+        surface: &SurfaceFacts,
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
         if let [lone] = &mut self.components[..] {
-            return lone.refinement.step(probe, sizing, particles, budget);
+            return lone.refinement.step(probe, surface, particles, budget);
         }
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             if let Some(joint) = &mut self.joint {
                 if joint.step(&self.components) {
+                    if let Some(ladder) = surface.ladder {
+                        joint.join_creases(ladder);
+                    }
                     // At once, so that a run that is cancelled has a whole level.
                     mem::swap(particles, &mut joint.particles);
                     self.joint = None;
@@ -343,11 +417,11 @@ impl Components {
             let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
             let Some(component) = next.max_by_key(pending) else { break };
             if component.refinement.pending() < self.to_come {
+                self.joint = Some(Joint { to_come: self.to_come, ..Joint::default() });
                 self.to_come -= 1;
-                self.joint = Some(Joint::default());
                 continue;
             }
-            let (units, _) = component.refinement.step(probe, sizing, &mut component.particles, 1)?;
+            let (units, _) = component.refinement.step(probe, surface, &mut component.particles, 1)?;
             done += units;
             if self.components.iter().all(|component| component.refinement.is_done()) {
                 self.joint = Some(Joint::default());
@@ -357,31 +431,82 @@ impl Components {
     }
 }
 
+/// Places of the rows of a component among those of all: `crease` is that of its first row on a crease, `inner` of its first other row.
+#[derive(Clone, Copy, Debug)]
+struct RowPlaces {
+    on_creases: u32,
+    crease: u32,
+    inner: u32,
+}
+
+impl RowPlaces {
+    fn of(components: &[AcceptedComponent]) -> Vec<Self> {
+        let on_creases = |component: &AcceptedComponent| component.particles.twins.len() as u32;
+        let (mut crease, mut inner) = (0, components.iter().map(on_creases).sum());
+        let place = |component: &AcceptedComponent| {
+            let own = Self { on_creases: on_creases(component), crease, inner };
+            crease += own.on_creases;
+            inner += component.particles.len() as u32 - own.on_creases;
+            own
+        };
+        components.iter().map(place).collect()
+    }
+
+    /// Place of a row of the component.
+    fn row(self, own: u32) -> u32 {
+        if own < self.on_creases { self.crease + own } else { self.inner + own - self.on_creases }
+    }
+}
+
 impl Joint {
     /// Goes on for a slice. Returns whether all particles are there.
     fn step(&mut self, components: &[AcceptedComponent]) -> bool {
+        let places = RowPlaces::of(components);
         if self.particles.is_empty() {
             self.particles.reserve(components.iter().map(|component| component.particles.len()).sum());
         }
-        let Some(AcceptedComponent { particles: own, .. }) = components.get(self.component) else {
+        let Some(AcceptedComponent { refinement, particles: own, .. }) = components.get(self.component)
+        else {
             return true;
         };
-        let first = (self.particles.len() - self.next) as u32;
-        let end = own.len().min(self.next + SLICE);
-        for i in self.next..end {
-            let parent = match own.parent[i] {
-                Particles::NO_PARENT => Particles::NO_PARENT,
-                parent => first + parent,
-            };
-            let (position, normal) = (own.position[i], own.normal[i]);
-            self.particles.push(position, normal, own.radius[i], parent, own.level[i], own.slots[i]);
+        let places = places[self.component];
+        let on_creases = own.twins.len();
+        let (start, last) = if self.has_creases { (on_creases, own.len()) } else { (0, on_creases) };
+        let first = self.next.max(start);
+        let end = last.min(first + SLICE);
+        for i in first..end {
+            let (position, normal, radius) = (own.position[i], own.normal[i], own.radius[i]);
+            match own.parent[i] {
+                Particles::NO_PARENT => self.particles.push_seed(position, normal, radius, refinement.patch),
+                parent => {
+                    let parent = places.row(parent);
+                    self.particles.push(position, normal, radius, parent, own.level[i], own.slots[i]);
+                }
+            }
+            self.particles.slots[places.row(i as u32) as usize] = own.slots[i];
+            self.particles.twins.extend(own.twins.get(i));
         }
         self.next = end;
-        if end == own.len() {
+        if end == last {
             self.component += 1;
             self.next = 0;
         }
+        if self.component == components.len() && !self.has_creases {
+            (self.component, self.has_creases) = (0, true);
+        }
         self.component == components.len()
+    }
+
+    /// Names the first row of every particle on a crease in place of its number, and the pairs of rows that follow each other.
+    fn join_creases(&mut self, ladder: &CreaseLadder) {
+        let mut first = vec![NONE; ladder.len()];
+        for (row, twin) in (0..).zip(&mut self.particles.twins) {
+            let first = &mut first[*twin as usize];
+            *first = row.min(*first);
+            *twin = *first;
+        }
+        let pairs = ladder.pairs(self.to_come).map(|pair| pair.map(|number| first[number as usize]));
+        self.particles.segments.extend(pairs);
     }
 }
 
@@ -411,10 +536,11 @@ mod tests {
         let mut memory = ProbeMemory::default();
         let mut probe = Probe::new(&mut field, &mut memory);
         let bounds = Bounds::cube(1.5);
-        let surface = SurfaceFacts { bounds, sizing: None, bend: Vec3::ZERO, failures: 0 };
+        let surface = SurfaceFacts { bounds, sizing: None, ladder: None, bend: Vec3::ZERO, failures: 0 };
         let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
-        let refinement = Refinement::new(&mut probe, &known, &bounds, target(1)).expect("a good front");
+        let refinement =
+            Refinement::of_component(&mut probe, &surface, &known, target(1)).expect("a good front");
         let mut fronts = CoarseFronts {
             components: vec![AcceptedComponent { refinement, weight: 1.0, particles: known }],
             are_several: true,

@@ -35,11 +35,11 @@ pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatu
 pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
 pub use refusal::{Refusal, Spot};
 
-use crate::math::{Bounds, SQRT_3};
+use crate::math::SQRT_3;
 use crate::mesh::half_edge::{NONE, Stage, Subdivision};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
-use crate::sampler::sizing::Sizing;
+use coarse::FrontPart;
 use net::{BLOCK, Ground, MovedBlock, Net, Springs};
 use recipe::{LevelFacts, Pass, Recipe, TUNING};
 use rings::Rings;
@@ -84,10 +84,12 @@ pub(crate) enum Count {
     PerCell(f64),
 }
 
-/// A refinement of one component under way, or of components that are told apart by no front.
+/// A refinement of one component or patch under way, or of components that are told apart by no front.
 #[derive(Clone, Debug)]
 struct Refinement {
     target: Target,
+    /// The patch that is refined, of a surface with creases.
+    patch: Option<u32>,
     net: Net,
     shape: Shape,
     level: Goals,
@@ -157,28 +159,43 @@ impl Goals {
 }
 
 impl Refinement {
-    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled, beyond
-    /// which the front has grown.
+    /// Joins a component of a coarse front to a surface and begins to refine it.
+    ///
+    /// # Errors
+    ///
+    /// The defect for which the front is refused.
+    fn of_component(
+        probe: &mut Probe,
+        surface: &SurfaceFacts,
+        particles: &Particles,
+        target: Target,
+    ) -> Result<Self, Refusal> {
+        let triangles = &coarse::triangles(particles, &surface.bounds)?;
+        Self::new(probe, surface, &FrontPart { particles, triangles, patch: None }, target)
+    }
+
+    /// Begins to refine a part of a coarse front.
     ///
     /// # Errors
     ///
     /// The defect for which the front is refused.
     fn new(
         probe: &mut Probe,
-        particles: &Particles,
-        bounds: &Bounds,
+        surface: &SurfaceFacts,
+        part: &FrontPart,
         target: Target,
     ) -> Result<Self, Refusal> {
         let mut block = MovedBlock::default();
-        let mut ground = Ground { probe, block: &mut block };
-        let net = coarse::join(&mut ground, particles, bounds, target.halvings)?;
-        Ok(Self::of_layer(net, block, target))
+        probe.select(part.patch);
+        let net = coarse::join(&mut Ground { probe, block: &mut block }, part, surface, target.halvings)?;
+        Ok(Self::of_layer(net, block, target, part.patch))
     }
 
-    fn of_layer(net: Net, block: MovedBlock, target: Target) -> Self {
+    fn of_layer(net: Net, block: MovedBlock, target: Target, patch: Option<u32>) -> Self {
         let shape = Shape { euler: net.mesh.euler(), has_border: net.has_border(), wanted: 0.0 };
         let mut refinement = Self {
             target,
+            patch,
             level: Goals::new(&LevelFacts {
                 halvings: target.halvings,
                 to_come: target.halvings,
@@ -229,8 +246,7 @@ impl Refinement {
     }
 
     /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays
-    /// there until the next one is. Where sizes differ, `sizing` has them. Returns the units done and whether `particles` has
-    /// changed.
+    /// there until the next one is. Returns the units done and whether `particles` has changed.
     ///
     /// # Errors
     ///
@@ -238,19 +254,20 @@ impl Refinement {
     fn step(
         &mut self,
         probe: &mut Probe,
-        sizing: Option<&Sizing>,
+        surface: &SurfaceFacts,
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
+        probe.select(self.patch);
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let task = core::mem::replace(&mut self.task, Task::Done);
             let was_whole = matches!(task, Task::Show(_) | Task::Name { .. });
             let (next, units) = match task {
-                Task::Pass { pass, next, end } => self.pass(probe, sizing, pass, next, end)?,
+                Task::Pass { pass, next, end } => self.pass(probe, surface, pass, next, end)?,
                 Task::Show(rings) => self.show(rings, particles),
                 Task::Divide(subdivision) => self.divide(subdivision),
-                Task::Lift { coarse, ends, defects } => self.lift(probe, coarse, ends, defects)?,
+                Task::Lift { coarse, ends, defects } => self.lift(probe, surface, coarse, ends, defects)?,
                 Task::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
                 Task::Done => (Task::Done, 0),
             };
@@ -276,7 +293,8 @@ impl Refinement {
             };
         }
         let share = f64::from(1_u32 << (2 * self.level.to_come));
-        let euler = self.shape.euler as f64;
+        // Half of the faces at a crease are those of the other patch, so that a patch has two for each of its particles.
+        let euler = if self.net.is_creased() { 0.0 } else { self.shape.euler as f64 };
         let is_graded = self.net.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
         let closed = 2.0 * (self.shape.wanted - euler) / share;
@@ -335,7 +353,7 @@ impl Refinement {
     fn pass(
         &mut self,
         probe: &mut Probe,
-        sizing: Option<&Sizing>,
+        surface: &SurfaceFacts,
         pass: usize,
         next: u32,
         end: u32,
@@ -355,7 +373,7 @@ impl Refinement {
         match kind {
             Pass::Size { is_whole } => {
                 self.memory.surgeon.forget();
-                if let Some(sizing) = sizing {
+                if let Some(sizing) = surface.sizing {
                     net.find_sizes(&mut ground, sizing, self.target.radius, is_whole, next..last);
                 }
             }
@@ -375,12 +393,7 @@ impl Refinement {
                 }
             }
             Pass::Find => {
-                let has_border = self.shape.has_border;
-                let is_defect = |&v: &u32| {
-                    net.mesh.has_vertex(v)
-                        && net.excess(v) != 0
-                        && (!has_border || net.mesh.is_border(v) || net.excess(v) > 1)
-                };
+                let is_defect = |&v: &u32| net.mesh.has_vertex(v) && net.excess(v) != 0;
                 self.memory.near.extend((next..last).filter(is_defect));
             }
             Pass::Centre => {
@@ -477,6 +490,7 @@ impl Refinement {
     fn lift(
         &mut self,
         probe: &mut Probe,
+        surface: &SurfaceFacts,
         coarse: Box<Net>,
         ends: Vec<[u32; 2]>,
         mut defects: u32,
@@ -485,7 +499,7 @@ impl Refinement {
         let start = net.position.len();
         let end = ends.len().min(start + BLOCK);
         for &ends in &ends[start..end] {
-            net.push_from(&coarse, ends);
+            net.push_from(&coarse, ends, surface.ladder);
             // A particle on the middle of an edge has none.
             defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
         }

@@ -1,9 +1,10 @@
 //! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
 
-use super::walls::{Site, Walls};
+use super::walls::{Planes, Site, Walls};
 use crate::differential::Curvature;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
+use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
 
@@ -90,6 +91,8 @@ pub(super) struct Net {
     pub(super) size: Vec<f32>,
     /// The box, and the planes of it on which the particles lie.
     pub(super) walls: Walls,
+    /// The number of each particle on a crease: see [`CreaseLadder`]. [`NONE`] for the others; empty where the surface has no creases.
+    pub(super) on_crease: Vec<u32>,
 }
 
 impl Net {
@@ -102,6 +105,7 @@ impl Net {
             slots: Vec::with_capacity(count),
             size: Vec::new(),
             walls: Walls::default(),
+            on_crease: Vec::new(),
         }
     }
 
@@ -397,9 +401,12 @@ impl Net {
     }
 
     /// Difference between a particle's valence and that of a particle without a defect: six, and four on the border, where three
-    /// triangles of 60° fill the half-plane.
+    /// triangles of 60° fill the half-plane. At a corner of creases every valence is as good.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
+        if self.walls.planes(v) == Planes::CREASE_END {
+            return 0;
+        }
         let wanted = if self.walls.is_near() && self.mesh.is_border(v) { 4 } else { 6 };
         self.mesh.valence(v) as i32 - wanted
     }
@@ -419,19 +426,56 @@ impl Net {
             if self.is_graded() {
                 self.size.push(1.0);
             }
+            if self.is_creased() {
+                self.on_crease.push(NONE);
+            }
         }
         self.position[v as usize] = site.position;
         self.normal[v as usize] = site.normal;
         self.walls.set(v, site.planes);
     }
 
+    /// Lets the particles on creases, which have these numbers, stay where they are.
+    pub(super) fn hold_creases(&mut self, ladder: &CreaseLadder, numbers: Vec<u32>) {
+        self.walls.planes.resize(self.position.len(), Planes::INNER);
+        for (planes, &number) in
+            self.walls.planes.iter_mut().zip(&numbers).filter(|(_, number)| **number != NONE)
+        {
+            *planes = if ladder.is_corner(number) { Planes::CREASE_END } else { Planes::CREASE };
+        }
+        self.on_crease = numbers;
+    }
+
+    /// Whether the surface has creases.
+    pub(super) fn is_creased(&self) -> bool {
+        !self.on_crease.is_empty()
+    }
+
+    /// The number and the position of the particle that halves an edge along a crease; none for other edges.
+    pub(super) fn middle_on_crease(&self, ladder: &CreaseLadder, a: u32, b: u32) -> Option<(u32, Vec3)> {
+        let is_border = |a: u32, b: u32| self.mesh.find(a, b).is_some_and(|h| self.mesh.twin(h) == NONE);
+        let [m, n] = [a, b].map(|v| self.on_crease[v as usize]);
+        let is_between = m != NONE && n != NONE && (is_border(a, b) || is_border(b, a));
+        if is_between { ladder.middle(m, n) } else { None }
+    }
+
     /// Adds the next particle of a level finer than `coarse`: the one that halves an edge between two particles of that, or the old
-    /// one v where the ends are `[v, NONE]`.
-    pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2]) {
-        let (site, slots, size) = match ends {
+    /// one v where the ends are `[v, NONE]`. On creases it is that of the ladder.
+    pub(super) fn push_from(&mut self, coarse: &Self, ends: [u32; 2], ladder: Option<&CreaseLadder>) {
+        let (mut site, slots, size) = match ends {
             [old, NONE] => (coarse.site(old), coarse.slots[old as usize], coarse.size_of(old)),
             [a, b] => (coarse.halfway(a, b), Slots::default(), coarse.size_between(a, b)),
         };
+        if let Some(ladder) = ladder {
+            let number = match ends {
+                [old, NONE] => coarse.on_crease[old as usize],
+                [a, b] => coarse.middle_on_crease(ladder, a, b).map_or(NONE, |(number, position)| {
+                    site = Site { position, planes: Planes::CREASE, ..site };
+                    number
+                }),
+            };
+            self.on_crease.push(number);
+        }
         self.position.push(self.walls.pinned(site.position, site.planes));
         self.normal.push(site.normal);
         self.slots.push(slots);
@@ -440,9 +484,9 @@ impl Net {
     }
 
     /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
-    /// border is merged along the border only.
+    /// border is merged along the border only. One on a crease stays.
     pub(super) fn can_merge(&self, h: u32) -> bool {
-        if !self.mesh.can_collapse(h) {
+        if !self.mesh.can_collapse(h) || self.walls.planes(self.mesh.origin(h)).is_crease() {
             return false;
         }
         let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));

@@ -40,9 +40,10 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
-    /// The surface has creases.
+    /// The surface has creases, and radii are to differ or a crease runs to the box.
     #[error(
-        "The front stands, and is not refined: near {at} the surface has a crease, of which the refined method knows nothing."
+        "The front stands, and is not refined: near {at} the surface has a crease. Such a surface is refined with one radius only, and in \
+         a box that holds its creases."
     )]
     Creased {
         /// Position of a point of a crease.

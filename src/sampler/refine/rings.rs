@@ -3,14 +3,16 @@
 use super::net::Net;
 use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
+use std::collections::BTreeMap;
 
 /// Particles handed on in one slice of work.
 const SLICE: usize = 256;
 
 /// A breadth-first walk over the surface that fills the columns.
 ///
-/// The generation level of a particle is its distance, in edges, from the first particle of its component, and its parent is the
-/// neighbour from which the walk came to it.
+/// The generation level of a particle is its distance, in edges, from the first particle of its component, or from the creases around
+/// its patch, and its parent is the neighbour from which the walk came to it. Particles on creases come first; their numbers stand in
+/// place of their first rows.
 #[derive(Clone, Debug)]
 pub(super) struct Rings {
     /// Vertices in the order in which they were met.
@@ -30,7 +32,25 @@ impl Rings {
         let n = net.position.len();
         let mut ready = Particles::default();
         ready.reserve(n);
-        Self { order: Vec::with_capacity(n), place: vec![NONE; n], next: 0, root: 0, is_walked: false, ready }
+        let mut rings = Self {
+            order: Vec::with_capacity(n),
+            place: vec![NONE; n],
+            next: 0,
+            root: 0,
+            is_walked: false,
+            ready,
+        };
+        let mut met = BTreeMap::new();
+        for (v, &number) in (0..).zip(&net.on_crease).filter(|(_, number)| **number != NONE) {
+            // Where a patch touches itself, a particle has a vertex for each of its fans.
+            let place = *met.entry(number).or_insert(rings.order.len() as u32);
+            if place as usize == rings.order.len() {
+                rings.meet(v, Particles::NO_PARENT, 0);
+                rings.ready.twins.push(number);
+            }
+            rings.place[v as usize] = place;
+        }
+        rings
     }
 
     /// Goes on for a slice. Returns whether the particles of the net are all there, with this radius where their size is 1. Only

@@ -186,6 +186,7 @@ impl Surgeon {
         net.slots.truncate(slots);
         net.size.truncate(slots);
         net.walls.truncate(slots);
+        net.on_crease.truncate(slots);
         false
     }
 

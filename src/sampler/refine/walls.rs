@@ -7,13 +7,18 @@ use glam::Vec3;
 /// Newton's method move one that touches the box.
 const SLACK: f32 = 1e-4;
 
-/// The planes of the box on which a particle lies: bit 2k for the lower plane of axis k, bit 2k + 1 for the upper one.
+/// What holds a particle besides the surface: bit 2k for the lower plane of axis k of the box, bit 2k + 1 for the upper one, bit 6 for a
+/// crease, and bit 7 for an end of creases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Planes(u8);
 
 impl Planes {
     /// No plane.
     pub(super) const INNER: Self = Self(0);
+    /// A crease, on which a particle stays where it is.
+    pub(super) const CREASE: Self = Self(1 << 6);
+    /// A point at which creases meet or end.
+    pub(super) const CREASE_END: Self = Self(3 << 6);
     /// Number of planes of a box.
     pub(super) const ALL: usize = 6;
 
@@ -32,6 +37,11 @@ impl Planes {
 
     pub(super) fn is_corner(self) -> bool {
         self.count() > 1
+    }
+
+    /// Whether the particle lies on a crease.
+    pub(super) fn is_crease(self) -> bool {
+        !self.common(Self::CREASE).is_inner()
     }
 
     /// The planes that are in both sets.
@@ -142,7 +152,7 @@ impl Walls {
     pub(super) fn along(&self, planes: Planes, n: Vec3, step: Vec3) -> Vec3 {
         let (step, n) = (step * planes.free(), n * planes.free());
         let slide = step - n * (step.dot(n) / n.length_squared());
-        if planes.is_corner() || !slide.is_finite() { Vec3::ZERO } else { slide }
+        if planes.is_corner() || planes.is_crease() || !slide.is_finite() { Vec3::ZERO } else { slide }
     }
 
     /// The position of a particle at `p` after one step of Newton's method on its planes, and the normal there. The position is on the
@@ -155,6 +165,9 @@ impl Walls {
         gradient: Vec3,
         longest: f32,
     ) -> Option<Vec3> {
+        if planes.is_crease() {
+            return Some(p);
+        }
         let step = if planes.is_inner() {
             let inverse_slope = 1.0 / gradient.length();
             gradient * inverse_slope * (value * inverse_slope)

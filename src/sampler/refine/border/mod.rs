@@ -54,11 +54,20 @@ fn slide(ground: &mut Ground, planes: Planes, start: Vec3, reach: f32) -> Option
 }
 
 impl Net {
-    /// Whether three particles lie on one plane: on the border they are on one curve, and their triangle is no part of the surface.
+    /// Whether three particles lie on one plane, or along one crease: on the border they are on one curve, and their triangle is no part of
+    /// the surface.
     #[inline]
     pub(super) fn is_along_border(&self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners.map(|v| self.walls.planes(v));
-        !a.common(b).common(c).is_inner()
+        let common = a.common(b).common(c);
+        !common.is_inner() && (!common.is_crease() || self.is_flat(corners))
+    }
+
+    /// Whether a triangle has an angle of 126° or more, as three particles that follow each other along a crease have.
+    fn is_flat(&self, corners: [u32; 3]) -> bool {
+        let [a, b, c] = corners.map(|v| self.position[v as usize]);
+        let longest_sq = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        self.area_vector(corners).length() < 0.25 * longest_sq
     }
 
     /// Whether a triangle at `v` has all its corners on one plane.
@@ -124,12 +133,15 @@ impl Net {
         self.walls.is_near() && self.mesh.edges().any(|h| self.mesh.twin(h) == NONE)
     }
 
-    /// Length of the border along some faces, in units of the spacing that is wanted where it is.
+    /// Length of the border at the box along some faces, in units of the spacing that is wanted where it is.
     pub(super) fn border_of(&self, faces: Range<u32>) -> f64 {
         if !self.walls.is_near() {
             return 0.0;
         }
-        let is_border = |&h: &u32| self.mesh.has_half_edge(h) && self.mesh.twin(h) == NONE;
+        let is_border = |&h: &u32| {
+            let is_at_end = self.mesh.has_half_edge(h) && self.mesh.twin(h) == NONE;
+            is_at_end && !self.walls.planes(self.mesh.origin(h)).is_crease()
+        };
         let length = |h: u32| self.length(h) / self.size_between(self.mesh.origin(h), self.mesh.target(h));
         (3 * faces.start..3 * faces.end).filter(is_border).map(|h| f64::from(length(h))).sum()
     }

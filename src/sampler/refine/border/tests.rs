@@ -46,6 +46,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Net {
         slots: vec![Slots::default(); position.len()],
         size: Vec::new(),
         walls: Walls::new(bounds, &position, SPACING),
+        on_crease: Vec::new(),
         position,
     };
     // Formulas are moved to one side: which way is up depends on that.

@@ -1,0 +1,93 @@
+//! Particles on creases, level by level: at each level of a refinement another one halves the way between two that follow each other.
+
+use crate::particles::Particles;
+use glam::Vec3;
+
+/// The particles on creases at every level of a refinement. All are known before it begins, so that the patches that meet at a crease
+/// have them at the same places.
+///
+/// Those of the coarse front have the numbers of their first rows, and the others the numbers after these.
+#[derive(Clone, Debug)]
+pub(in super::super) struct CreaseLadder {
+    /// Pairs of particles of the coarse front that follow each other along a crease.
+    segments: Vec<[u32; 2]>,
+    /// Equal parts of a segment at the last level.
+    parts: usize,
+    /// Number of rows of the coarse front.
+    rows: u32,
+    /// Positions of the particles that divide the segments, segment by segment from its first end to its second.
+    between: Vec<Vec3>,
+    /// For every two that follow each other at some level, the lower number first, the number of the particle that halves the way
+    /// between them. Sorted.
+    middles: Vec<([u32; 2], u32)>,
+    /// Number of ends of segments at each row of the coarse front.
+    ends: Vec<u32>,
+}
+
+impl CreaseLadder {
+    /// The ladder over the rows of a coarse front, whose segments are divided by the points `between`, as many in each.
+    pub(super) fn new(rows: &Particles, between: Vec<Vec3>) -> Self {
+        let segments = rows.segments.clone();
+        let mut ends = vec![0; rows.twins.len()];
+        segments.as_flattened().iter().for_each(|&row| ends[row as usize] += 1);
+        let parts = between.len() / segments.len().max(1) + 1;
+        let mut ladder =
+            Self { segments, parts, rows: rows.twins.len() as u32, between, middles: Vec::new(), ends };
+        let mut half = parts / 2;
+        while half > 0 {
+            for segment in 0..ladder.segments.len() {
+                for k in (half..parts).step_by(2 * half) {
+                    let [a, middle, b] = [k - half, k, k + half].map(|k| ladder.number(segment, k));
+                    ladder.middles.push(([a.min(b), a.max(b)], middle));
+                }
+            }
+            half /= 2;
+        }
+        ladder.middles.sort_unstable();
+        ladder
+    }
+
+    /// The number of the particle after so many parts of a segment.
+    fn number(&self, segment: usize, part: usize) -> u32 {
+        let [start, end] = self.segments[segment];
+        match part {
+            0 => start,
+            part if part == self.parts => end,
+            part => self.rows + (segment * (self.parts - 1) + part - 1) as u32,
+        }
+    }
+
+    /// One more than the highest number of a particle.
+    pub(in super::super) fn len(&self) -> usize {
+        self.rows as usize + self.between.len()
+    }
+
+    /// Whether creases meet or end at a particle.
+    pub(in super::super) fn is_corner(&self, number: u32) -> bool {
+        self.ends.get(number as usize).is_some_and(|&ends| ends != 2)
+    }
+
+    /// The number and the position of the particle that halves the way between two; none if these do not follow each other along a crease
+    /// at any level but the last.
+    pub(in super::super) fn middle(&self, a: u32, b: u32) -> Option<(u32, Vec3)> {
+        let place = self.middles.binary_search_by_key(&[a.min(b), a.max(b)], |&(pair, _)| pair).ok()?;
+        let number = self.middles[place].1;
+        Some((number, self.between[(number - self.rows) as usize]))
+    }
+
+    /// The pairs that follow each other along a crease at the level after which so many are to come.
+    pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = [u32; 2]> {
+        let stride = 1 << to_come;
+        (0..self.segments.len()).flat_map(move |segment| {
+            let starts = (0..self.parts).step_by(stride);
+            starts.map(move |k| [k, k + stride].map(|k| self.number(segment, k)))
+        })
+    }
+
+    /// A particle of the coarse front from which two creases lead to the next one without a third between them, so that an edge of the mesh
+    /// does not tell on which it lies; none if there is none.
+    pub(in super::super) fn ambiguous(&self) -> Option<u32> {
+        let same = self.middles.windows(2).find(|pair| pair[0].0 == pair[1].0);
+        same.map(|pair| pair[0].0[0])
+    }
+}
