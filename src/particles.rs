@@ -184,8 +184,13 @@ impl Particles {
     /// Returns the number of particles, each counted once, however many rows it has.
     #[must_use]
     pub fn count(&self) -> usize {
-        let further = (0..).zip(&self.twins).filter(|&(i, &first)| first != i).count();
-        self.len() - further
+        self.count_of_first(self.len())
+    }
+
+    /// Returns the number of particles in the first `rows` rows.
+    pub(crate) fn count_of_first(&self, rows: usize) -> usize {
+        let further = (0..).zip(&self.twins).take(rows).filter(|&(i, &first)| first != i).count();
+        rows - further
     }
 
     /// Adds a particle, on the patch of its parent.

@@ -14,8 +14,8 @@ use std::io;
 /// Rows of a file that are written in one slice of work, at up to a microsecond each.
 const ROWS: usize = 1_000;
 
-/// Counts of a mesh: triangles, components and borders.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+/// What a mesh adds up to: triangles, components, borders and volume.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshAnswer {
     /// Number of triangles.
@@ -29,6 +29,8 @@ pub struct MeshAnswer {
     pub unfilled: usize,
     /// Number of particles in no triangle.
     pub left_out: usize,
+    /// [Volume](Triangulation::volume) that the mesh encloses; none where it is open.
+    pub volume: Option<f64>,
 }
 
 /// A connected part of a mesh.
@@ -105,8 +107,10 @@ impl File {
     }
 }
 
-impl From<&Triangulation> for MeshAnswer {
-    fn from(mesh: &Triangulation) -> Self {
+impl MeshAnswer {
+    /// What the triangles over particles add up to.
+    #[must_use]
+    pub fn new(mesh: &Triangulation, particles: &Particles) -> Self {
         let component = |component: &Component| MeshComponent {
             triangles: component.triangles,
             euler: component.euler(),
@@ -118,6 +122,7 @@ impl From<&Triangulation> for MeshAnswer {
             borders: mesh.topology.borders.len() - mesh.unfilled.len(),
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
+            volume: mesh.volume(particles),
         }
     }
 }
@@ -129,13 +134,13 @@ impl<F: Field> Run<F> {
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         if let MeshState::None = self.meshing.state {
             let work =
-                Meshing::work(self.particles(), self.count(), self.sampler.triangles(), self.local_bounds());
+                Meshing::work(self.particles(), self.rows(), self.sampler.triangles(), self.local_bounds());
             self.meshing.state = MeshState::Joining(work);
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
             self.meshing.state = MeshState::Joined(slices::advance(work.as_mut(), budget)?);
         }
-        self.meshing.joined().map(Into::into)
+        self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
     }
 
     /// The triangles: triples of particles, counter-clockwise seen from outside. There are none before [`Run::join`] is done.

@@ -197,7 +197,7 @@ impl<F: Field> Run<F> {
     pub fn step(&mut self, budget: u32) -> Progress {
         let progress = self.sampler.step(&mut self.field, budget);
         if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
-            self.measuring.keep_front(self.sampler.particles(), progress.particles);
+            self.measuring.keep_front(self.sampler.particles(), progress.rows);
         }
         self.remember(progress)
     }
@@ -270,7 +270,7 @@ impl<F: Field> Run<F> {
         Err(Error::Nothing { reason: progress.stop_reason.unwrap_or(StopReason::Cancelled), message })
     }
 
-    /// The particles so far; of a generation level under way, the columns may hold provisional ones beyond [`Run::count`].
+    /// The particles so far; of a generation level under way, the columns may hold provisional rows beyond [`Run::rows`].
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.sampler.particles()
@@ -280,6 +280,12 @@ impl<F: Field> Run<F> {
     #[must_use]
     pub fn count(&self) -> usize {
         self.last.as_ref().map_or(0, |progress| progress.particles)
+    }
+
+    /// Rows of the columns that will stay: more than there are particles where some lie on creases, with a row on each side.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.last.as_ref().map_or(0, |progress| progress.rows)
     }
 
     /// The clip box, in the coordinates of the field as it was given.
@@ -327,7 +333,7 @@ impl<F: Field> Run<F> {
 
     /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, in inverse units of length; NaN where the surface has none.
     pub fn curvatures(&mut self, from: usize) -> Vec<[f32; 2]> {
-        let count = self.count();
+        let count = self.rows();
         let positions = &self.sampler.particles().position[from.min(count)..count];
         let mut curvatures = vec![Curvature::default(); positions.len()];
         differential::curvatures(&mut self.field, positions, &mut curvatures);

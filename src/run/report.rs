@@ -30,6 +30,8 @@ pub struct Report {
     /// Figures of quality.
     #[serde(flatten)]
     pub measures: Measures,
+    /// Volume that the mesh encloses; none where it is open, or the particles are not joined to one.
+    pub volume: Option<f64>,
     /// Particles with a child that fell outside of the box.
     pub border: usize,
     /// Why particles lie at the border of the box.
@@ -228,6 +230,7 @@ impl<F: Field> Run<F> {
                 nearest_histogram: measured.histogram.clone(),
                 places,
             },
+            volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
             border,
             cut: self.cut().filter(|_| border > 0),
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),

@@ -104,6 +104,12 @@ impl Sample {
         Warning::of_mesh(&self.measured, self.mesh())
     }
 
+    /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`].
+    #[must_use]
+    pub fn volume(&self) -> Option<f64> {
+        self.mesh().volume(&self.particles)
+    }
+
     /// Writes the particles with what was measured of them to `out`, which should be buffered.
     ///
     /// # Errors

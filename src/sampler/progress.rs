@@ -28,8 +28,10 @@ pub struct Forecast {
 pub struct Progress {
     /// Current phase.
     pub phase: Phase,
-    /// Particles in the columns that will stay.
+    /// Particles in the columns that will stay, each counted once.
     pub particles: usize,
+    /// Rows of the columns that will stay: one for each particle, or one on each side for those on creases.
+    pub rows: usize,
     /// Generation level under way.
     pub level: u32,
     /// Level of the refinement under way, 1 the coarse one; 0 in every other phase.
@@ -86,14 +88,16 @@ impl Sampler {
     #[must_use]
     pub fn progress(&self) -> Progress {
         let settled = self.settled();
-        let particles = self.output.inside.as_ref().map_or(settled, Particles::len);
+        let columns = self.output.inside.as_ref().unwrap_or(&self.output.particles);
+        let rows = self.output.inside.as_ref().map_or(settled, Particles::len);
         let (refine_level, refine_levels) = match &self.phase {
             PhaseState::Refinement(refinement) => refinement.level(),
             _ => (0, 0),
         };
         Progress {
             phase: self.phase.name(),
-            particles,
+            particles: columns.count_of_first(rows),
+            rows,
             level: self.output.particles.level[..settled].last().copied().unwrap_or(0),
             refine_level,
             refine_levels,
@@ -108,7 +112,7 @@ impl Sampler {
         }
     }
 
-    /// Particles in the columns that will stay.
+    /// Rows of the columns that will stay.
     pub(super) fn settled(&self) -> usize {
         match self.phase {
             PhaseState::Generation(_) | PhaseState::Filling => self.tools.front.active().level().settled,

@@ -435,6 +435,13 @@ const REPORT: &[ReportRow] = &[
         "Area of the triangles of natural neighbours.",
     ),
     row(
+        "volume",
+        "Volume",
+        ("Surface", "units³", 3),
+        ("", None),
+        "Volume that the mesh encloses, exact to its triangles, where the particles are joined to a closed one.",
+    ),
+    row(
         "quality.euler",
         "Sample Euler number",
         ("At this radius", "", 0),
@@ -501,7 +508,11 @@ const FATES: &[Fate] = &[
         label: "Not converged",
         help: "The circle around the parent met no point of the surface.",
     },
-    Fate { name: "outside", label: "Outside", help: "The point lies outside the clip box." },
+    Fate {
+        name: "outside",
+        label: "Outside",
+        help: "The point lies outside the clip box, or beyond a crease, off the patch of its parent.",
+    },
     Fate { name: "undefined", label: "Undefined", help: "f has no value or no gradient there." },
     Fate { name: "capped", label: "Capped", help: "The limit on particles was reached." },
 ];
@@ -516,7 +527,7 @@ const COLOURS: &[Colour] = &[
     Colour {
         id: ColourMode::Fate,
         label: "Fate of the children",
-        help: "Interior, at the border of the box, or next to a place where a child found no surface.",
+        help: "Interior, at the border of the box or beside a crease, or next to a place where a child found no surface.",
         unit: "",
     },
     Colour {

@@ -1,9 +1,14 @@
-//! The box of a session: given with the field, that of a gallery surface, or fitted around the surface of a formula.
+//! The box of a session: given with the field, that of a gallery surface, or fitted around the surface of a formula; and the solid that is
+//! made of the surface in it.
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{BoxFit, Extent};
 use crate::field::Field;
-use crate::sampler::Settings;
+use crate::field::formula::Formula;
+use crate::field::gallery::Surface;
+use crate::math::Bounds;
+use crate::sampler::{Settings, SettingsError};
+use core::ops::RangeInclusive;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -18,74 +23,191 @@ pub enum BoxMode {
     Fixed,
 }
 
+/// What the faces of the box do where they cut the surface of a formula.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BoxFaces {
+    /// The surface ends there.
+    #[default]
+    Open,
+    /// They close the solid f ≤ 0: see [`Formula::closed_by`].
+    Closed,
+}
+
+/// Settings that act before a run: the box, and the solid that is made of the surface of a formula. They mean nothing to a model from
+/// points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SolidSettings {
+    /// Choice of the box.
+    pub box_mode: BoxMode,
+    /// What the faces of the box do.
+    pub box_faces: BoxFaces,
+    /// Thickness of the sheet around the surface that is sampled in its place, in the units of the coordinates; 0 for the surface itself.
+    /// See [`Formula::thickened`].
+    pub thickness: f64,
+}
+
+impl SolidSettings {
+    /// The values of [`SolidSettings::thickness`] that are accepted.
+    pub const THICKNESSES: RangeInclusive<f64> = 0.0..=*Bounds::DIAGONALS.end();
+
+    /// Checks that the thickness is a number in its range.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingsError::OutOfRange`] if it is not.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        let (min, max) = Self::THICKNESSES.into_inner();
+        let value = self.thickness;
+        if (min..=max).contains(&value) {
+            return Ok(());
+        }
+        Err(SettingsError::OutOfRange { name: "thickness", value, min, max })
+    }
+
+    /// The thickness of the sheet, if there is one.
+    fn sheet(&self) -> Option<f64> {
+        Some(self.thickness).filter(|&thickness| thickness > 0.0)
+    }
+
+    /// The field of the solid that is made of the surface of `field`: the surface or the sheet around it, closed by a box where one is
+    /// given.
+    #[must_use]
+    pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
+        let mut solid = field.as_surface();
+        if let Some(thickness) = self.sheet() {
+            solid = solid.thickened(thickness);
+        }
+        match closing {
+            Some(bounds) => solid.closed_by(bounds),
+            None => solid,
+        }
+    }
+
+    /// The own box of a surface of the gallery. Around a surface that is closed without it, there is room for the sheet.
+    #[must_use]
+    pub fn own_box(&self, surface: &Surface) -> Bounds {
+        let room = if surface.closed { DVec3::splat(0.5 * self.thickness) } else { DVec3::ZERO };
+        Bounds::new(surface.bounds.lo() - room, surface.bounds.hi() + room)
+    }
+}
+
+/// Search for the box around one field, in slices.
+#[derive(Default)]
+struct Around {
+    /// The search, while it is under way.
+    search: Option<BoxFit>,
+    /// Its result.
+    found: Option<Extent>,
+}
+
+impl Around {
+    /// Does up to `budget` slices of the search around the surface of a field: its extent, once it is known.
+    fn step(&mut self, field: impl FnOnce() -> Formula, budget: u32) -> Option<Extent> {
+        if self.found.is_none() {
+            let search = self.search.get_or_insert_with(|| {
+                let mut field = field();
+                field.set_origin(DVec3::ZERO);
+                BoxFit::new(Box::new(field))
+            });
+            self.found = Some(search.step(budget)?);
+            self.search = None;
+        }
+        self.found
+    }
+}
+
 /// State of the search for the box.
 #[derive(Default)]
 pub(super) struct Fitting {
     /// The choice of the user.
-    pub(super) box_mode: BoxMode,
-    /// Whether the box was given with the field.
+    pub(super) choice: SolidSettings,
+    /// Whether the clip box was given with the field.
     pub(super) is_given: bool,
-    /// The search, while it is under way.
-    search: Option<BoxFit>,
-    /// Result of the search for the present field.
-    found: Option<Extent>,
+    /// The box around the surface that no box closes.
+    unclosed: Around,
+    /// The box around the solid that the clip box closes.
+    closed: Around,
     /// Whether the box is that of the next run.
     pub(super) is_settled: bool,
-    /// Whether the present box was fitted.
+    /// Whether the present clip box was fitted.
     pub(super) is_fitted: bool,
 }
 
 impl Fitting {
-    /// Forgets all but the choice of the user.
+    /// Forgets all but the choice of the user, and what belongs to another clip box.
     pub(super) fn discard(&mut self) {
-        *self = Self { box_mode: self.box_mode, ..Self::default() };
+        let closed = core::mem::take(&mut self.closed);
+        *self = Self { choice: self.choice, closed, ..Self::default() };
     }
 
     /// Forgets what belongs to another field or another choice of the box; the box itself stays until the next is known.
     pub(super) fn restart(&mut self) {
-        (self.search, self.found, self.is_settled) = (None, None, false);
+        (self.unclosed, self.closed, self.is_settled) = (Around::default(), Around::default(), false);
     }
 }
 
 impl Session {
-    /// Chooses the box in which the surface of a formula is sampled.
-    pub fn choose_box(&mut self, box_mode: BoxMode) {
-        self.fitting.box_mode = box_mode;
+    /// Chooses the box in which the surface of a formula is sampled, and the solid that is made of it.
+    ///
+    /// # Errors
+    ///
+    /// If the thickness is out of its range; nothing is changed then.
+    pub fn choose(&mut self, choice: SolidSettings) -> Result<(), SettingsError> {
+        choice.validate()?;
+        if choice.thickness != self.fitting.choice.thickness {
+            self.fitting.restart();
+        }
+        self.fitting.is_settled &= choice == self.fitting.choice;
+        self.fitting.choice = choice;
+        Ok(())
     }
 
     /// Finds the box of the next run with these settings, up to `budget` slices of the work of some 10 to 50 microseconds each: the
-    /// field with its box, once it is known. [`Session::start`] does what is left. A box that `only_grows` holds the one before it
+    /// field with its clip box, once it is known. [`Session::start`] does what is left. A box that `only_grows` holds the one before it
     /// as long as the formula stays the same: while a slider moves.
+    ///
+    /// A solid that the clip box closes is sampled in a box around it: its faces are inside, and what they cut are creases.
     pub fn fit(&mut self, settings: &Settings, only_grows: bool, budget: u32) -> Option<FieldAnswer> {
-        let formula = match self.run.field() {
-            Source::Formula(field) if self.is_to_fit() && !field.is_constant() => field,
-            _ => {
-                self.run.set_bounds(self.own, None);
-                (self.fitting.is_fitted, self.fitting.is_settled) = (false, true);
-                return Some(self.answer());
+        let choice = self.fitting.choice;
+        let field = self.run.field().formula().filter(|field| !field.is_constant());
+        let (room, is_fitted) = (settings.largest_share(), field.is_some() && self.is_to_fit());
+        let (mut clip, mut reach) = (self.own_box(), None);
+        if let Some(field) = field.filter(|_| is_fitted) {
+            let found = self.fitting.unclosed.step(|| choice.made_of(field.clone(), None), budget)?;
+            let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
+            (clip, reach) = (found.with_room(room), Some(found.reach));
+            clip = before.map_or(clip, |before| clip.joined(&before));
+        }
+        let is_closed = choice.box_faces == BoxFaces::Closed;
+        let (mut bounds, mut reach_in) = (clip, reach);
+        if let Some(field) = field {
+            let closing = Some(clip).filter(|_| is_closed);
+            if (field.thickness(), field.closing_box()) != (choice.sheet(), closing) {
+                let solid = choice.made_of(field.clone(), closing.as_ref());
+                self.fitting.closed = Around::default();
+                self.run.set_field(Source::Formula(solid), false);
             }
-        };
-        if self.fitting.found.is_none() {
-            let search = self.fitting.search.get_or_insert_with(|| {
-                let mut formula = formula.clone();
-                formula.set_origin(DVec3::ZERO);
-                BoxFit::new(Box::new(formula))
-            });
-            self.fitting.found = Some(search.step(budget)?);
-            self.fitting.search = None;
         }
-        let found = self.fitting.found?;
-        let mut bounds = found.with_room(settings.largest_share());
-        if only_grows && self.fitting.is_fitted {
-            bounds = bounds.joined(&self.run.bounds());
+        if let Some(solid) = self.run.field().formula().filter(|field| field.closing_box().is_some()) {
+            let found = self.fitting.closed.step(|| solid.clone(), budget)?;
+            (bounds, reach_in) = (found.with_room(room), Some(found.reach));
         }
-        self.run.set_bounds(bounds, Some(found.reach));
-        (self.fitting.is_fitted, self.fitting.is_settled) = (true, true);
+        (self.clip, self.reach) = (clip, reach);
+        self.run.set_bounds(bounds, reach_in);
+        (self.fitting.is_fitted, self.fitting.is_settled) = (is_fitted, true);
         Some(self.answer())
+    }
+
+    /// The clip box where it is not to be fitted.
+    pub(super) fn own_box(&self) -> Bounds {
+        let of_surface = self.surface.filter(|_| !self.fitting.is_given);
+        of_surface.map_or(self.own, |surface| self.fitting.choice.own_box(surface))
     }
 
     /// Whether the box is to be fitted: not where it was given, nor around a surface of the gallery, which has its own.
     fn is_to_fit(&self) -> bool {
-        self.fitting.box_mode == BoxMode::Fit && !self.fitting.is_given && self.surface.is_none()
+        self.fitting.choice.box_mode == BoxMode::Fit && !self.fitting.is_given && self.surface.is_none()
     }
 }

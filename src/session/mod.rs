@@ -8,7 +8,7 @@ mod setting;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
-pub use fitting::BoxMode;
+pub use fitting::{BoxFaces, BoxMode, SolidSettings};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
 };
@@ -70,9 +70,9 @@ pub struct FieldAnswer {
     pub parameters: Vec<Parameter>,
     /// Parameters that were not declared but found in the formula.
     pub auto: Vec<String>,
-    /// Clip box; before [`Session::fit`] or a start it may be that of the formula before.
+    /// Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start it may be that of the formula before.
     pub bounds: Bounds,
-    /// Whether the surface is bounded, if the box was fitted to it.
+    /// Whether the surface, closed by no box, is bounded, if the box was fitted to it.
     pub reach: Option<Reach>,
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
@@ -143,6 +143,10 @@ pub struct Session {
     declared: Vec<Parameter>,
     /// The box that was given with the field, or that of its surface.
     own: Bounds,
+    /// The clip box. A run samples in it, or in a box around the solid that it closes.
+    clip: Bounds,
+    /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
+    reach: Option<Reach>,
     fitting: Fitting,
 }
 
@@ -162,6 +166,8 @@ impl Session {
             surface: Some(surface),
             declared: surface.declared(),
             own: surface.bounds,
+            clip: surface.bounds,
+            reach: None,
             fitting: Fitting::default(),
         }
     }
@@ -181,8 +187,8 @@ impl Session {
                 formula: field.text().to_owned(),
                 parameters: field.parameters().to_vec(),
                 auto: field.auto().to_vec(),
-                bounds: self.run.bounds(),
-                reach: self.run.reach(),
+                bounds: self.clip,
+                reach: self.reach,
                 mathml: Some(field.mathml()),
             },
             Source::Points { info, .. } => FieldAnswer {
@@ -192,8 +198,8 @@ impl Session {
                 formula: String::new(),
                 parameters: Vec::new(),
                 auto: Vec::new(),
-                bounds: self.run.bounds(),
-                reach: self.run.reach(),
+                bounds: self.clip,
+                reach: self.reach,
                 mathml: None,
             },
         }
@@ -223,7 +229,7 @@ impl Session {
             (None, None, Some(field)) => field.text(),
             // Of a model from points only the box can be changed.
             (None, None, None) => {
-                self.own = own;
+                (self.own, self.clip, self.reach) = (own, own, None);
                 self.run.set_bounds(own, None);
                 return Ok(self.answer());
             }
@@ -307,21 +313,33 @@ impl Session {
     ) {
         let present = self.source().formula();
         let is_same_text = present.is_some_and(|p| p.text() == field.text());
-        let is_same = is_same_text && present.is_some_and(|p| p.parameters() == field.parameters());
+        // A formula that was compiled anew is not yet made to the solid that is to be sampled.
+        let is_same = is_same_text
+            && present.is_some_and(|p| {
+                p.parameters() == field.parameters()
+                    && (p.thickness(), p.closing_box()) == (field.thickness(), field.closing_box())
+            });
         // A box that is to be fitted stays what it was until it is.
         let is_open = !is_given && surface.is_none();
         let keeps_box = is_same_text && self.fitting.is_fitted && is_open;
         self.run.set_field(Source::Formula(field), is_same);
-        let reach = self.run.reach().filter(|_| keeps_box && is_same);
-        self.run.set_bounds(if is_open { self.run.bounds() } else { own }, reach);
+        if !is_same {
+            self.fitting.restart();
+        }
         if !keeps_box {
             self.fitting.discard();
-        } else if !is_same {
-            self.fitting.restart();
         }
         self.fitting.is_given = is_given;
         self.surface = surface;
         self.own = own;
+        self.reach = self.reach.filter(|_| keeps_box && is_same);
+        if !is_open {
+            self.clip = self.own_box();
+        }
+        // The box around a closed solid is known once it is fitted.
+        if self.fitting.choice.box_faces == BoxFaces::Open {
+            self.run.set_bounds(self.clip, self.reach);
+        }
     }
 
     /// Changes the field to one from points, as `pointcloud::fit` makes it. [`Session::set_field`] with a surface or a formula
@@ -350,7 +368,7 @@ impl Session {
         self.surface = None;
         self.declared.clear();
         self.fitting.discard();
-        self.own = bounds;
+        (self.own, self.clip, self.reach) = (bounds, bounds, None);
         Ok(self.answer())
     }
 

@@ -1,7 +1,7 @@
 //! The settings as they are shown: from this table the page builds a control for each, the command line an option, and the README a
 //! row. Defaults and ranges are those of [`Settings`].
 
-use super::fitting::BoxMode;
+use super::fitting::{BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
 use core::ops::RangeInclusive;
 use serde::Serialize;
@@ -71,6 +71,7 @@ impl Setting {
     pub fn option(&self) -> String {
         match self.name {
             "box_mode" => "box".to_owned(),
+            "box_faces" => "closed".to_owned(),
             "sampling" => "adaptive".to_owned(),
             "size_mode" => "count".to_owned(),
             "radius_share" => "radius".to_owned(),
@@ -93,6 +94,8 @@ impl Setting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub enum SettingGroup {
+    /// Settings of the box, which act before a run.
+    Box,
     /// Settings that everyone uses.
     Sampling,
     /// Settings that few users need.
@@ -262,6 +265,7 @@ macro_rules! choices {
 }
 
 choices!(BOXES of BoxMode: Fit "fit" "Fit", Fixed "fixed" "Fixed");
+choices!(FACES of BoxFaces: Open "open" "Open", Closed "closed" "Closed");
 choices!(SAMPLINGS of Sampling: Uniform "uniform" "Uniform", Adaptive "adaptive" "Adaptive");
 choices!(SIZES of SizeMode: Radius "radius" "Radius", Count "count" "Count");
 choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "max_curvature" "Largest curvature",
@@ -276,15 +280,34 @@ pub fn settings() -> Vec<Setting> {
     let share = |setting| Setting { unit: "%", ..log(setting) };
     let particles = |setting| Setting { unit: "particles", ..log(setting) };
     let advanced = |setting| Setting { group: SettingGroup::Advanced, ..setting };
+    let of_box = |setting| Setting { group: SettingGroup::Box, ..setting };
+    let thicknesses = SolidSettings::THICKNESSES;
     vec![
-        // It acts before a run: a run has the box that it is given.
-        choice(
+        of_box(choice(
             "box_mode",
             |_| BoxMode::default().into(),
             "Box",
             "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
             BOXES,
-        ),
+        )),
+        of_box(choice(
+            "box_faces",
+            |_| BoxFaces::default().into(),
+            "Faces",
+            "Closed: the faces of the box close what they cut, the solid f ≤ 0 in the box, with sharp edges. Of formulas.",
+            FACES,
+        )),
+        Setting {
+            min: *thicknesses.start(),
+            max: *thicknesses.end(),
+            accepted_max: *thicknesses.end(),
+            ..of_box(number(
+                "thickness",
+                |_| SolidSettings::default().thickness.into(),
+                "Thickness",
+                "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. Of formulas.",
+            ))
+        },
         choice(
             "sampling",
             |settings| settings.sampling.into(),
@@ -437,7 +460,8 @@ mod tests {
             Json::Object(text) => text,
             other => panic!("settings are an object, not {other}"),
         };
-        text.insert("box_mode".to_owned(), json!(BoxMode::default()));
+        let Json::Object(of_box) = json!(SolidSettings::default()) else { panic!("settings are an object") };
+        text.extend(of_box);
         let shown: Map<String, Json> = settings()
             .iter()
             .map(|setting| (setting.name.to_owned(), json!(setting.value(&Settings::DEFAULT))))
@@ -447,7 +471,7 @@ mod tests {
 
     #[test]
     fn every_value_of_a_choice_is_read_as_itself() {
-        for setting in settings().iter().filter(|setting| setting.name != "box_mode") {
+        for setting in settings().iter().filter(|setting| setting.group != SettingGroup::Box) {
             for choice in setting.choices {
                 let settings: Settings =
                     serde_json::from_value(json!({ setting.name: choice.value })).expect("settings");

@@ -5,9 +5,8 @@ use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::sampler::Settings;
-use crate::session::{BoxMode, Fault, FaultKind, FieldRequest, Session, describe};
+use crate::session::{Fault, FaultKind, FieldRequest, Session, SolidSettings, describe};
 use glam::{DVec3, Vec3};
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -128,9 +127,9 @@ impl Core {
         to_js(&self.session.run.cancel())
     }
 
-    /// Number of particles.
+    /// Rows of the columns: particles, those on creases once on each side.
     pub fn count(&self) -> usize {
-        self.session.run.count()
+        self.session.run.rows()
     }
 
     /// Positions from particle `from` on, rounded to single precision.
@@ -149,7 +148,17 @@ impl Core {
         if particles.origin == DVec3::ZERO {
             return Vec::new();
         }
-        (from..self.session.run.count()).flat_map(|i| particles.place(i).to_array()).collect()
+        (from..self.session.run.rows()).flat_map(|i| particles.place(i).to_array()).collect()
+    }
+
+    /// For the rows of particles on creases, which come first, the first row of the same particle; nothing without creases.
+    pub fn twins(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().twins, 0)
+    }
+
+    /// The pairs of rows between which a crease goes on, two each; none without creases.
+    pub fn segments(&self) -> Vec<u32> {
+        self.session.run.particles().segments.as_flattened().to_vec()
     }
 
     /// Unit normals from particle `from` on.
@@ -202,7 +211,7 @@ impl Core {
     /// For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
     pub fn particle(&self) -> Vec<u32> {
         let particles = self.session.run.particles();
-        let rows = self.session.run.count().min(particles.patch.len());
+        let rows = self.session.run.rows().min(particles.patch.len());
         (0..rows).map(|row| particles.first_row(row) as u32).collect()
     }
 
@@ -254,25 +263,20 @@ impl Core {
         format!("{:016x}", self.session.run.particles().digest())
     }
 
-    /// The settings of a run, and with them the choice of the box, which the session takes.
+    /// The settings of a run, and with them those of the box and the solid, which the session takes.
     fn read_settings(&mut self, settings: JsValue) -> Result<Settings, Fault> {
-        #[derive(Default, Deserialize)]
-        #[serde(default)]
-        struct Wanted {
-            box_mode: BoxMode,
-        }
-        let wanted: Wanted = read(settings.clone(), FaultKind::Settings)?;
-        self.session.choose_box(wanted.box_mode);
+        let solid: SolidSettings = read(settings.clone(), FaultKind::Settings)?;
+        self.session.choose(solid).map_err(|error| Fault::new(FaultKind::Settings, &error))?;
         read(settings, FaultKind::Settings)
     }
 
     fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {
-        let count = self.session.run.count().min(column.len());
+        let count = self.session.run.rows().min(column.len());
         column[from.min(count)..count].to_vec()
     }
 
     fn vectors(&self, column: &[Vec3], from: usize) -> Vec<f32> {
-        let count = self.session.run.count().min(column.len());
+        let count = self.session.run.rows().min(column.len());
         bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
     }
 }

@@ -5,7 +5,7 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::quality::Figures;
 use marching_particles::sampler::Settings;
-use marching_particles::session::BoxMode;
+use marching_particles::session::{BoxMode, SolidSettings};
 use marching_particles::session::{FieldAnswer, FieldRequest, Session};
 use marching_particles::{Cut, Report};
 
@@ -120,11 +120,11 @@ fn a_box_that_is_given_stays_and_a_surface_that_it_cuts_is_told() {
 fn a_fixed_box_is_that_of_the_surface_with_which_the_formula_began() {
     let mut session = Session::new();
     set(&mut session, "x^2+y^2+z^2=1");
-    session.choose_box(BoxMode::Fixed);
+    session.choose(SolidSettings { box_mode: BoxMode::Fixed, ..SolidSettings::default() }).expect("a box");
     let report = run(&mut session, &coarse());
     assert_eq!(session.run.bounds(), gallery::find("ellipsoid").expect("it is the first").bounds);
     assert_eq!(report.cut, Some(Cut::Fixed));
-    session.choose_box(BoxMode::Fit);
+    session.choose(SolidSettings { box_mode: BoxMode::Fit, ..SolidSettings::default() }).expect("a box");
     let report = run(&mut session, &coarse());
     assert_eq!(report.cut, None);
 }

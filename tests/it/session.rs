@@ -551,3 +551,142 @@ fn a_surface_that_was_not_refined_is_warned_of() {
     assert!(of_heart.iter().any(|warning| warning.to_string().contains("is not refined")), "{of_heart:?}");
     assert_eq!(warnings("ellipsoid"), []);
 }
+
+mod solids {
+    use super::{request, run, sized};
+    use marching_particles::math::Bounds;
+    use marching_particles::sampler::{Settings, StopReason};
+    use marching_particles::session::{BoxFaces, BoxMode, FieldRequest, Session, SolidSettings};
+
+    fn solid(box_faces: BoxFaces, thickness: f64) -> SolidSettings {
+        SolidSettings { box_faces, thickness, ..SolidSettings::default() }
+    }
+
+    const OPEN: SolidSettings =
+        SolidSettings { box_mode: BoxMode::Fit, box_faces: BoxFaces::Open, thickness: 0.0 };
+
+    /// A run of the session on a field, in which the box is found in slices of work, as the page has it.
+    fn run_on(session: &mut Session, field: &str, choice: SolidSettings, settings: &Settings) -> Bounds {
+        session.set_field(&request(field)).expect("a field");
+        session.choose(choice).expect("a solid");
+        let answer = loop {
+            if let Some(answer) = session.fit(settings, false, 3) {
+                break answer;
+            }
+        };
+        assert_eq!(run(session, settings, u32::MAX), StopReason::Complete);
+        answer.bounds
+    }
+
+    /// Open edges of the mesh.
+    fn open_edges(session: &mut Session) -> u32 {
+        let mesh = loop {
+            if let Some(mesh) = session.run.join(u32::MAX) {
+                break mesh;
+            }
+        };
+        mesh.components.iter().map(|component| component.open_edges).sum()
+    }
+
+    #[test]
+    fn a_gyroid_becomes_a_part_and_a_surface_again() {
+        let settings = sized(3000);
+        let mut session = Session::new();
+        let gyroid = r#"{"surface":"gyroid"}"#;
+        let own = run_on(&mut session, gyroid, OPEN, &settings);
+        let open = session.run.particles().digest();
+        assert!(open_edges(&mut session) > 0);
+        for thickness in [0.0, 0.5] {
+            let closed = solid(BoxFaces::Closed, thickness);
+            assert_eq!(run_on(&mut session, gyroid, closed, &settings), own, "the panel has the closing box");
+            assert!(session.run.bounds().holds_inside(&own));
+            assert_eq!(open_edges(&mut session), 0, "thickness {thickness}");
+            let report = session.report();
+            let volume = own.size().element_product();
+            let half = 0.5 * volume;
+            // One half of a box of whole periods is inside the gyroid; the sheet takes about its thickness times its area.
+            let wanted = if thickness > 0.0 { 0.2 * volume..0.3 * volume } else { 0.95 * half..1.05 * half };
+            assert!(
+                report.volume.is_some_and(|found| wanted.contains(&found)),
+                "{:?} of {volume}",
+                report.volume
+            );
+            assert_eq!(report.count, session.run.count());
+            assert_eq!(session.run.rows(), session.run.particles().len());
+            assert!(session.run.count() < session.run.rows());
+            assert!(report.cut.is_none() && report.proof.creases > Some(0), "{report:?}");
+            // The same request again, as when a setting changes, and the same parameters declared anew.
+            let digest = session.run.particles().digest();
+            run_on(&mut session, gyroid, closed, &settings);
+            assert_eq!(session.run.particles().digest(), digest);
+            let field = session.answer();
+            let again = FieldRequest {
+                surface: Some("gyroid".to_owned()),
+                declare: field.parameters.clone(),
+                ..FieldRequest::default()
+            };
+            session.set_field(&again).expect("a field");
+            run(&mut session, &settings, u32::MAX);
+            assert_eq!(session.run.particles().digest(), digest);
+        }
+        assert_eq!(run_on(&mut session, gyroid, OPEN, &settings), own);
+        assert_eq!(session.run.particles().digest(), open);
+    }
+
+    #[test]
+    fn the_box_in_the_panel_closes_a_formula() {
+        let settings = sized(2000);
+        let mut session = Session::new();
+        let closed = solid(BoxFaces::Closed, 0.0);
+        let cylinder = r#"{"surface":"sphere","formula":"x^2 + y^2 - a","parameters":{"a":1}}"#;
+        let fitted = run_on(&mut session, cylinder, closed, &settings);
+        let sampled = session.run.bounds();
+        assert!(sampled.min[2] < fitted.min[2] && sampled.max[2] > fitted.max[2], "{sampled:?} {fitted:?}");
+        assert_eq!(open_edges(&mut session), 0);
+        let given = r#"{"formula":"x^2 + y^2 - a","bounds":{"min":[-2,-2,-1],"max":[2,2,3]}}"#;
+        let bounds = run_on(&mut session, given, closed, &settings);
+        assert_eq!((bounds.min, bounds.max), ([-2.0, -2.0, -1.0], [2.0, 2.0, 3.0]));
+        let heights = |session: &Session| {
+            let z = session.run.particles().position.iter().map(|p| p.z);
+            (z.clone().fold(f32::MAX, f32::min), z.fold(f32::MIN, f32::max))
+        };
+        assert_eq!(heights(&session), (-1.0, 3.0));
+        // While a slider moves, the box stays.
+        session.set_field(&request(r#"{"parameters":{"a":2}}"#)).expect("a field");
+        assert_eq!(session.fit(&settings, true, u32::MAX).expect("a box").bounds, bounds);
+        run(&mut session, &settings, u32::MAX);
+        assert_eq!(heights(&session), (-1.0, 3.0));
+        let widest =
+            session.run.particles().position.iter().map(|p| p.truncate().length()).fold(0.0, f32::max);
+        assert!((widest - 2_f32.sqrt()).abs() < 1e-4, "{widest}");
+    }
+
+    #[test]
+    fn the_sheet_around_a_closed_surface_is_inside_its_box() {
+        let settings = sized(3000);
+        let mut session = Session::new();
+        for surface in ["sphere", "torus", "ellipsoid"] {
+            let own = session.set_field(&request(&format!(r#"{{"surface":"{surface}"}}"#))).expect("a field");
+            let sheet = solid(BoxFaces::Open, 0.2);
+            let bounds = run_on(&mut session, &format!(r#"{{"surface":"{surface}"}}"#), sheet, &settings);
+            assert!(bounds.holds_inside(&own.bounds), "{surface}");
+            assert_eq!(open_edges(&mut session), 0, "{surface}");
+            let report = session.report();
+            assert_eq!((report.proof.components, report.border), (2, 0), "{surface}");
+            session.choose(OPEN).expect("no solid");
+        }
+    }
+
+    #[test]
+    fn a_thickness_is_a_length() {
+        let mut session = Session::new();
+        for thickness in [-0.1, f64::NAN, f64::INFINITY, 1e13] {
+            let error = session.choose(solid(BoxFaces::Closed, thickness)).expect_err("it is refused");
+            assert!(error.to_string().starts_with("thickness is"), "{error}");
+        }
+        // Of what is constant and of points nothing is made.
+        session.choose(solid(BoxFaces::Closed, 0.1)).expect("a solid");
+        session.set_field(&request(r#"{"formula":"0 x - 1"}"#)).expect("a field");
+        assert_eq!(run(&mut session, &sized(500), u32::MAX), StopReason::Constant);
+    }
+}

@@ -87,13 +87,6 @@ const SOLIDS: [Solid; 14] = [
     ),
 ];
 
-/// Volume that the mesh encloses.
-fn volume(sample: &Sample) -> f64 {
-    let at = |i: u32| sample.particles().place(i as usize);
-    let triangles = sample.mesh().triangles.iter();
-    triangles.map(|&[a, b, c]| at(a).dot(at(b).cross(at(c))) / 6.0).sum()
-}
-
 #[test]
 fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges() {
     for Solid { name, formula, euler, volume: exact, creases } in SOLIDS {
@@ -111,7 +104,7 @@ fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges() {
             assert_eq!(components.len(), 1, "{name}");
             assert_eq!((components[0].euler(), components[0].border_edges), (euler, 0), "{name}");
             // Flat faces lose nothing; round ones their distance from a chord, of the order of the square of the spacing.
-            let found = volume(&sample);
+            let found = sample.volume().expect("a closed mesh");
             let slack = 8.0 / f64::from(count);
             assert!((found / exact - 1.0).abs() <= slack, "{name}: volume {found} for {exact}");
             let rows = sample.particles();

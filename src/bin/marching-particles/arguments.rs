@@ -4,6 +4,7 @@ use crate::options::SamplingOptions;
 use clap::{Args, Parser, Subcommand};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
+use marching_particles::session::{BoxFaces, SolidSettings};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -148,6 +149,17 @@ pub(crate) struct SurfaceArguments {
     pub(crate) thickness: Option<f64>,
 }
 
+impl SurfaceArguments {
+    /// The solid that is to be made of the surface.
+    pub(crate) fn solid(&self) -> SolidSettings {
+        SolidSettings {
+            box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
+            thickness: self.thickness.unwrap_or(0.0),
+            ..SolidSettings::default()
+        }
+    }
+}
+
 /// Choice of the box that is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum BoxChoice {
@@ -200,14 +212,11 @@ pub(crate) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length above 0.
+/// A length that a sheet can have.
 fn thickness(text: &str) -> Result<f64, String> {
-    let thickness: f64 = text.trim().parse().map_err(|_| "give a length, such as 0.2".to_owned())?;
-    if thickness.is_finite() && thickness > 0.0 {
-        Ok(thickness)
-    } else {
-        Err("a thickness is larger than 0".to_owned())
-    }
+    let thickness = number(text)?;
+    SolidSettings { thickness, ..SolidSettings::default() }.validate().map_err(|error| error.to_string())?;
+    Ok(thickness)
 }
 
 fn parameter(text: &str) -> Result<(String, f64), String> {

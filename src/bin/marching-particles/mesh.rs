@@ -16,6 +16,8 @@ pub(crate) struct Mesh {
     pub(crate) holes: usize,
     /// Particles in no triangle.
     pub(crate) left_out: usize,
+    /// Volume that it encloses; none where it is open.
+    pub(crate) volume: Option<f64>,
 }
 
 impl Mesh {
@@ -27,6 +29,7 @@ impl Mesh {
             borders: mesh.borders,
             holes: mesh.unfilled,
             left_out: mesh.left_out,
+            volume: mesh.volume,
         }
     }
 }

@@ -7,7 +7,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
 use marching_particles::math::{Bounds, grouped, shortest_text};
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{Setting, SettingKind, SettingValue, settings};
+use marching_particles::session::{Setting, SettingGroup, SettingKind, SettingValue, settings};
 use marching_particles::{Settings, SettingsError};
 use serde_json::{Map, Value as Json};
 
@@ -17,8 +17,6 @@ const SAMPLING: &str = "sampling";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
-/// The option of this one is `--box`, which takes numbers too.
-const BOX_MODE: &str = "box_mode";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
@@ -53,10 +51,7 @@ impl SamplingOptions {
 
 impl Args for SamplingOptions {
     fn augment_args(command: Command) -> Command {
-        let settings = settings();
-        command.args(
-            settings.iter().filter(|setting| ![SIZE_MODE, BOX_MODE].contains(&setting.name)).map(option),
-        )
+        command.args(settings().iter().filter(|setting| is_of_run(setting)).map(option))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -75,9 +70,7 @@ impl FromArgMatches for SamplingOptions {
         let missing = |name: &str| Error::raw(ErrorKind::InvalidValue, format!("--{name} has no value"));
         for setting in settings() {
             let name = setting.name;
-            if [SIZE_MODE, BOX_MODE].contains(&name)
-                || matches.value_source(name) != Some(ValueSource::CommandLine)
-            {
+            if !is_of_run(&setting) || matches.value_source(name) != Some(ValueSource::CommandLine) {
                 continue;
             }
             let value: Json = match setting.kind {
@@ -101,6 +94,11 @@ impl FromArgMatches for SamplingOptions {
         }
         Ok(())
     }
+}
+
+/// Whether a setting has an option here. Those of the box are among the options of the surface, which say more.
+fn is_of_run(setting: &Setting) -> bool {
+    setting.name != SIZE_MODE && setting.group != SettingGroup::Box
 }
 
 /// The option of a setting.

@@ -13,9 +13,10 @@ use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
+use marching_particles::session::{BoxFaces, SolidSettings};
 use marching_particles::{
-    Bounds, Error, Field, Format, Formula, FormulaError, MeshFormat, Parameter, Phase, Reach, Run, Settings,
-    StopReason, gallery,
+    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Parameter, Phase, Reach,
+    Run, Settings, StopReason, gallery,
 };
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -80,7 +81,8 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     })?;
     seconds.quality = clock.seconds();
     let clock = Stopwatch::start();
-    let mesh = (!mesh_formats.is_empty()).then(|| Mesh::new(&sample.mesh().into()));
+    let mesh =
+        (!mesh_formats.is_empty()).then(|| Mesh::new(&MeshAnswer::new(sample.mesh(), sample.particles())));
     seconds.mesh = clock.seconds();
     let clock = Stopwatch::start();
     for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
@@ -93,6 +95,7 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
 
     let mut report = sample.report().clone();
     report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
+    report.volume = mesh.as_ref().and_then(|mesh| mesh.volume);
     if has_own_box {
         report.cut = None;
     }
@@ -189,7 +192,7 @@ fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure
 fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
     let given = arguments.bounds.and_then(BoxChoice::given);
     if let Some(fit) = fit(arguments, quiet)? {
-        if arguments.closed || arguments.thickness.is_some() {
+        if arguments.solid() != SolidSettings::default() {
             return Err(Failure::Usage(
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));
@@ -213,11 +216,13 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
     let formula = formula(text, named, &arguments.parameters)?;
     // A formula of the user's has neither the name nor the box of the surface that it replaces.
     let surface = named.filter(|surface| surface.formula == text);
-    let own = surface.map(|surface| surface.bounds);
+    let own = surface.map(|surface| arguments.solid().own_box(surface));
     let parameters = formula.parameters().iter().map(|p| (p.name.clone(), p.value)).collect();
     let bounds = match arguments.bounds {
         Some(BoxChoice::Given(bounds)) => Some(bounds),
-        Some(BoxChoice::Fixed) => Some(named.map_or(FORMULA_BOX, |surface| surface.bounds)),
+        Some(BoxChoice::Fixed) => {
+            Some(named.map_or(FORMULA_BOX, |surface| arguments.solid().own_box(surface)))
+        }
         Some(BoxChoice::Fit) | None => own,
     };
     let (formula, bounds) = solid(formula, arguments, bounds);
@@ -235,18 +240,17 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
 /// The formula with what the arguments make of its surface, and the box to sample it in. Around a solid that a box closes there has to be
 /// some room, so that its box is fitted.
 fn solid(
-    mut formula: Formula,
+    formula: Formula,
     arguments: &SurfaceArguments,
     bounds: Option<Bounds>,
 ) -> (Formula, Option<Bounds>) {
-    if let Some(thickness) = arguments.thickness {
-        formula = formula.thickened(thickness);
-    }
-    if !arguments.closed {
+    let solid = arguments.solid();
+    let mut formula = solid.made_of(formula, None);
+    if solid.box_faces == BoxFaces::Open {
         return (formula, bounds);
     }
     let faces = bounds.unwrap_or_else(|| extent::find(&mut formula).bounds);
-    (formula.closed_by(&faces), None)
+    (solid.made_of(formula, Some(&faces)), None)
 }
 
 /// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.

@@ -161,7 +161,8 @@ fn mesh_line(mesh: &Mesh) -> String {
     };
     let [triangles, components] = [(mesh.triangles, "triangle"), (mesh.components, "component")]
         .map(|(count, name)| counted(count, name));
-    format!("{triangles}, {components}, Euler number {}, {borders}", mesh.euler)
+    let volume = mesh.volume.map_or("–".to_owned(), significant);
+    format!("{triangles}, {components}, Euler number {}, {borders}, volume {volume}", mesh.euler)
 }
 
 /// Returns a sentence for each kind of defect of a mesh.

@@ -234,7 +234,9 @@ impl Formula {
         {
             self.simplified = Some(simplified);
             self.use_compiled(compiled);
-            self.make_solid();
+            if self.solid != Solid::default() {
+                self.make_solid();
+            }
         }
         self
     }
@@ -268,11 +270,30 @@ impl Formula {
         self
     }
 
+    /// Field of the surface itself again, after [`Formula::thickened`] and [`Formula::closed_by`].
+    #[must_use]
+    pub fn as_surface(mut self) -> Self {
+        if self.solid != Solid::default() {
+            self.solid = Solid::default();
+            self.make_solid();
+        }
+        self
+    }
+
+    /// Thickness of the sheet that is sampled in place of the surface, see [`Formula::thickened`].
+    #[must_use]
+    pub fn thickness(&self) -> Option<f64> {
+        self.solid.thickness
+    }
+
+    /// The box whose faces close the solid, see [`Formula::closed_by`].
+    #[must_use]
+    pub fn closing_box(&self) -> Option<Bounds> {
+        self.solid.closed
+    }
+
     /// Compiles what the surface is made to, anew from f.
     fn make_solid(&mut self) {
-        if self.solid == Solid::default() {
-            return;
-        }
         let equation = self.simplified.as_ref().unwrap_or(&self.equation);
         let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let mut graph = graph::Graph::default();

@@ -87,6 +87,15 @@ impl Triangulation {
         let agreed = triangles.len();
         Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &particles.twins).await
     }
+
+    /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed units of the coordinates: the sum of
+    /// a · (b × c) / 6 over them, by the divergence theorem. `None` where they are not closed.
+    #[must_use]
+    pub fn volume(&self, particles: &Particles) -> Option<f64> {
+        let at = |i: u32| particles.position[i as usize].as_dvec3();
+        let of = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c))) / 6.0;
+        (!self.triangles.is_empty() && self.topology.is_closed()).then(|| self.triangles.iter().map(of).sum())
+    }
 }
 
 /// Triangles over points, before they are counted.

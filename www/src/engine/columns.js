@@ -36,7 +36,14 @@ export const MEASURED = /** @type {const} */ ([
 
 export class Columns {
   constructor() {
+    /** Number of rows: one for each particle, or one on each side for those on creases. */
     this.count = 0;
+    /** Number of particles. */
+    this.particles = 0;
+    /** Of each row of a particle on a crease, which come first, the first row of that particle; empty without creases. */
+    this.twins = new Uint32Array(0);
+    /** Pairs of rows between which a crease goes on. */
+    this.segments = new Uint32Array(0);
     /** The last generation level. */
     this.lastLevel = 0;
     /**
@@ -95,6 +102,9 @@ export class Columns {
   /** Removes all particles, for a new run. @param {boolean} [adaptive] */
   clear(adaptive = false) {
     this.count = 0;
+    this.particles = 0;
+    this.twins = new Uint32Array(0);
+    this.segments = new Uint32Array(0);
     this.lastLevel = 0;
     this.stale = false;
     this.curved = 0;
@@ -102,6 +112,11 @@ export class Columns {
     this.past = [];
     this.exact = new Float64Array(0);
     this.forget();
+  }
+
+  /** Returns whether a row is a further one of a particle on a crease. @param {number} i */
+  isFurther(i) {
+    return i < this.twins.length && this.twins[i] !== i;
   }
 
   /** The positions that are drawn. */
@@ -157,6 +172,8 @@ export class Columns {
     this.parents.set(range.parents, first);
     this.slots.fill(0, Math.max(first, this.count), first + n);
     this.count = total;
+    this.particles = range.progress?.particles ?? this.particles;
+    if (range.creases) Object.assign(this, range.creases);
     for (const level of range.levels) if (level > this.lastLevel) this.lastLevel = level;
     if (n > 0) this.forget();
     return true;

@@ -164,9 +164,9 @@ export type FieldAnswer = {
   parameters: Array<Parameter>,
   /** Parameters that were not declared but found in the formula. */
   auto: Array<string>,
-  /** Clip box; before [`Session::fit`] or a start it may be that of the formula before. */
+  /** Clip box, whose faces close the solid where they are to; before [`Session::fit`] or a start it may be that of the formula before. */
   bounds: Bounds,
-  /** Whether the surface is bounded, if the box was fitted to it. */
+  /** Whether the surface, closed by no box, is bounded, if the box was fitted to it. */
   reach: Reach | null,
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
@@ -769,7 +769,7 @@ export type Mended = {
   places: number,
 };
 
-/** Counts of a mesh: triangles, components and borders. */
+/** What a mesh adds up to: triangles, components, borders and volume. */
 export type MeshAnswer = {
   /** Number of triangles. */
   triangles: number,
@@ -779,6 +779,8 @@ export type MeshAnswer = {
   unfilled: number,
   /** Number of particles in no triangle. */
   left_out: number,
+  /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
+  volume: number | null,
 };
 
 /** A connected part of a mesh. */
@@ -896,8 +898,10 @@ export type PointsProgress = {
 export type Progress = {
   /** Current phase. */
   phase: Phase,
-  /** Particles in the columns that will stay. */
+  /** Particles in the columns that will stay, each counted once. */
   particles: number,
+  /** Rows of the columns that will stay: one for each particle, or one on each side for those on creases. */
+  rows: number,
   /** Generation level under way. */
   level: number,
   /** Level of the refinement under way, 1 the coarse one; 0 in every other phase. */
@@ -929,6 +933,8 @@ export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 export type Report = {
   /** Number of particles. */
   count: number,
+  /** Volume that the mesh encloses; none where it is open, or the particles are not joined to one. */
+  volume: number | null,
   /** Particles with a child that fell outside of the box. */
   border: number,
   /** Why particles lie at the border of the box. */
@@ -1064,7 +1070,7 @@ export type Setting = {
 };
 
 /** Group of settings that are shown together. */
-export type SettingGroup = "Sampling" | "Advanced";
+export type SettingGroup = "Box" | "Sampling" | "Advanced";
 
 /** Type of the values of a setting. */
 export type SettingKind = "number" | "integer" | "choice";

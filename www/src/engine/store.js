@@ -14,6 +14,7 @@ export const idleProgress = () => ({
   live: false,
   phase: 'idle',
   particles: 0,
+  rows: 0,
   level: 0,
   refine_level: 0,
   refine_levels: 0,

@@ -63,7 +63,7 @@ export type Figures = { [K in (typeof MEASURED)[number]]: NonNullable<Columns[K]
 /** A range of the columns, as the worker posts it: the attributes of particles `first … first + n`. */
 export interface ColumnRange {
   first: number;
-  /** number of particles after this range is written */
+  /** number of rows after this range is written */
   total: number;
   positions: Float32Array;
   /** the positions in double precision, in a box far from the origin; else empty */
@@ -72,6 +72,10 @@ export interface ColumnRange {
   radii: Float32Array;
   levels: Uint32Array;
   parents: Uint32Array;
+  /** the rows on creases and the pairs between which a crease goes on, where they have changed */
+  creases?: Pick<Columns, 'twins' | 'segments'> | null;
+  /** null for columns sent after the run, of as many particles */
+  progress?: CoreProgress | null;
 }
 
 /** `points` names a solved model; with it only the clip box counts. */

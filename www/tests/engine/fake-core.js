@@ -64,6 +64,7 @@ export function fakeCore({
   const progress = (moved = false) => ({
     phase: stop ? 'done' : count < target ? 'generation' : refined_levels ? 'refinement' : 'relaxation',
     particles: count,
+    rows: count,
     level: Math.floor(Math.sqrt(count)),
     refine_level: Math.floor(refined) + 1,
     refine_levels: refined_levels,
@@ -182,6 +183,8 @@ export function fakeCore({
     count: () => count,
     positions: (/** @type {number} */ from) => column(from, 3, Float32Array),
     exact_positions: () => new Float64Array(0),
+    twins: () => new Uint32Array(0),
+    segments: () => new Uint32Array(0),
     normals: (/** @type {number} */ from) => column(from, 3, Float32Array),
     radii: (/** @type {number} */ from) => column(from, 1, Float32Array),
     levels: (/** @type {number} */ from) => column(from, 1, Uint32Array),
@@ -213,6 +216,7 @@ export function fakeCore({
         components: [{ triangles: 1, euler: 1, open_edges: 3 }],
         unfilled: 0,
         left_out: count - 3,
+        volume: null,
       };
     },
     triangles: () => Uint32Array.of(0, 1, 2),

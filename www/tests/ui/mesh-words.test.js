@@ -6,18 +6,20 @@ beforeAll(() => setLocale('en'));
 
 /**
  * @param {[number, number][]} components  Euler number and open edges
- * @param {{unfilled?: number, left_out?: number}} [more]
+ * @param {{unfilled?: number, left_out?: number, volume?: number | null}} [more]
  */
 const mesh = (components, more) => ({
   triangles: 0,
   components: components.map(([euler, open]) => ({ triangles: 0, euler, open_edges: open })),
   unfilled: 0,
   left_out: 0,
+  volume: null,
   ...more,
 });
 
 it('a mesh is told in a line: closed or where it is open, and its topology', () => {
   expect(meshWords(mesh([[2, 0]]))).toBe('Closed mesh · Euler number 2');
+  expect(meshWords(mesh([[2, 0]], { volume: 4.18879 }))).toBe('Closed mesh · Euler number 2 · volume 4.189');
   expect(meshWords(mesh([[-8, 1204]]))).toBe('Mesh · 1,204 open edges · Euler number −8');
   expect(
     meshWords(

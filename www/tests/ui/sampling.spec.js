@@ -12,7 +12,7 @@ test('the settings', async ({ page }) => {
       () => /** @type {any} */ (window).marchingParticles.engine.description.value.settings,
     );
     // The mode of the box is set where the box is.
-    const shown = settings.filter((/** @type {{ name: string }} */ { name }) => name !== 'box_mode');
+    const shown = settings.filter((/** @type {{ group: string }} */ { group }) => group !== 'Box');
     await expect(page.locator('.setting')).toHaveCount(shown.length);
     await page.getByRole('button', { name: 'Advanced' }).click();
     for (const { name, label, help } of shown) {

@@ -9,7 +9,8 @@ import { description } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { EngineCommands, FieldRequest } from '../types.js'
+ * @import { SampleRequest } from '../sampling/types.js'
+ * @import { EngineCommands } from '../types.js'
  */
 
 /** Largest width or height of a saved picture. */
@@ -62,7 +63,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     async exportFile(format) {
       const { shown } = runs.sampling;
       if (!shown) throw new Error('There is no surface.');
-      const what = titleOf(shown.request.field);
+      const what = titleOf(shown.request);
       const { csv, ply } = await fetchExports();
       const { columns: all } = description(store);
       return format === 'csv' ? csv(columns, all) : ply(columns, all, { comment: `Marching Particles, ${what}` });
@@ -73,10 +74,12 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     },
   };
 
-  /** Returns a description of a field for the header of a file. @param {FieldRequest} field */
-  function titleOf(field) {
+  /** Returns a description of what was sampled for the header of a file. @param {SampleRequest} request */
+  function titleOf({ field, settings }) {
     const model = field.points && runs.loader.client.get(field.points)?.info.info;
     if (model) return `${model.name}, interpolated from ${model.centres} of ${model.points} points`;
-    return `f = ${field.formula ?? surfaceOf(description(store), field.surface ?? '')?.formula}`;
+    const formula = `f = ${field.formula ?? surfaceOf(description(store), field.surface ?? '')?.formula}`;
+    const thickness = Number(settings.thickness) > 0 ? `a sheet of thickness ${settings.thickness} around ` : '';
+    return `${thickness}${formula}${settings.box_faces === 'closed' ? ', closed by its box' : ''}`;
   }
 }

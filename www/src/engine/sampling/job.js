@@ -56,6 +56,7 @@ const bare = (core, id) => ({
   curvatureFrom: 0,
   curvature: new Float32Array(0),
   mesh: null,
+  creases: null,
   progress: null,
 });
 
@@ -120,7 +121,7 @@ class JobRun {
     this.past = [];
     this.#beatMs = 0;
     /** The page has columns of `count` particles, and the final fates of all slots if `settled`. */
-    this.sent = { count: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
+    this.sent = { count: 0, onCreases: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
   }
 
   /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [reportFollows] */
@@ -287,6 +288,9 @@ class JobRun {
     const curvatureFrom = sent.curved;
     const curvature = env.curvature() ? core.curvature(curvatureFrom) : new Float32Array(0);
     sent.curved += curvature.length / 2;
+    const twins = core.twins();
+    const creases = first === 0 || twins.length !== sent.onCreases ? { twins, segments: core.segments() } : null;
+    sent.onCreases = twins.length;
     const columns = {
       positions: core.positions(first),
       exact: core.exact_positions(first),
@@ -298,8 +302,10 @@ class JobRun {
       curvature,
     };
     env.post(
-      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, mesh, progress },
-      [...Object.values(columns), ...(mesh ? [mesh.triangles] : [])].map((c) => c.buffer),
+      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, mesh, creases, progress },
+      [...Object.values(columns), ...(mesh ? [mesh.triangles] : []), ...Object.values(creases ?? {})].map(
+        (c) => c.buffer,
+      ),
     );
     // The fates of a particle's slots are decided after the particle is sent, so the next message repeats them.
     sent.slotsFrom = first;

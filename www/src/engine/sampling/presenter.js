@@ -47,7 +47,7 @@ export class Presenter {
    */
   idle(more = {}) {
     const { columns, store } = this;
-    store.progress.value = { ...idleProgress(), particles: columns.stale ? 0 : columns.count, ...more };
+    store.progress.value = { ...idleProgress(), particles: columns.stale ? 0 : columns.particles, ...more };
   }
 
   /**
@@ -110,6 +110,9 @@ export class Presenter {
       picture.meshed();
     }
     store.mesh.value = columns.mesh?.about ?? null;
+    // The mesh may have been asked for after the report.
+    if (store.report.value && columns.mesh)
+      store.report.value = { ...store.report.value, volume: columns.mesh.about.volume };
     if (message.curvature.length > 0) {
       columns.writeCurvature(message.curvatureFrom, message.curvature);
       picture.recolour(message.curvatureFrom, columns.count);

@@ -75,7 +75,6 @@ export interface ColumnsMessage extends ColumnRange {
   curvature: Float32Array;
   /** null unless the page draws it and the run is over */
   mesh: Mesh | null;
-  /** null for columns sent after the run */
   progress: CoreProgress | null;
 }
 /** The positions before each relaxation step of the run, or before the first alone where there are many particles. */

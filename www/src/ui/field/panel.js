@@ -8,6 +8,7 @@ import { createGallery } from './gallery.js';
 import { createLoading } from './loading.js';
 import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
+import { createSolid } from './solid.js';
 import { storyOf } from './story.js';
 
 /**
@@ -31,6 +32,7 @@ export function mountField(body, engine, description, motion) {
     createModel(engine, description),
     createParameters(engine, motion),
     ...createClipBox(engine),
+    createSolid(engine, description),
     createCuttingPlane(engine),
   );
 }

@@ -11,7 +11,7 @@ import { formatCount, formatSignificant, plural } from '../format.js';
 import { surfaceWords } from '../surface-link.js';
 import { nearest, standIn } from './find.js';
 import { Relaxation } from './rest.js';
-import { alikeIn, settingsOf, surfaceKey } from './run.js';
+import { alikeIn, isOfSolid, settingsOf, surfaceKey } from './run.js';
 
 /**
  * @import { Engine, LessonClient, ReadonlySignal, Signal, Vec3 } from '../../engine/types.js'
@@ -25,6 +25,7 @@ import { alikeIn, settingsOf, surfaceKey } from './run.js';
 
 /** The least factor by which the radius of a coarser run grows. */
 const LEAST_COARSER = 1.25;
+const OF_SURFACES = 'Particles of solids cannot be followed: the paper’s algorithm runs on the surface of the formula.';
 
 export class Follower {
   #say;
@@ -170,14 +171,16 @@ export class Follower {
     const { engine } = this;
     const mine = this.#next();
     const surface = engine.lessonSurface();
+    const isSolid = isOfSolid(engine);
     batch(() => {
       this.opened.value = null;
       this.run.value = null;
-      this.status.value = surface
-        ? { kind: 'running', particles: 0 }
-        : { kind: 'failed', text: 'The surface is still being loaded.' };
+      this.status.value =
+        surface && !isSolid
+          ? { kind: 'running', particles: 0 }
+          : { kind: 'failed', text: isSolid ? OF_SURFACES : 'The surface is still being loaded.' };
     });
-    if (!surface) return null;
+    if (!surface || isSolid) return null;
     try {
       this.client ??= await engine.openLesson({
         onProgress: ({ particles }) => {

@@ -32,6 +32,11 @@ const SIZES = ['radius_law', 'chord_error', 'curvature_scale', 'radius_min_share
 export const settingOf = ({ state, description }, name) =>
   state.value.settings[name] ?? description.value?.settings.find((setting) => setting.name === name)?.default;
 
+/** Returns whether the picture is of a solid that is made of the surface. @param {Engine} engine */
+export const isOfSolid = (engine) =>
+  engine.field.peek()?.kind === 'formula' &&
+  (settingOf(engine, 'box_faces') === 'closed' || Number(settingOf(engine, 'thickness')) > 0);
+
 /**
  * Returns what a run is asked for, with the sizes of the picture. Adaptive particles have the law of the picture, as it
  * is: the paper has nothing that grades it.
@@ -65,7 +70,8 @@ export function surfaceKey(engine) {
   const values = parameters?.map(({ name, value }) => [name, value]);
   const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
   const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
-  return JSON.stringify([kind, formula, values, bounds, surface, model, sizes]);
+  const solid = [settingOf(engine, 'box_faces'), settingOf(engine, 'thickness')];
+  return JSON.stringify([kind, formula, values, bounds, surface, model, sizes, solid]);
 }
 
 /** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */

@@ -5,14 +5,14 @@
 /** The setting on which the others depend. It is shown first. */
 const KIND = 'sampling';
 const ADVANCED = 'Advanced';
-/** The setting that is shown with the clip box. */
-const BOX = 'box_mode';
+/** The settings that are shown with the clip box. */
+const BOX = 'Box';
 /** Largest number of letters in a segmented control. */
 const SEGMENTED_LETTERS = 24;
 
 /** @param {SettingInfo[]} settings */
 export function arrange(settings) {
-  const rest = settings.filter(({ name }) => name !== KIND && name !== BOX);
+  const rest = settings.filter(({ name, group }) => name !== KIND && group !== BOX);
   return {
     kind: settings.find(({ name }) => name === KIND) ?? null,
     plain: rest.filter(({ group }) => group !== ADVANCED),

@@ -1,5 +1,5 @@
 /** Says in one line what a mesh adds up to, and where it is open or leaves particles out. */
-import { formatCount, plural } from '../format.js';
+import { formatCount, formatSignificant, plural } from '../format.js';
 
 /** @import { MeshAnswer } from '../../engine/types.js' */
 
@@ -7,7 +7,7 @@ import { formatCount, plural } from '../format.js';
 const MOST_TOLD = 3;
 
 /** @param {MeshAnswer} mesh */
-export function meshWords({ components, unfilled, left_out }) {
+export function meshWords({ components, unfilled, left_out, volume }) {
   if (components.length === 0) return 'Nothing to join to a mesh';
   const open = components.reduce((sum, component) => sum + component.open_edges, 0);
   const euler = components.map((component) => formatCount(component.euler));
@@ -23,6 +23,7 @@ export function meshWords({ components, unfilled, left_out }) {
     components.length > MOST_TOLD
       ? `Euler numbers add up to ${formatCount(sum)}`
       : `Euler number${euler.length > 1 ? 's' : ''} ${euler.join(', ')}`,
+    volume === null ? '' : `volume ${formatSignificant(volume, 4)}`,
     unfilled > 0 ? `${plural(unfilled, 'hole')} where sheets meet or particles are too sparse` : '',
     left_out > 0 ? `${plural(left_out, 'particle')} left out` : '',
   ]

@@ -29,7 +29,7 @@ export class Core {
      */
     component(): Uint32Array<ArrayBuffer>;
     /**
-     * Number of particles.
+     * Rows of the columns: particles, those on creases once on each side.
      */
     count(): number;
     /**
@@ -120,6 +120,10 @@ export class Core {
      */
     residual(): Float32Array<ArrayBuffer>;
     /**
+     * The pairs of rows between which a crease goes on, two each; none without creases.
+     */
+    segments(): Uint32Array<ArrayBuffer>;
+    /**
      * Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
      */
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
@@ -145,6 +149,10 @@ export class Core {
      * The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
      */
     triangles(): Uint32Array<ArrayBuffer>;
+    /**
+     * For the rows of particles on creases, which come first, the first row of the same particle; nothing without creases.
+     */
+    twins(): Uint32Array<ArrayBuffer>;
     /**
      * Natural neighbours per particle, as of the last report.
      */

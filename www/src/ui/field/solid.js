@@ -1,0 +1,77 @@
+/** The choices of the solid that is made of the surface of a formula: closed by the clip box, a sheet of some thickness. */
+import { computed, signal } from '@preact/signals-core';
+import { readThickness } from '../box.js';
+import { h, live, uniqueId } from '../dom.js';
+import { explain } from '../explain.js';
+
+/** @import { Description, Engine, SettingInfo } from '../../engine/types.js' */
+
+const FACES = 'box_faces';
+const THICKNESS = 'thickness';
+const CLOSED = 'closed';
+
+/** @param {Engine} engine @param {Description} description */
+export function createSolid(engine, { settings }) {
+  const chosen = computed(() => engine.state.value.settings);
+  const about = (/** @type {string} */ name) => {
+    const { label, help } = /** @type {SettingInfo} */ (settings.find((info) => info.name === name));
+    return { title: label, text: help };
+  };
+  const closed = h(
+    'label',
+    { class: 'check' },
+    h('input', {
+      type: 'checkbox',
+      prop: { checked: () => chosen.value[FACES] === CLOSED },
+      on: {
+        change: ({ currentTarget }) =>
+          currentTarget.checked ? engine.setSetting(FACES, CLOSED) : engine.resetSetting(FACES),
+      },
+    }),
+    'Closed',
+  );
+  const wrong = signal('');
+  const told = uniqueId('thickness');
+  const box = h('input', {
+    type: 'text',
+    class: 'box',
+    inputmode: 'decimal',
+    placeholder: 'none',
+    autocomplete: 'off',
+    'aria-describedby': told,
+    'aria-invalid': () => String(wrong.value !== ''),
+    on: { change: () => commit() },
+  });
+  const thickness = h('label', { class: 'check' }, 'Thickness', box);
+  function commit() {
+    const value = readThickness(box.value);
+    wrong.value = value === null ? 'A thickness is a number from 0 on, in the units of x, y and z.' : '';
+    if (value === 0) engine.resetSetting(THICKNESS);
+    else if (value !== null) engine.setSetting(THICKNESS, value);
+  }
+  live(box, () => {
+    const value = Number(chosen.value[THICKNESS] ?? 0);
+    box.value = value > 0 ? String(value) : '';
+    wrong.value = '';
+  });
+  const help = () => ({
+    title: 'Closed',
+    text: `${about(FACES).text} With a thickness the sheet is closed.`,
+  });
+  return h(
+    'div',
+    {
+      class: 'section solid',
+      role: 'group',
+      'aria-label': 'Solid',
+      hidden: () => engine.field.value?.kind === 'points',
+    },
+    h(
+      'div',
+      { class: 'section-head' },
+      explain(closed, help, { side: 'above' }),
+      explain(thickness, () => about(THICKNESS), { side: 'above' }),
+    ),
+    h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () => wrong.value),
+  );
+}
