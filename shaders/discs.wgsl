@@ -44,6 +44,9 @@ const CLOSED = 1.26;
 // which blend them, and the far side of the surface does not. Every pixel thus averages the points of the nearest
 // sheet.
 const POINT_DEPTH = 2.0;
+// Radius of the dot of a particle on a crease, as a share of that of a disc: it is a bead on the line, which covers no neighbour. It is
+// drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
+const DOT = 0.5;
 // Smaller semi-axis in pixels up to which a disc covers no pixel completely, and from which it does.
 const WIDE_PX = vec2<f32>(0.7, 1.7);
 // Coverage from which a pixel belongs to the core: of a point, of a narrow disc, of a wide disc.
@@ -103,13 +106,14 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let appear = age * age * (3.0 - 2.0 * age);
     let opacity = appear * particle.colour.a;
     let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || particle.level > frame.appearance.level || opacity <= NOTHING || centre.w <= 0.0
+    if particle.radius == 0.0 || particle.level > frame.appearance.level || opacity <= NOTHING || centre.w <= 0.0
         || beyond_plane(particle.position) > 0.0 {
         return out;
     }
 
-    let outward = oct_decode(particle.normal_oct);
     let v = toward_eye(particle.position);
+    let is_dot = particle.radius < 0.0;
+    let outward = select(oct_decode(particle.normal_oct), v, is_dot);
     let behind = dot(outward, v) < 0.0;
     if side * select(1.0, -1.0, behind) < 0.0 {
         return out;
@@ -119,7 +123,7 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let b = cross(n, t);
     let clip_t = clip_direction(t);
     let clip_b = clip_direction(b);
-    let plain_r = particle.radius * frame.look.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    let plain_r = abs(particle.radius) * select(1.0, DOT, is_dot) * frame.look.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
     let plain_px = plain_r * moved_px(centre, clip_t);
     let swell = mix(CLOSED, 1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, length(plain_px)));
     let r = swell * plain_r;
@@ -136,7 +140,7 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let on_screen = corner * (reach - min(reach, vec2<f32>(MAX_REACH))) * axes;
     out.clip = centre + r * (in_plane.x * clip_t + in_plane.y * clip_b);
     out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.camera.viewport * out.clip.w, 0.0, 0.0);
-    let deeper = out.clip - point_depth * pointness(axes) * r * clip_direction(v);
+    let deeper = out.clip - (point_depth * pointness(axes) - select(0.0, 1.0, is_dot)) * r * clip_direction(v);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
 
     out.uv = corner * reach;
@@ -228,13 +232,14 @@ fn vs_ring(@builtin(vertex_index) vertex: u32, particle: Particle) -> Ring {
     var out: Ring;
     out.clip = hidden();
     let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || centre.w <= 0.0 {
+    if particle.radius == 0.0 || centre.w <= 0.0 {
         return out;
     }
-    let n = oct_decode(particle.normal_oct);
     let v = toward_eye(particle.position);
+    let is_dot = particle.radius < 0.0;
+    let n = select(oct_decode(particle.normal_oct), v, is_dot);
     let t = facing_axis(n, v);
-    let r = particle.radius * frame.look.disc_scale;
+    let r = abs(particle.radius) * select(1.0, DOT, is_dot) * frame.look.disc_scale;
     let a_px = r * moved_px(centre, clip_direction(t));
     let a = max(length(a_px), 1e-4);
     let squash = max(abs(dot(n, v)), RING_SQUASH);

@@ -1,4 +1,4 @@
-//! Layout of the instance records, one per particle and one per face of a mesh.
+//! Layout of the instance records, one per particle, one per face of a mesh and one per piece of a crease.
 //!
 //! The pipelines are built from the tables of attributes, and a test compares the tables with the WGSL.
 
@@ -14,7 +14,8 @@ use core::mem::offset_of;
 pub struct Record {
     /// World position.
     pub position: [f32; 3],
-    /// Repulsion radius in world units. A particle with radius 0 is not drawn.
+    /// Repulsion radius in world units. A particle with radius 0 is not drawn. A negative radius is that of a particle on a crease,
+    /// which is drawn as a dot that faces the eye.
     pub radius: f32,
     /// Unit normal in the octahedral encoding, as two signed normalised 16-bit integers. The largest error is 0.004°.
     pub normal: [i16; 2],
@@ -30,11 +31,11 @@ pub const COLOUR_STRIDE: usize = 4;
 impl Record {
     /// Packs a particle. `level` is `u32::MAX` for a particle without a level.
     ///
-    /// `normal` need not have unit length; a zero or non-finite one counts as +z. A non-finite position or radius, or a
-    /// radius that is not positive, gives a record that is not drawn.
+    /// `normal` need not have unit length; a zero or non-finite one counts as +z. A non-finite position or radius gives a record that is
+    /// not drawn.
     #[must_use]
     pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32, level: u32) -> Self {
-        let drawable = radius > 0.0 && radius.is_finite() && position.iter().all(|c| c.is_finite());
+        let drawable = radius.is_finite() && position.iter().all(|c| c.is_finite());
         Self {
             position: if drawable { position } else { [0.0; 3] },
             radius: if drawable { radius } else { 0.0 },
@@ -80,6 +81,20 @@ impl FaceRecord {
         }
     }
 }
+
+/// Instance record of a piece of a crease without its colour: 32 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LineRecord {
+    /// World position of each end, and the repulsion radius of the particle there.
+    pub ends: [[f32; 4]; 2],
+}
+
+/// Vertex attributes of a [`LineRecord`].
+pub const LINE_ATTRIBUTES: [Attribute; 2] = [
+    Attribute { location: 0, offset: 0, format: AttributeFormat::Float32x4 },
+    Attribute { location: 1, offset: 16, format: AttributeFormat::Float32x4 },
+];
 
 /// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point
 /// Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
@@ -237,7 +252,6 @@ mod tests {
             ([f32::NAN, 0.0, 0.0], 1.0),
             ([0.0, f32::INFINITY, 0.0], 1.0),
             ([0.0; 3], 0.0),
-            ([0.0; 3], -1.0),
             ([0.0; 3], f32::NAN),
             ([0.0; 3], f32::INFINITY),
         ] {
@@ -266,11 +280,12 @@ mod tests {
 
     #[test]
     fn attributes_tile_their_records_without_gap_or_overlap() {
-        let tables: [(&[Attribute], usize); 4] = [
+        let tables: [(&[Attribute], usize); 5] = [
             (&RECORD_ATTRIBUTES, size_of::<Record>()),
             (&COLOUR_ATTRIBUTES, COLOUR_STRIDE),
             (&FACE_ATTRIBUTES, size_of::<FaceRecord>()),
             (&TINT_ATTRIBUTES, size_of::<FaceTint>()),
+            (&LINE_ATTRIBUTES, size_of::<LineRecord>()),
         ];
         for (table, size) in tables {
             let mut at = 0;

@@ -36,6 +36,9 @@ pub(super) struct Scene<'a> {
     /// Number of particles.
     pub(super) count: u32,
     pub(super) faces: Option<Faces<'a>>,
+    /// The pieces of creases, and their number.
+    pub(super) lines: &'a Store,
+    pub(super) line_count: u32,
     /// Index of a particle that is marked by a ring.
     pub(super) outline: Option<u32>,
     /// Whether the edges of the clip box are drawn.
@@ -158,6 +161,10 @@ impl Scene<'_> {
         for pipeline in [&pipelines.core, behind, front] {
             pass.set_pipeline(pipeline);
             draw_instances(pass, self.particles, 4, first_disc..self.count);
+        }
+        if self.line_count > 0 {
+            pass.set_pipeline(&pipelines.creases);
+            draw_instances(pass, self.lines, 4, 0..self.line_count);
         }
         if self.clip_box {
             pass.set_pipeline(&pipelines.clip_box);

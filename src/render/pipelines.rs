@@ -3,9 +3,9 @@
 use super::frame::Frame;
 use super::layout::{
     Attribute, AttributeFormat, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint,
-    RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
+    LINE_ATTRIBUTES, LineRecord, RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
 };
-use super::shaders::{BOX, DISCS, FACES};
+use super::shaders::{DISCS, FACES, LINES};
 
 /// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -34,6 +34,8 @@ pub(super) struct Pipelines {
     pub(super) ring: wgpu::RenderPipeline,
     /// Blends the edges of the clip box, with depth test, without depth writes.
     pub(super) clip_box: wgpu::RenderPipeline,
+    /// Blends the creases, with depth test, without depth writes.
+    pub(super) creases: wgpu::RenderPipeline,
 }
 
 /// Format and sample count of the texture that a pipeline draws into.
@@ -64,7 +66,7 @@ struct PipelineSpec<'a> {
 impl Pipelines {
     /// Compiles the pipelines for a target.
     pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, target: TargetKind) -> Self {
-        let [discs, faces, edges] = [DISCS, FACES, BOX].map(|shader| {
+        let [discs, faces, lines] = [DISCS, FACES, LINES].map(|shader| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(shader.name),
                 source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
@@ -80,6 +82,7 @@ impl Pipelines {
         let colour = COLOUR_ATTRIBUTES.map(vertex_attribute);
         let corners = FACE_ATTRIBUTES.map(vertex_attribute);
         let tint = TINT_ATTRIBUTES.map(vertex_attribute);
+        let ends = LINE_ATTRIBUTES.map(vertex_attribute);
         let instance = |stride: usize| wgpu::VertexBufferLayout {
             array_stride: stride as u64,
             step_mode: wgpu::VertexStepMode::Instance,
@@ -92,6 +95,10 @@ impl Pipelines {
         let triangles = [
             Some(wgpu::VertexBufferLayout { attributes: &corners, ..instance(size_of::<FaceRecord>()) }),
             Some(wgpu::VertexBufferLayout { attributes: &tint, ..instance(size_of::<FaceTint>()) }),
+        ];
+        let pieces = [
+            Some(wgpu::VertexBufferLayout { attributes: &ends, ..instance(size_of::<LineRecord>()) }),
+            Some(wgpu::VertexBufferLayout { attributes: &colour, ..instance(COLOUR_STRIDE) }),
         ];
         let disc = PipelineSpec {
             label: "disc core",
@@ -147,10 +154,19 @@ impl Pipelines {
             }),
             clip_box: make(PipelineSpec {
                 label: "clip box",
-                shader: &edges,
+                shader: &lines,
                 vertex: "vs_box",
-                fragment: "fs_box",
+                fragment: "fs_line",
                 buffers: &[],
+                depth_write: false,
+                ..disc
+            }),
+            creases: make(PipelineSpec {
+                label: "creases",
+                shader: &lines,
+                vertex: "vs_crease",
+                fragment: "fs_line",
+                buffers: &pieces,
                 depth_write: false,
                 ..disc
             }),

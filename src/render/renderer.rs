@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::gpu::{Callbacks, CreateError, Gpu};
-use super::layout::{COLOUR_STRIDE, FaceRecord, FaceTint, Record};
+use super::layout::{COLOUR_STRIDE, FaceRecord, FaceTint, LineRecord, Record};
 use super::painter::{Canvas, Faces, Painter, Scene};
 use super::pixels::{padded_row, straight_rgba};
 use super::screen::Screen;
@@ -70,6 +70,9 @@ struct Content {
     /// Number of faces that are drawn, and of particles that they stand for.
     face_count: u32,
     face_particles: u32,
+    lines: Store,
+    /// Number of pieces of creases.
+    line_count: u32,
     /// Buffer in which records are packed before they are uploaded.
     scratch: Vec<Record>,
     face_scratch: Vec<FaceRecord>,
@@ -132,6 +135,8 @@ impl Renderer {
             faces: Store::new(size_of::<FaceRecord>(), size_of::<FaceTint>()),
             face_count: 0,
             face_particles: 0,
+            lines: Store::new(size_of::<LineRecord>(), COLOUR_STRIDE),
+            line_count: 0,
             scratch: Vec::new(),
             face_scratch: Vec::new(),
         };
@@ -286,6 +291,24 @@ impl Renderer {
         }
     }
 
+    /// Draws these pieces of creases from now on: eight numbers each, the position of either end and the radius of the particle
+    /// there, and a colour, sRGB as 0xAABBGGRR.
+    ///
+    /// # Panics
+    ///
+    /// If the columns differ in length or there are more than [`Renderer::MAX_PARTICLES`].
+    pub fn write_lines(&mut self, ends: &[f32], colours: &[u32]) {
+        assert_eq!(ends.len(), 8 * colours.len(), "numbers of ends, for as many colours times 8");
+        if self.is_lost() {
+            return;
+        }
+        let (gpu, content) = (&self.gpu, &mut self.content);
+        content.line_count = colours.len() as u32;
+        content.lines.reserve(&gpu.device, &gpu.queue, content.line_count);
+        content.lines.write(&gpu.queue, Part::Records, 0, bytemuck::cast_slice(ends));
+        content.lines.write(&gpu.queue, Part::Colours, 0, bytemuck::cast_slice(colours));
+    }
+
     /// Sets the camera, which must be made for the current size of the surface.
     pub fn set_view(&mut self, view: View) {
         self.view = view;
@@ -401,6 +424,8 @@ impl Renderer {
             particles: &content.particles,
             count: content.count,
             faces: has_faces.then_some(faces),
+            lines: &content.lines,
+            line_count: content.line_count,
             outline: style.outline,
             clip_box: style.clip_box.is_some(),
             is_cut: style.plane.is_some(),

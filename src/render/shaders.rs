@@ -33,14 +33,14 @@ macro_rules! shader {
 pub const COMMON: &str = "common.wgsl";
 
 /// All shaders. A test checks that they are the files in `shaders/`.
-pub const SHADERS: [Shader; 3] = [DISCS, FACES, BOX];
+pub const SHADERS: [Shader; 3] = [DISCS, FACES, LINES];
 
 /// Draws particles as discs, and a ring around one of them.
 pub const DISCS: Shader = shader!("discs.wgsl");
 /// Draws the triangles of a mesh.
 pub const FACES: Shader = shader!("faces.wgsl");
-/// Draws the edges of the clip box.
-pub const BOX: Shader = shader!("box.wgsl");
+/// Draws the edges of the clip box, and the creases of a surface.
+pub const LINES: Shader = shader!("lines.wgsl");
 
 /// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns
 /// the length of the whole.

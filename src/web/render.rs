@@ -116,7 +116,7 @@ impl Renderer {
 
     /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
     ///
-    /// Three numbers per particle in `positions` and `normals`; a level of 4294967295 stands for none, and such a
+    /// Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level of 4294967295 stands for none, and such a
     /// particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of `draw`;
     /// -Infinity shows them at once.
     ///
@@ -228,6 +228,25 @@ impl Renderer {
     /// Without faces there are discs.
     pub fn set_faces(&self, count: u32, particles: u32) {
         self.inner.borrow_mut().set_faces(count, particles);
+    }
+
+    /// Draws these pieces of creases from now on: eight numbers each in `ends`, the position of either end and the radius of the
+    /// particle there; `colours` are 0xAABBGGRR, sRGB.
+    ///
+    /// # Errors
+    ///
+    /// Throws where the columns disagree in length or there are more pieces than `max_particles()`.
+    pub fn write_lines(&self, ends: &Float32Array, colours: &Uint32Array) -> Result<(), JsError> {
+        let count = colours.length();
+        check_end(0, count)?;
+        if ends.length() != 8 * count {
+            return Err(JsError::new(&format!("{} numbers of ends for {count} lines", ends.length())));
+        }
+        let mut scratch = self.scratch.borrow_mut();
+        copy(ends, &mut scratch.positions);
+        copy_words(colours, &mut scratch.colours);
+        self.inner.borrow_mut().write_lines(&scratch.positions, &scratch.colours);
+        Ok(())
     }
 
     /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing direction (3) in world

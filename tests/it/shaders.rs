@@ -5,8 +5,8 @@ use marching_particles::Settings;
 use marching_particles::render::chunks::{CHUNK, MOST_RECORDS};
 use marching_particles::render::frame::Frame;
 use marching_particles::render::layout::{
-    Attribute, COLOUR_ATTRIBUTES, FACE_ATTRIBUTES, FaceRecord, FaceTint, RECORD_ATTRIBUTES, Record,
-    TINT_ATTRIBUTES,
+    Attribute, COLOUR_ATTRIBUTES, FACE_ATTRIBUTES, FaceRecord, FaceTint, LINE_ATTRIBUTES, RECORD_ATTRIBUTES,
+    Record, TINT_ATTRIBUTES,
 };
 use marching_particles::render::shaders::{COMMON, SHADERS, Shader};
 use naga::back::glsl;
@@ -162,14 +162,14 @@ fn vertex_inputs_match_the_attribute_tables() {
     let mut checked = 0;
     for (name, module, _) in shaders() {
         for entry in module.entry_points.iter().filter(|entry| entry.stage == ShaderStage::Vertex) {
-            let mut is_face = false;
+            let mut of = None;
             let inputs: Vec<(u32, usize)> = entry
                 .function
                 .arguments
                 .iter()
                 .filter_map(|argument| match &module.types[argument.ty].inner {
                     TypeInner::Struct { members, .. } => {
-                        is_face |= module.types[argument.ty].name.as_deref() == Some("Face");
+                        of = module.types[argument.ty].name.as_deref();
                         Some(members)
                     }
                     _ => None,
@@ -185,10 +185,10 @@ fn vertex_inputs_match_the_attribute_tables() {
             if inputs.is_empty() {
                 continue;
             }
-            let [records, colours]: [&[Attribute]; 2] = if is_face {
-                [&FACE_ATTRIBUTES, &TINT_ATTRIBUTES]
-            } else {
-                [&RECORD_ATTRIBUTES, &COLOUR_ATTRIBUTES]
+            let [records, colours]: [&[Attribute]; 2] = match of {
+                Some("Face") => [&FACE_ATTRIBUTES, &TINT_ATTRIBUTES],
+                Some("Piece") => [&LINE_ATTRIBUTES, &COLOUR_ATTRIBUTES],
+                _ => [&RECORD_ATTRIBUTES, &COLOUR_ATTRIBUTES],
             };
             let table: Vec<(u32, usize)> = records
                 .iter()
@@ -199,7 +199,7 @@ fn vertex_inputs_match_the_attribute_tables() {
             checked += 1;
         }
     }
-    assert!(checked >= 3, "{checked} vertex stages read particles or faces");
+    assert!(checked >= 4, "{checked} vertex stages read particles, faces or creases");
 }
 
 /// Number of `f32` components.

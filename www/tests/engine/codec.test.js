@@ -21,6 +21,7 @@ const elaborate = () => ({
     colour: 'valence',
     size: 0.8,
     draw: 'mesh',
+    creases: false,
     faces: 'flat',
     edges: false,
     marks: false,

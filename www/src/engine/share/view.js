@@ -78,6 +78,8 @@ export const VIEW = {
   edges: flag(true, 'edges of the mesh'),
   /** Whether vertices of a mesh without six neighbours are marked. */
   marks: flag(true, 'marks on the mesh'),
+  /** Whether lines are drawn along the creases of a surface. */
+  creases: flag(true, 'creases'),
   theme: choice('theme', ['auto', 'light', 'dark']),
   /** Whether the surface is drawn faintly beneath the discs. */
   ghost: flag(false, 'surface beneath the discs'),

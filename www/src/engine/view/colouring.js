@@ -74,10 +74,11 @@ function onRamp(ramp, v, low, high) {
   return ramp[Math.round(t * (ramp.length - 1)) || 0];
 }
 
+const AT_BOX = 'at the clip box';
 /** Labels of the classes of slots and of valence, in the order of the legend. */
 const FATE_LABELS = /** @type {const} */ ([
   ['interior', 'all slots filled'],
-  ['border', 'at the clip box'],
+  ['border', AT_BOX],
   ['trouble', 'a slot without a point'],
   ['capped', 'limit reached'],
   ['front', 'still on the front'],
@@ -96,12 +97,13 @@ const VALENCE_LABELS = /** @type {const} */ ([
  * @template {string} K
  * @param {readonly (readonly [K, string])[]} labels
  * @param {Record<K, number>} colours
- * @param {number} count
+ * @param {Columns} columns
  * @param {(i: number) => K} classOf
  */
-function categories(labels, colours, count, classOf) {
+function categories(labels, colours, columns, classOf) {
   const counts = new Map();
-  for (let i = 0; i < count; i += 1) {
+  for (let i = 0; i < columns.count; i += 1) {
+    if (columns.isFurther(i)) continue;
     const k = classOf(i);
     counts.set(k, (counts.get(k) ?? 0) + 1);
   }
@@ -139,6 +141,9 @@ function curvatureRange(columns) {
   return [-most, most];
 }
 
+/** The label of the class of particles beside an edge or the box, where the surface has creases. */
+const BESIDE_EDGES = 'at an edge or the box';
+
 /**
  * A colouring by classes. `classOf` returns the class of a particle, or is null while the classes are not known.
  * @template {string} K
@@ -154,7 +159,10 @@ const classes = (title, labels, coloursOf, classesOf) => ({
   },
   legend({ palette, columns }) {
     const classOf = classesOf(columns);
-    return byEntries(title, palette, classOf && categories(labels, coloursOf(palette), columns.count, classOf));
+    const entries = classOf && categories(labels, coloursOf(palette), columns, classOf);
+    if (columns.twins.length > 0)
+      for (const entry of entries ?? []) if (entry.label === AT_BOX) entry.label = BESIDE_EDGES;
+    return byEntries(title, palette, entries);
   },
 });
 
@@ -203,7 +211,7 @@ export const COLOURINGS = {
     },
     legend: ({ palette, columns }) => ({
       title: 'Generation level',
-      unit: 'rings around the seed',
+      unit: columns.twins.length > 0 ? 'rings from the creases' : 'rings around the seed',
       kind: 'cyclic',
       range: [0, columns.lastLevel],
       colours: hexes(palette.levels),

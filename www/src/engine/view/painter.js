@@ -20,6 +20,8 @@ import { isBeyond } from './picking.js';
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
 const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
 
+/** Radius of the dot of a particle on a crease, as a share of that of a disc. */
+const DOT = 0.5;
 /** Radius on the screen below which a disc is drawn as one pixel. */
 const POINT_PX = 0.7;
 
@@ -281,12 +283,15 @@ export class Painter {
     const cy = (m[1] * x + m[5] * y + m[9] * z + m[13]) * inv;
     const sx = (0.5 + 0.5 * cx) * width;
     const sy = (0.5 - 0.5 * cy) * height;
-    const r = radii[i] * disc_scale;
+    // A negative radius is that of a dot that faces the eye, as in shaders/discs.wgsl.
+    const isDot = radii[i] < 0;
+    const r = Math.abs(radii[i]) * disc_scale * (isDot ? DOT : 1);
+    if (r === 0) return;
     const px = clipXPerWorld * r * inv * 0.5 * width;
     if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return;
-    let nx = normals[3 * i];
-    let ny = normals[3 * i + 1];
-    let nz = normals[3 * i + 2];
+    let nx = isDot ? -forward[0] : normals[3 * i];
+    let ny = isDot ? -forward[1] : normals[3 * i + 1];
+    let nz = isDot ? -forward[2] : normals[3 * i + 2];
     const facing = (m[16] - x) * nx + (m[17] - y) * ny + (m[18] - z) * nz;
     const back = facing < 0;
     if (back) {

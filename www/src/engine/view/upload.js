@@ -6,6 +6,7 @@
 
 import { MOST_STEPPED } from '../constants.js';
 import { coloursOf, rangeOf } from './colouring.js';
+import { radiiOf } from './creases.js';
 import { dotsOf } from './dots.js';
 import { Glide } from './glide.js';
 import { PALETTES } from './palettes.js';
@@ -98,7 +99,7 @@ export class ParticleUpload {
           from,
           positions.subarray(3 * from, 3 * end),
           columns.normals.subarray(3 * from, 3 * end),
-          columns.radii.subarray(from, end),
+          radiiOf(columns, from, end),
           columns.levels.subarray(from, end),
           colours.subarray(from - first, end - first),
           birth,

@@ -6,6 +6,7 @@
 import { vec } from '../vector.js';
 import { ballOf, Camera, projected, rayThrough, viewOf } from './camera.js';
 import { legendOf } from './colouring.js';
+import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
 import { FaceUpload } from './faces.js';
@@ -36,6 +37,7 @@ export class Viewer {
   #events;
   #scene;
   #faces;
+  #creases;
 
   /** Whether the system requests reduced motion. */
   #calm;
@@ -60,6 +62,7 @@ export class Viewer {
     this.dimmer = new Dimmer();
     this.upload = new ParticleUpload(columns);
     this.#faces = new FaceUpload(columns);
+    this.#creases = new CreaseUpload(columns);
     /** The parts that have changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
     this.frames = new FrameLoop((nowS, dtS) => this.#frame(nowS, dtS));
@@ -305,6 +308,7 @@ export class Viewer {
     this.screen.drawnBy(device.kind);
     this.upload.restart();
     this.#faces.restart();
+    this.#creases.restart();
     this.#restyle();
     this.#events.onDevice(device);
   }
@@ -350,6 +354,7 @@ export class Viewer {
       // The ghost of a surface shows where it will grow.
       const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
       this.#faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
+      this.#creases.write(/** @type {any} */ (renderer), look);
     }
     this.#tellView(renderer, this.currentView(), count);
     if (due.style) {
@@ -382,7 +387,7 @@ export class Viewer {
     }
     const level = reveal.levelAt(nowS);
     let particles = 0;
-    while (particles < columns.count && columns.levels[particles] <= level) particles += 1;
+    for (let i = 0; i < columns.count && columns.levels[i] <= level; i += 1) if (!columns.isFurther(i)) particles += 1;
     this.#events.onReveal({ level: Math.max(0, level), levels: reveal.births.length, particles });
     return true;
   }

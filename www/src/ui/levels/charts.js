@@ -123,7 +123,10 @@ function spreadOf(columns, { upTo, step }) {
   if (count === 0) return null;
   if (upTo === null && step === null) {
     if (!nearest) return null;
-    return { nearest: nearest.map((far, i) => far / (2 * radii[i])), words: `all ${plural(count, 'particle')}` };
+    return {
+      nearest: nearest.map((far, i) => far / (2 * radii[i])),
+      words: `all ${plural(columns.particles, 'particle')}`,
+    };
   }
   const chosen = Array.from({ length: count }, (_, i) => i).filter((i) => upTo === null || levels[i] <= upTo);
   if (chosen.length > MOST_STEPPED || chosen.length < 2) return null;

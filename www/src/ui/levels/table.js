@@ -8,10 +8,10 @@ import { formatCount, plural } from '../format.js';
  * @import { LevelTable } from './types.js'
  */
 
-/** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
+/** @typedef {Pick<Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel' | 'twins'>} Particles */
 
 /** @param {Particles} particles @returns {LevelTable} */
-export function levelTable({ count, levels, parents, slots, adaptive, lastLevel }) {
+export function levelTable({ count, levels, parents, slots, adaptive, lastLevel, twins }) {
   const last = count > 0 ? lastLevel : 0;
   const fresh = new Uint32Array(last + 1);
   const seeds = new Uint32Array(last + 1);
@@ -19,13 +19,16 @@ export function levelTable({ count, levels, parents, slots, adaptive, lastLevel 
   const fates = new Uint32Array(FATES * (last + 2));
   for (let i = 0; i < count; i += 1) {
     const level = levels[i];
-    fresh[level] += 1;
-    if (parents[i] === NO_PARENT) seeds[level] += 1;
+    // A particle on a crease has a row, and children, on either side.
+    if (i >= twins.length || twins[i] === i) {
+      fresh[level] += 1;
+      if (parents[i] === NO_PARENT) seeds[level] += 1;
+    }
     for (let k = 0; k < MOST_SLOTS; k += 1) fates[FATES * (level + 1) + fateOf(slots[i], k)] += 1;
   }
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
-  return { count, last, fresh, total, seeds, fates, adaptive };
+  return { count, last, fresh, total, seeds, fates, adaptive, creased: twins.length > 0 };
 }
 
 /** Fates of the children that were not placed, in the order of the description. */
@@ -36,6 +39,9 @@ const REST = /** @type {const} */ ([
   ['undefined', 'was undefined', 'were undefined'],
   ['capped', 'was over the limit', 'were over the limit'],
 ]);
+
+/** The words for `outside` where the surface has creases: no child is placed beyond the edge of its patch. */
+const BEYOND = 'fell beyond an edge or outside the box';
 
 /**
  * Returns the number of particles of a level on a plane around one seed; null for adaptive runs or several seeds.
@@ -60,7 +66,7 @@ const levelOf = (level, last) => `Level ${formatCount(level)} of ${formatCount(l
  *   them
  */
 export function describeLevel(table, level, relaxSteps) {
-  const { last, fresh, total, seeds, fates } = table;
+  const { last, fresh, total, seeds, fates, creased } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
   const counts = `${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
@@ -72,17 +78,19 @@ export function describeLevel(table, level, relaxSteps) {
         ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.`
         : '';
   if (level === 0) {
-    const starts =
-      seeds[0] === 1
+    const starts = creased
+      ? `${plural(seeds[0], 'point')} on the creases or between them, a front from each.`
+      : seeds[0] === 1
         ? 'The front starts at one point of the surface.'
         : `${plural(seeds[0], 'point')} of the surface, a front from each.`;
     return { title, text: starts + moved };
   }
   const numberOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
   const added = numberOf('added');
-  const rest = REST.filter(([name]) => numberOf(name) > 0).map(
-    ([name, one, many]) => `${formatCount(numberOf(name))} ${numberOf(name) === 1 ? one : many}`,
-  );
+  const rest = REST.filter(([name]) => numberOf(name) > 0).map(([name, one, many]) => {
+    const words = numberOf(name) === 1 ? one : many;
+    return `${formatCount(numberOf(name))} ${creased && name === 'outside' ? BEYOND : words}`;
+  });
   const proposed = REST.reduce((sum, [name]) => sum + numberOf(name), added);
   const became = [`${formatCount(added)} added`, ...rest].join(', ');
   const fillers = fresh[level] - added - seeds[level];

@@ -29,6 +29,8 @@ export interface LevelTable {
   seeds: Uint32Array;
   fates: Uint32Array;
   adaptive: boolean;
+  /** whether the surface has creases, from which the fronts start */
+  creased: boolean;
 }
 export type Told = { title: string; text: string };
 export type Timeline = ReturnType<typeof createTimeline>;

@@ -177,7 +177,7 @@ function choices(engine, name, key, values, hidden) {
  * Creates a line of buttons that switch parts of the view on and off.
  * @param {Engine} engine
  * @param {string} name
- * @param {['edges' | 'marks' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label, explanation
+ * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label, explanation
  * @param {() => boolean} [hidden]
  */
 function switches(engine, name, parts, hidden) {
@@ -236,6 +236,10 @@ function drawing(engine) {
       noMesh,
     ),
     switches(engine, 'Show', shown, noMesh),
+    switches(engine, 'Edges', [['creases', 'Creases', 'Lines along the sharp edges of the surface.']], () => {
+      void engine.revision.value;
+      return engine.columns.segments.length === 0;
+    }),
   ];
 }
 

@@ -100,7 +100,7 @@ export class Renderer {
     /**
      * Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
      *
-     * Three numbers per particle in `positions` and `normals`; a level of 4294967295 stands for none, and such a
+     * Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level of 4294967295 stands for none, and such a
      * particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of `draw`;
      * -Infinity shows them at once.
      *
@@ -126,6 +126,15 @@ export class Renderer {
      * Throws where the columns disagree in length or there are more faces than `max_faces()`.
      */
     write_faces(first: number, positions: Float32Array, normals: Float32Array, radii: Float32Array, levels: Uint32Array, colours: Uint32Array, marks: Uint32Array): void;
+    /**
+     * Draws these pieces of creases from now on: eight numbers each in `ends`, the position of either end and the radius of the
+     * particle there; `colours` are 0xAABBGGRR, sRGB.
+     *
+     * # Errors
+     *
+     * Throws where the columns disagree in length or there are more pieces than `max_particles()`.
+     */
+    write_lines(ends: Float32Array, colours: Uint32Array): void;
 }
 
 export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;

@@ -1,15 +1,28 @@
-// Draws the twelve edges of the clip box as quads of constant width on the screen.
+// Draws lines as quads of constant width on the screen: the twelve edges of the clip box, and the creases of a surface.
 
-// Width of an edge in page pixels.
+// Width of an edge of the clip box and of a crease in page pixels.
 const WIDTH = 1.25;
+const CREASE_WIDTH = 1.5;
+// Distance in radii by which a crease is drawn nearer to the eye, so that the faces and discs beside it do not cover it.
+const CREASE_LIFT = 0.3;
 // Smallest distance from the eye's plane at which an edge is drawn, as a share of the distance of its farther end.
 const NEAR = 1e-3;
 
 struct Edge {
     @builtin(position) clip: vec4<f32>,
-    // Signed distance from the centre line in pixels, times w; see fs_box.
+    // Signed distance from the centre line in pixels, times w; see fs_line.
     @location(0) across_px: f32,
     @location(1) @interpolate(flat) half_px: f32,
+    // Linear colour, not premultiplied by its opacity.
+    @location(2) @interpolate(flat) colour: vec4<f32>,
+}
+
+// A piece of a crease, as LINE_ATTRIBUTES and COLOUR_ATTRIBUTES in src/render/layout.rs describe it: its ends, each with the radius of
+// the particle there.
+struct Piece {
+    @location(0) start: vec4<f32>,
+    @location(1) to: vec4<f32>,
+    @location(5) colour: vec4<f32>,
 }
 
 // Position of end `end` (0 or 1) of edge `edge` (0 to 11); there are four edges along each axis.
@@ -28,10 +41,28 @@ fn edge_end(edge: u32, end: f32) -> vec3<f32> {
 
 @vertex
 fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32) -> Edge {
+    return line(vertex, edge_end(edge, 0.0), edge_end(edge, 1.0), WIDTH, frame.clip_box.colour);
+}
+
+@vertex
+fn vs_crease(@builtin(vertex_index) vertex: u32, piece: Piece) -> Edge {
     var out: Edge;
     out.clip = hidden();
-    var start = frame.camera.clip_from_world * vec4<f32>(edge_end(edge, 0.0), 1.0);
-    var to = frame.camera.clip_from_world * vec4<f32>(edge_end(edge, 1.0), 1.0);
+    if beyond_plane(0.5 * (piece.start.xyz + piece.to.xyz)) > 0.0 {
+        return out;
+    }
+    let start = piece.start.xyz + CREASE_LIFT * piece.start.w * toward_eye(piece.start.xyz);
+    let to = piece.to.xyz + CREASE_LIFT * piece.to.w * toward_eye(piece.to.xyz);
+    let colour = fade_to(linear_from_srgb(piece.colour.rgb), frame.light.background.rgb, frame.light.dim);
+    return line(vertex, start, to, CREASE_WIDTH, vec4<f32>(colour, piece.colour.a));
+}
+
+fn line(vertex: u32, from_place: vec3<f32>, to_place: vec3<f32>, width: f32, colour: vec4<f32>) -> Edge {
+    var out: Edge;
+    out.clip = hidden();
+    out.colour = colour;
+    var start = frame.camera.clip_from_world * vec4<f32>(from_place, 1.0);
+    var to = frame.camera.clip_from_world * vec4<f32>(to_place, 1.0);
     // Clip the part of the edge that is behind the eye.
     let near = NEAR * max(start.w, to.w);
     if near <= 0.0 {
@@ -49,7 +80,7 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
     }
     let along = along_px / length_px;
     let side = f32(vertex & 1u) * 2.0 - 1.0;
-    let half_px = 0.5 * WIDTH * frame.camera.pixel_ratio;
+    let half_px = 0.5 * width * frame.camera.pixel_ratio;
     let reach_px = half_px + 1.0;
     let at = select(start, to, vertex > 1u);
     let outwards = select(-along, along, vertex > 1u);
@@ -62,13 +93,13 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
 }
 
 @fragment
-fn fs_box(edge: Edge) -> @location(0) vec4<f32> {
+fn fs_line(edge: Edge) -> @location(0) vec4<f32> {
     // Perspective interpolation of a value times w gives w times the value interpolated linearly on the screen. In the
     // fragment stage, clip.w is 1/w.
     let distance = abs(edge.across_px * edge.clip.w);
-    let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * frame.clip_box.colour.a;
+    let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * edge.colour.a;
     if alpha < NOTHING {
         discard;
     }
-    return vec4<f32>(frame.clip_box.colour.rgb * alpha, alpha);
+    return vec4<f32>(edge.colour.rgb * alpha, alpha);
 }

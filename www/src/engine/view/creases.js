@@ -1,0 +1,67 @@
+/**
+ * Uploads the creases of a surface to the graphics device: thin lines along them. The particles on them are drawn as dots
+ * on the lines, because a disc on either side would stick out beyond the edge.
+ *
+ * @module
+ */
+import { PALETTES } from './palettes.js';
+
+/**
+ * @import { Renderer } from '../../wasm/render-webgpu/render.js'
+ * @import { Columns } from '../types.js'
+ * @import { Look, Theme } from './types.js'
+ */
+
+/** Numbers of the record of an end: its position and the radius of its particle. */
+const END = 4;
+
+/**
+ * Returns the radii of rows from `first` to `last` as the renderers take them: that of a particle on a crease is negative
+ * in its first row, which is drawn as a dot, and 0 in the others, which are not drawn.
+ * @param {Columns} columns @param {number} first @param {number} last
+ */
+export function radiiOf({ radii, twins }, first, last) {
+  if (first >= twins.length) return radii.subarray(first, last);
+  return radii.slice(first, last).map((radius, k) => {
+    const row = first + k;
+    return row >= twins.length ? radius : twins[row] === row ? -radius : 0;
+  });
+}
+
+/** Returns the ends of the pieces of creases as the renderers take them. @param {Columns} columns */
+export function endsOf({ segments, positions, radii }) {
+  const ends = new Float32Array(END * segments.length);
+  segments.forEach((row, k) => {
+    ends.set(positions.subarray(3 * row, 3 * row + 3), END * k);
+    ends[END * k + 3] = radii[row];
+  });
+  return ends;
+}
+
+export class CreaseUpload {
+  /** The segments that the device holds, and the theme of their colours. @type {{segments: Uint32Array, theme: Theme}} */
+  #held;
+
+  /** @param {Columns} columns */
+  constructor(columns) {
+    this.columns = columns;
+    this.#held = { segments: new Uint32Array(0), theme: 'light' };
+  }
+
+  /** Marks everything for upload, for a new device. */
+  restart() {
+    this.#held = { segments: new Uint32Array(0), theme: 'light' };
+  }
+
+  /** Uploads what has changed. @param {Renderer} renderer @param {Look} look */
+  write(renderer, { creases, theme }) {
+    const { columns } = this;
+    const segments = creases ? columns.segments : new Uint32Array(0);
+    const held = this.#held;
+    const isSame = segments === held.segments || segments.length + held.segments.length === 0;
+    if (isSame && (theme === held.theme || segments.length === 0)) return;
+    const ends = creases ? endsOf(columns) : new Float32Array(0);
+    renderer.write_lines(ends, new Uint32Array(segments.length / 2).fill(PALETTES[theme].ink));
+    this.#held = { segments, theme };
+  }
+}
