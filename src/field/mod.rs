@@ -173,11 +173,12 @@ pub trait Field: Send {
         None
     }
 
-    /// Looks for the creases of the surface in the box, and returns whether there are any. Branches that meet smoothly on the surface
-    /// are one from now on, numbers begin anew, and no branch is selected. By default there are no creases.
-    fn find_creases(&mut self, bounds: &Bounds) -> bool {
-        let _ = bounds;
-        false
+    /// Looks for the creases of the surface in the box. Returns cells of it outside of which there are none, no wider than `width` but
+    /// where that would take too long; no cell if there is no crease, as by default. Branches that meet smoothly on the surface are one from
+    /// now on, numbers begin anew, and no branch is selected.
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let _ = (bounds, width);
+        Vec::new()
     }
 
     /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
@@ -297,9 +298,9 @@ macro_rules! forward_field {
                 $field.sampled_as()
             }
 
-            fn find_creases(&mut self, bounds: &$crate::math::Bounds) -> bool {
+            fn find_creases(&mut self, bounds: &$crate::math::Bounds, width: f64) -> Vec<$crate::math::Bounds> {
                 let $this = self;
-                $field_mut.find_creases(bounds)
+                $field_mut.find_creases(bounds, width)
             }
 
             fn branch_at(&mut self, p: ::glam::DVec3) -> u32 {

@@ -139,8 +139,8 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
-    fn find_creases(&mut self, bounds: &Bounds) -> bool {
-        self.field.find_creases(bounds)
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        self.field.find_creases(bounds, width)
     }
 
     fn branch_at(&mut self, p: DVec3) -> u32 {

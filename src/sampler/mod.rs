@@ -300,7 +300,11 @@ impl Sampler {
             self.singular.clear();
         }
         // Bounds are those of the branches, where there are creases.
-        let is_creased = !is_known && field.find_creases(&self.bounds);
+        let creased = if is_known {
+            Vec::new()
+        } else {
+            field.find_creases(&self.bounds, Creases::width(&self.bounds))
+        };
         if is_known {
             field.use_double(self.survey.double);
         } else {
@@ -312,9 +316,8 @@ impl Sampler {
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
-            if is_creased {
-                self.creases = Creases::find(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds);
-            }
+            let probe = &mut Probe::new(scaled, &mut self.tools.memory);
+            self.creases = Creases::find(probe, &self.bounds, &creased);
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,

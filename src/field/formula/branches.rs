@@ -185,7 +185,7 @@ pub(super) struct Base {
 
 impl Base {
     /// Finds the roles of the nodes from number `roles.len()` on.
-    fn extend(&mut self, values: &[f64]) {
+    pub(super) fn extend(&mut self, values: &[f64]) {
         for id in self.roles.len() as Id..self.graph.len() as Id {
             let node = self.graph.node(id);
             let is_uniform = self.graph.is_uniform(id);

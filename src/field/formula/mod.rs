@@ -605,10 +605,14 @@ impl Field for Formula {
         self.origin = origin;
     }
 
-    fn find_creases(&mut self, bounds: &Bounds) -> bool {
-        self.on_formula_boxes(&[*bounds], |field, boxes| {
-            field.branches.find_creases(&field.values, &boxes[0])
-        })
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let mut cells = self.on_formula_boxes(&[*bounds], |field, boxes| {
+            field.branches.find_creases(&field.values, &boxes[0], width)
+        });
+        for cell in &mut cells {
+            *cell = Bounds::new(cell.lo() - self.origin, cell.hi() - self.origin);
+        }
+        cells
     }
 
     /// The numbers are the same whatever was asked before, but for those beyond the first 256, and they outlast a change of the

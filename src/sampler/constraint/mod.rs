@@ -5,8 +5,8 @@
 //! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches are zero; it ends at a corner, at the
 //! box, or runs back into itself.
 //!
-//! 1. *Search.* The field says whether there are creases at all. The box is divided as long as bounds of f leave a cell more than one branch. In the smallest cells Newton's method
-//!    looks for a point on each pair of branches.
+//! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
+//!    branches.
 //! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
 //!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once.
@@ -14,7 +14,6 @@
 mod fill;
 mod ladder;
 mod meeting;
-mod search;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -57,16 +56,20 @@ pub(super) struct Creases {
 }
 
 impl Creases {
-    /// Finds the creases of a field that has some in `bounds`.
-    pub(super) fn find(probe: &mut Probe, bounds: &Bounds) -> Self {
-        let cells = search::cells(probe.field, bounds, CELL * bounds.diagonal());
+    /// Width of the [cells](crate::field::Field::find_creases) in which creases are looked for.
+    pub(super) fn width(bounds: &Bounds) -> f64 {
+        CELL * bounds.diagonal()
+    }
+
+    /// Finds the creases of a field in `bounds`, which lie in these cells.
+    pub(super) fn find(probe: &mut Probe, bounds: &Bounds, cells: &[Bounds]) -> Self {
         let mut creases = Self::default();
-        let step = 0.5 * CELL * bounds.diagonal();
-        for cell in &cells {
-            for (k, &a) in cell.branches.iter().enumerate() {
-                for &b in &cell.branches[..k] {
-                    let place = cell.bounds.middle();
-                    let meeting = Meeting::of_branches(probe, [b, a], place, 2.0 * step, SHARP)
+        let step = 0.5 * Self::width(bounds);
+        for cell in cells {
+            let branches = probe.field.branches_in(cell).unwrap_or_default();
+            for (k, &a) in branches.iter().enumerate() {
+                for &b in &branches[..k] {
+                    let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
                         .filter(|meeting| bounds.holds(meeting.position) && !creases.has_point(meeting, step))
                         .filter(|meeting| meeting.inward(probe, step).is_some());
                     if let Some(meeting) = meeting {

@@ -11,8 +11,8 @@ fn creases(text: &str, half: f64) -> (Formula, Creases) {
     let mut memory = ProbeMemory::default();
     let bounds = Bounds::cube(half);
     let probe = &mut Probe::new(&mut field, &mut memory);
-    let is_creased = probe.field.find_creases(&bounds);
-    let creases = if is_creased { Creases::find(probe, &bounds) } else { Creases::default() };
+    let cells = probe.field.find_creases(&bounds, Creases::width(&bounds));
+    let creases = Creases::find(probe, &bounds, &cells);
     (field, creases)
 }
 
