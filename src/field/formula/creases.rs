@@ -166,7 +166,7 @@ fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
 #[derive(Default)]
 struct Scratch {
     ranges: Vec<interval::Range>,
-    jets: scalar::JetScratch,
+    jets: Vec<scalar::Order<0>>,
 }
 
 /// A search of a box.
@@ -300,24 +300,26 @@ impl Search<'_> {
         let reach = 2.0 * cell.diagonal();
         let size = self.bounds.diagonal();
         let Scratch { ranges, jets } = scratch;
-        let mut jet = |id: Id, p: DVec3| {
-            let jet = scalar::jet(graph, id, self.values, p, jets);
-            (jet.value, jet.gradient)
-        };
         let Role::Choice(condition) = self.base.roles[id as usize] else { return None };
-        let tie = |p: DVec3, jet: &mut dyn FnMut(Id, DVec3) -> (f64, DVec3)| match condition {
-            Condition::AtMost(a, b) => {
-                let ((a, of_a), (b, of_b)) = (jet(a, p), jet(b, p));
-                (a - b, of_a - of_b)
-            }
-            Condition::NotNegative(u) => jet(u, p),
+        // f and the difference of the operands, which are below f in the graph, each with its gradient.
+        let mut at = |p: DVec3| {
+            scalar::jets(graph, self.part.root, self.values, p, jets);
+            let of = |id: Id| jets[id as usize].first_order();
+            let tie = match condition {
+                Condition::AtMost(a, b) => {
+                    let ((a, of_a), (b, of_b)) = (of(a), of(b));
+                    (a - b, of_a - of_b)
+                }
+                Condition::NotNegative(u) => of(u),
+            };
+            (of(self.part.root), tie)
         };
         let mut best = None;
         // Off the planes of symmetry, on which other choices may be tied.
         for start in cell.spread(2) {
             let mut p = start;
             for _ in 0..STEPS {
-                let ((f, g), (t, h)) = (jet(self.part.root, p), tie(p, &mut jet));
+                let ((f, g), (t, h)) = at(p);
                 let (gg, gh, hh) = (g.dot(g), g.dot(h), h.dot(h));
                 let determinant = gg * hh - gh * gh;
                 // Gradients that are parallel to three digits.
@@ -343,7 +345,7 @@ impl Search<'_> {
                     break;
                 }
                 let across = h * (STEP * size / hh.sqrt());
-                let [one, other] = [p + across, p - across].map(|p| jet(self.part.root, p).1);
+                let [one, other] = [p + across, p - across].map(|p| at(p).0.1);
                 if (one - other).length() > LEAST_JUMP * one.length().max(other.length()) {
                     return Some(Kind::Crease);
                 }

@@ -1,4 +1,4 @@
-//! Second-order jets in double precision, carried forward through the graph of f.
+//! Jets of first and second order in double precision, carried forward through the graph of f.
 //!
 //! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check one by the other.
 
@@ -8,20 +8,28 @@ use crate::field::Jet;
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Second-order jet: value, gradient, and Hessian in the order xx, xy, xz, yy, yz, zz.
-#[derive(Clone, Copy, Debug, Default)]
-struct Order2 {
+/// Jet: value, gradient, and the first `N` entries of the Hessian in the order xx, xy, xz, yy, yz, zz: all six, or none.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Order<const N: usize> {
     value: f64,
     first: [f64; 3],
-    second: [f64; 6],
+    second: [f64; N],
 }
 
-/// Axes of the entries of the Hessian.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+/// Number of entries of a Hessian.
+const ENTRIES: usize = 6;
 
-impl Order2 {
+/// Axes of the entries of the Hessian.
+const PAIRS: [(usize, usize); ENTRIES] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+impl<const N: usize> Order<N> {
     fn uniform(value: f64) -> Self {
-        Self { value, ..Self::default() }
+        Self { value, first: [0.0; 3], second: [0.0; N] }
+    }
+
+    /// Value and gradient.
+    pub(super) fn first_order(&self) -> (f64, DVec3) {
+        (self.value, DVec3::from_array(self.first))
     }
 
     /// Jet of f(self) by the chain rule, where f has the given value and first two derivatives. Derivatives along axes
@@ -62,7 +70,7 @@ impl Order2 {
         for k in 0..3 {
             out.first[k] = self.value * other.first[k] + other.value * self.first[k];
         }
-        for (n, (i, j)) in PAIRS.into_iter().enumerate() {
+        for (n, (i, j)) in PAIRS.into_iter().enumerate().take(N) {
             let crossed = self.first[i] * other.first[j] + self.first[j] * other.first[i];
             out.second[n] = self.value * other.second[n] + other.value * self.second[n] + crossed;
         }
@@ -76,11 +84,7 @@ impl Order2 {
 }
 
 /// Scratch space of [`jet`]: the jet of every node.
-pub(super) type JetScratch = Vec<JetCell>;
-
-/// Jet of a node.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct JetCell(Order2);
+pub(super) type JetScratch = Vec<Order<ENTRIES>>;
 
 /// f, ∇f and ∇∇f of node `root` at `point`.
 pub(super) fn jet(
@@ -90,28 +94,44 @@ pub(super) fn jet(
     point: DVec3,
     scratch: &mut JetScratch,
 ) -> Jet {
+    jets(graph, root, parameters, point, scratch);
+    let Order { value, first, second } = scratch[root as usize];
+    let [xx, xy, xz, yy, yz, zz] = second;
+    Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+}
+
+/// Puts the jets of all nodes up to `root` at `point` in `scratch`.
+pub(super) fn jets<const N: usize>(
+    graph: &Graph,
+    root: Id,
+    parameters: &[f64],
+    point: DVec3,
+    scratch: &mut Vec<Order<N>>,
+) {
     let point = point.to_array();
     scratch.clear();
     for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
         let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
         let result = if axes == 0 {
-            Order2::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].0.value))
+            Order::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].value))
         } else {
-            order2(node, point, axes, |id| (scratch[id as usize].0, graph.axes(id)))
+            order(node, point, axes, |id| (scratch[id as usize], graph.axes(id)))
         };
-        scratch.push(JetCell(result));
+        scratch.push(result);
     }
-    let Order2 { value, first, second } = scratch[root as usize].0;
-    let [xx, xy, xz, yy, yz, zz] = second;
-    Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
 }
 
 /// Jet of a node that depends on `axes`. `operand` gives the jet of an operand and the axes that it depends on.
-fn order2(node: Node, point: [f64; 3], axes: u8, operand: impl Fn(Id) -> (Order2, u8)) -> Order2 {
+fn order<const N: usize>(
+    node: Node,
+    point: [f64; 3],
+    axes: u8,
+    operand: impl Fn(Id) -> (Order<N>, u8),
+) -> Order<N> {
     match node {
-        Node::Constant(_) | Node::Parameter(_) => Order2::default(),
+        Node::Constant(_) | Node::Parameter(_) => Order::uniform(0.0),
         Node::Coordinate(axis) => {
-            let mut out = Order2::uniform(point[usize::from(axis)]);
+            let mut out = Order::uniform(point[usize::from(axis)]);
             out.first[usize::from(axis)] = 1.0;
             out
         }
@@ -137,18 +157,23 @@ fn order2(node: Node, point: [f64; 3], axes: u8, operand: impl Fn(Id) -> (Order2
             } else if (a <= b) == le {
                 v
             } else {
-                Order2::default()
+                Order::uniform(0.0)
             }
         }
     }
 }
 
-fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), axes: u8) -> Order2 {
+fn binary<const N: usize>(
+    operation: Binary,
+    (a, of_a): (Order<N>, u8),
+    (b, of_b): (Order<N>, u8),
+    axes: u8,
+) -> Order<N> {
     match operation {
         Binary::Add => a.add(&b),
         Binary::Sub => a.add(&b.scale(-1.0)),
         Binary::Mul => a.mul(&b),
-        Binary::Div => Order2 { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
+        Binary::Div => Order { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
         Binary::Min if a.value <= b.value => a,
         Binary::Max if a.value >= b.value => a,
         Binary::Min | Binary::Max if a.value.is_nan() || b.value.is_nan() => a.add(&b).scale(f64::NAN),
@@ -163,7 +188,7 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
             }
             // a^b = exp(b ln a)
             let logarithm = if of_a == 0 {
-                Order2::uniform(libm::log(a.value))
+                Order::uniform(libm::log(a.value))
             } else {
                 a.apply(Unary::Ln.jet(a.value), of_a)
             };
@@ -179,23 +204,23 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
                 let ratio = b.mul(&a.reciprocal(of_a));
                 ratio.apply(Unary::Atan.jet(ratio.value), axes).scale(-1.0)
             };
-            Order2 { value: angle, ..jet }
+            Order { value: angle, ..jet }
         }
     }
 }
 
 /// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the
 /// smaller of a and b.
-fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
+fn smooth_minimum<const N: usize>(a: &Order<N>, b: &Order<N>, k: &Order<N>, axes: u8) -> Order<N> {
     let value = smin(a.value, b.value, k.value);
-    let k = if k.value > MIN_BLEND_WIDTH { *k } else { Order2::uniform(MIN_BLEND_WIDTH) };
+    let k = if k.value > MIN_BLEND_WIDTH { *k } else { Order::uniform(MIN_BLEND_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
     let u = difference.mul(&k.reciprocal(axes));
     if u.value >= 1.0 {
-        return Order2 { value, ..*b };
+        return Order { value, ..*b };
     }
     if u.value <= -1.0 {
-        return Order2 { value, ..*a };
+        return Order { value, ..*a };
     }
     let size = u.value.abs();
     let blend = u.apply(
@@ -206,5 +231,5 @@ fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
         ],
         axes,
     );
-    Order2 { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
+    Order { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
 }
