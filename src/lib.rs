@@ -44,6 +44,7 @@
 //! | component | A connected part of the surface. |
 //! | sheet | A part of the surface near one point that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
 //! | singular point | A point of the surface where ∇f = 0, so that there is no normal. |
+//! | tip, nappe | An isolated point at which sheets end as cones, and one of these sheets. |
 //! | clip box | The axis-aligned box outside of which nothing is sampled. |
 //! | fitted box | A clip box around all bounded components of the surface, with room for particles. |
 //! | border | The curves along which the surface ends: where the clip box cuts it, or f ends. Of a mesh, the edges of one triangle alone. |

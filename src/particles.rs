@@ -23,13 +23,14 @@ pub struct Particles {
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// Patch of the surface on which the row lies, by the number of its branch: see [`Field::branch_at`]. Empty if the surface has no
-    /// creases.
+    /// Patch of the surface on which the row lies, by the number of its branch: see [`Field::branch_at`]. Empty if the surface has neither
+    /// creases nor particles at tips.
     ///
     /// [`Field::branch_at`]: crate::field::Field::branch_at
     pub patch: Vec<u32>,
     /// For each of the first rows, the first row of the same particle. A particle on a crease has a row for each patch that meets
-    /// there: all with its position, each with the normal of its patch. These rows come before all others and do not move.
+    /// there: all with its position, each with the normal of its patch. One at the tip of a cone has a row for each of the sheets that end
+    /// there, with the mean normal of the sheet. These rows come before all others and do not move.
     pub twins: Vec<u32>,
     /// Pairs of particles that follow each other along a crease, each by its first row.
     pub segments: Vec<[u32; 2]>,
@@ -160,6 +161,22 @@ impl Particles {
     #[must_use]
     pub fn first_row(&self, i: usize) -> usize {
         self.twins.get(i).map_or(i, |&first| first as usize)
+    }
+
+    /// For each of the first rows, the first row of the same vertex: of the same particle, but for the rows of a tip, at which sheets of
+    /// one patch meet. Each of them is a vertex of its own.
+    pub(crate) fn joints(patch: &[u32], twins: &[u32]) -> Vec<u32> {
+        let is_own = |i: u32| patch[i as usize] == patch[twins[i as usize] as usize];
+        (0..).zip(twins).map(|(i, &first)| if is_own(i) { i } else { first }).collect()
+    }
+
+    /// The rows of tips, in ascending order.
+    pub(crate) fn tips(patch: &[u32], twins: &[u32]) -> Vec<u32> {
+        let mut is_tip = vec![true; twins.len()];
+        for (i, &first) in twins.iter().enumerate() {
+            is_tip[first as usize] &= patch[i] == patch[first as usize];
+        }
+        (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 
     /// The patch of row `i`; none if the surface has no creases.

@@ -15,8 +15,10 @@ pub(super) struct Creases {
     patch: Vec<u32>,
     /// The first row of the particle of each point, as given.
     particle: Vec<u32>,
-    /// The point that is the first row of each point's particle; itself where that was left out.
+    /// The point that is the first row of each point's vertex, which is its particle but at a tip; itself where that was left out.
     first: Vec<u32>,
+    /// Whether each point is at a tip.
+    is_tip: Vec<bool>,
     /// Particle and patch of each row on a crease, sorted.
     on_creases: Vec<(u32, u32)>,
 }
@@ -27,18 +29,22 @@ impl Creases {
             return Self::default();
         }
         let particle = |row: u32| patches.twins.get(row as usize).copied().unwrap_or(row);
+        let joints = Particles::joints(patches.patch, patches.twins);
+        let vertex = |row: u32| joints.get(row as usize).copied().unwrap_or(row);
         let mut place = vec![u32::MAX; patches.patch.len()];
         for (k, &row) in (0..).zip(&tree.origin) {
             place[row as usize] = k;
         }
-        let first = |(k, &row): (u32, &u32)| match place[particle(row) as usize] {
+        let first = |(k, &row): (u32, &u32)| match place[vertex(row) as usize] {
             u32::MAX => k,
             first => first,
         };
         let mut on_creases: Vec<(u32, u32)> =
             patches.twins.iter().copied().zip(patches.patch.iter().copied()).collect();
         on_creases.sort_unstable();
+        let tips = Particles::tips(patches.patch, patches.twins);
         Self {
+            is_tip: tree.origin.iter().map(|row| tips.binary_search(row).is_ok()).collect(),
             patch: tree.origin.iter().map(|&row| patches.patch[row as usize]).collect(),
             particle: tree.origin.iter().map(|&row| particle(row)).collect(),
             first: (0..).zip(&tree.origin).map(first).collect(),
@@ -84,6 +90,11 @@ impl Creases {
         let mut keys = Vec::new();
         tree.nearest_many(tree.position[i], 1, |j| !self.are_one(i, j as usize), &mut keys);
         keys.first().map_or((f32::INFINITY, u32::MAX), |&key| unkey(key))
+    }
+
+    /// Whether point `i` is at a tip, where f has no gradient and the sheet is a cone.
+    pub(super) fn is_tip(&self, i: usize) -> bool {
+        self.is_tip.get(i) == Some(&true)
     }
 
     /// Whether two points are on one patch.

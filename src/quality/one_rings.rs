@@ -93,7 +93,7 @@ impl OneRings {
                         if !creases.is_one_patch(i, j as usize) {
                             continue;
                         }
-                        if is_one_sheet(tree, normal, i, j as usize, d) {
+                        if is_one_sheet(sheets, i, j as usize, d) {
                             keys.push(key(d, j));
                         } else {
                             faces_another |= normal[i].dot(normal[j as usize]) < 0.0;
@@ -115,6 +115,9 @@ impl OneRings {
             asked.clear();
             creases.select(field, i);
             let mut is_stranger = |j: usize| {
+                if creases.is_tip(i) || creases.is_tip(j) {
+                    return false;
+                }
                 let known = asked.iter().find(|(other, _)| *other == j).map(|&(_, is_stranger)| is_stranger);
                 known.unwrap_or_else(|| {
                     let is_stranger = sheets.are_two(field, i, j, facing_away);
@@ -133,7 +136,7 @@ impl OneRings {
                     let distance_sq = (tree.position[j as usize] - p).length_squared();
                     j as usize != i
                         && creases.is_one_patch(i, j as usize)
-                        && is_one_sheet(tree, normal, i, j as usize, distance_sq)
+                        && is_one_sheet(sheets, i, j as usize, distance_sq)
                 };
                 tree.nearest_many(p, count, accept, keys);
                 known_sq = match keys.last() {
@@ -192,11 +195,13 @@ impl OneRings {
 }
 
 /// Returns whether two points at this distance count as being on one sheet: their normals are within 90°, and the line
-/// between them rises from one tangent plane about as much as it falls below the other.
+/// between them rises from one tangent plane about as much as it falls below the other, or leads to a tip.
 #[inline]
-fn is_one_sheet(tree: &Tree, normal: &[Vec3], i: usize, j: usize, distance_sq: f32) -> bool {
+fn is_one_sheet(sheets: &Sheets, i: usize, j: usize, distance_sq: f32) -> bool {
+    let Sheets { tree, normal, creases, .. } = *sheets;
     let rise = (tree.position[j] - tree.position[i]).dot(normal[i] + normal[j]);
-    normal[i].dot(normal[j]) > 0.0 && rise * rise <= (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT) * distance_sq
+    let is_level = rise * rise <= (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT) * distance_sq;
+    normal[i].dot(normal[j]) > 0.0 && (is_level || creases.is_tip(i) || creases.is_tip(j))
 }
 
 /// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one perpendicular to the

@@ -47,10 +47,15 @@ impl MeasuredPoints {
         for range in ranges(tree.len(), BATCH) {
             let (position, origin) = (&tree.position[range.clone()], &tree.origin[range.clone()]);
             let (mut value, mut gradient) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
-            creases.exact_gradients(field, range, position, &mut value, &mut gradient);
-            for ((&i, value), &gradient) in origin.iter().zip(value).zip(&gradient) {
+            creases.exact_gradients(field, range.clone(), position, &mut value, &mut gradient);
+            for (((k, &i), value), &gradient) in range.zip(origin).zip(value).zip(&gradient) {
                 let slope = gradient.length();
                 let given = given.get(i as usize).copied().unwrap_or(Vec3::ZERO);
+                if creases.is_tip(k) {
+                    normal.push(given);
+                    height.push(0.0);
+                    continue;
+                }
                 normal_angles.add(given, gradient);
                 let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
                 normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));

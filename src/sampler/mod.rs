@@ -41,8 +41,9 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use attempt::Attempt;
 use constraint::Creases;
+use constraint::tips::Tip;
 use discovery::search::ComponentSearch;
-use discovery::singular::Singular;
+use discovery::singular::{Bend, Singular};
 use discovery::survey::{Absence, Survey, spacing, survey};
 use discovery::{precision, singular};
 use front::Front;
@@ -76,6 +77,7 @@ pub struct Sampler {
     creases: Creases,
     /// The singular points near those of the survey.
     singular: Vec<Singular>,
+    tips: Vec<Tip>,
     attempt: Attempt,
     phase: PhaseState,
     components: ComponentSearch,
@@ -298,6 +300,7 @@ impl Sampler {
         if !is_known {
             self.creases = Creases::default();
             self.singular.clear();
+            self.tips.clear();
         }
         // Bounds are those of the branches, where there are creases.
         let creased = if is_known {
@@ -326,8 +329,16 @@ impl Sampler {
             // Where f touches zero only, all of the surface is singular.
             if !is_dense && !self.survey.touches {
                 let scaled = &mut Scaled::new(field, scale);
-                self.singular =
-                    singular::near_survey(scaled, &self.survey.position, spacing(&self.bounds), &self.bounds);
+                let spacing = spacing(&self.bounds);
+                let near = singular::near_survey(scaled, &self.survey.position, spacing, &self.bounds);
+                self.singular = near.points;
+                if creased.is_empty() {
+                    self.find_tips(
+                        &mut Probe::new(scaled, &mut ProbeMemory::default()),
+                        &near.bends,
+                        spacing,
+                    );
+                }
             }
         }
         self.components.begin(field, &self.bounds, &self.singular);
@@ -339,6 +350,25 @@ impl Sampler {
             while self.components.search(probe, &self.bounds, tolerance, least_gap, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
             self.survey.adopt(probe.field, found, &self.bounds, self.components.witnessed());
+        }
+    }
+
+    /// Finds the tips among the singular points, and those near `bends` at which f has no second derivative.
+    fn find_tips(&mut self, probe: &mut Probe, bends: &[Bend], spacing: f64) {
+        /// Bends that are looked at. Most surfaces have none; around a tip where f has a gradient they are the sharpest.
+        const MOST: usize = 16;
+        for place in singular::places(&self.singular) {
+            if place.kind == SingularKind::Point {
+                self.tips.extend(Tip::at(probe, place.position, spacing));
+            }
+        }
+        for bend in bends.iter().take(MOST) {
+            let is_new =
+                |tip: &Tip| self.tips.iter().all(|known| known.position.distance(tip.position) > spacing);
+            let tip = Tip::near(probe, bend.position, spacing)
+                .filter(|tip| self.bounds.holds(tip.position) && is_new(tip));
+            self.singular.extend(tip.iter().map(|tip| Singular::tip(tip.position, spacing)));
+            self.tips.extend(tip);
         }
     }
 

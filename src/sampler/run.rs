@@ -4,6 +4,7 @@ use super::Sampler;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::Attempt;
+use crate::sampler::constraint::tips;
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
@@ -149,6 +150,9 @@ impl Sampler {
                 self.begin_at_creases(probe);
                 return PhaseState::Generation(Some(cursor));
             }
+            if self.begin_at_tips(probe) {
+                return PhaseState::Generation(Some(cursor));
+            }
         }
         while *left > 0 {
             if self.has_too_many_lone_seeds() {
@@ -173,7 +177,8 @@ impl Sampler {
 
     /// The patch of a point; none if the surface has no creases.
     fn patch_at(&self, probe: &mut Probe, point: Vec3) -> Option<u32> {
-        self.creases.are_there().then(|| probe.field.branch_at(point.as_dvec3()))
+        let has_patches = self.creases.are_there() || !self.output.particles.patch.is_empty();
+        has_patches.then(|| probe.field.branch_at(point.as_dvec3()))
     }
 
     /// Places particles on the creases and starts fronts from them.
@@ -196,6 +201,21 @@ impl Sampler {
         self.counts.seeds += self.creases.pieces();
         self.counts.seeding_evaluations += probe.evaluations() - before;
         self.with_front(probe, |front, context| front.add_creases(context, &along));
+    }
+
+    /// Places particles on the tips and around them, and starts fronts from there. Says whether there are any.
+    fn begin_at_tips(&mut self, probe: &mut Probe) -> bool {
+        if self.attempt.refining.is_some() || self.settings.sampling == Sampling::Adaptive {
+            return false;
+        }
+        let before = probe.evaluations();
+        let radius = self.attempt.front_radius() as f32;
+        let match_radius = 2.0 * radius * self.settings.match_tolerance as f32;
+        tips::add(probe, &self.tips, radius, match_radius, &self.bounds, &mut self.output.particles);
+        self.counts.seeding_evaluations += probe.evaluations() - before;
+        self.counts.seeds += self.output.particles.twins.len() as u32;
+        self.with_front(probe, |front, context| front.add_creases(context, &[]));
+        !self.output.particles.is_empty()
     }
 
     /// Starts a front, after which the seeding goes on from the cursor. Where the limit on particles is reached the search is

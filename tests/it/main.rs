@@ -58,3 +58,4 @@ mod sizing;
 mod smooth;
 mod solids;
 mod systems;
+mod tips;

@@ -46,8 +46,8 @@ pub(super) const SURFACES: &[Surface] = &[
         genus: None,
         smooth: false,
         intricate: false,
-        story: "An eight turned about its axis: two drops that touch in one cone point. The front of one \
-                drop ends there, and the search for components finds the other.",
+        story: "An eight turned about its axis: two drops that touch in one cone point. One particle \
+                stands there for both, and a front grows over each drop from it.",
         source: "H. Hauser, Gallery of algebraic surfaces, University of Vienna",
     },
     Surface {

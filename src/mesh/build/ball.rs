@@ -161,6 +161,28 @@ impl Ball {
         self.count = k + 1;
     }
 
+    /// Lays the points that face the same way into the tangent plane of the centre, whose normal is `normal`, if the centre `is_tip` of a cone;
+    /// else gives that normal to those among the `tips`, which see the centre far above their own plane.
+    pub(super) fn level(&mut self, tips: &[u32], normal: Vec3, is_tip: bool) {
+        if tips.is_empty() {
+            return;
+        }
+        for k in 0..self.count.min(MOST) {
+            let [x, y, z, a, b, c] = self.point.each_ref().map(|row| row[k]);
+            let (offset, other) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+            if other.dot(normal) <= 0.0 || !(is_tip || tips.binary_search(&self.index[k]).is_ok()) {
+                continue;
+            }
+            let flat = (offset - normal * offset.dot(normal)).normalize_or_zero() * offset.length();
+            let laid = if is_tip { flat } else { offset };
+            for (row, value) in
+                self.point.iter_mut().zip(laid.to_array().into_iter().chain(normal.to_array()))
+            {
+                row[k] = value;
+            }
+        }
+    }
+
     fn blocks(&self) -> usize {
         self.count.div_ceil(WIDTH).min(BLOCKS)
     }

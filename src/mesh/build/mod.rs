@@ -51,11 +51,14 @@ pub struct MeshOptions<'a> {
     /// Edges along which the surface is known to end, as pairs of indices with the surface on the left, seen from outside. No
     /// triangle lies beyond them, and what is open on their left is a hole.
     pub rim: &'a [[u32; 2]],
+    /// Points, in ascending order, at the apex of a cone of the surface, each with the mean normal of the cone. Several may be at one place if
+    /// they face different ways.
+    pub tips: &'a [u32],
 }
 
 impl Default for MeshOptions<'_> {
     fn default() -> Self {
-        Self { largest_hole: 24, bounds: None, rim: &[] }
+        Self { largest_hole: 24, bounds: None, rim: &[], tips: &[] }
     }
 }
 
@@ -109,7 +112,7 @@ struct Joined {
 }
 
 impl Joined {
-    /// The triangulation over `point_count` points, of which the first ones may be the same as earlier ones: `twins` has the first
+    /// The triangulation over `point_count` points, of which the first ones may be the same vertex as earlier ones: `twins` has the first
     /// such point of each.
     async fn counted(self, point_count: usize, twins: &[u32]) -> Triangulation {
         let Self { triangles, unfilled, agreed, rounds } = self;
@@ -180,18 +183,21 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         return in_slices(&particles.position, &particles.normal, options).await;
     }
     let mut whole = Joined::default();
+    let tips = Particles::tips(&particles.patch, &particles.twins);
     for Sheet { rows, border } in Sheet::all(particles) {
         pause().await;
         let [position, normal] = [&particles.position, &particles.normal]
             .map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
-        let joined = join(&position, &normal, &MeshOptions { rim: &border, ..*options }).await;
+        let tips: Vec<u32> =
+            (0..).zip(&rows).filter(|(_, row)| tips.binary_search(row).is_ok()).map(|(v, _)| v).collect();
+        let joined = join(&position, &normal, &MeshOptions { rim: &border, tips: &tips, ..*options }).await;
         let row = |v: u32| rows[v as usize];
         whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
         whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
         whole.agreed += joined.agreed;
         whole.rounds = whole.rounds.max(joined.rounds);
     }
-    whole.counted(particles.len(), &particles.twins).await
+    whole.counted(particles.len(), &Particles::joints(&particles.patch, &particles.twins)).await
 }
 
 async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> Joined {
@@ -201,7 +207,12 @@ async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> 
     let mut usable: Vec<bool> = (0..position.len()).map(is_usable).collect();
     loop {
         let points = JoinablePoints::new(position, normal, &usable).await;
-        let stars = Stars::new(&points.tree, &points.normal).await;
+        let tips: Vec<u32> = (0..)
+            .zip(&points.tree.origin)
+            .filter(|&(_, i)| options.tips.binary_search(i).is_ok())
+            .map(|(k, _)| k)
+            .collect();
+        let stars = Stars::new(&points.tree, &points.normal, &tips).await;
         if stars.twins.is_empty() {
             return points.join(&stars, options).await;
         }

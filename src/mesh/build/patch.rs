@@ -318,7 +318,7 @@ pub(super) fn with_plane<T>(
     use crate::{slices, spatial::tree::Tree};
     let tree = Tree::new(points);
     let normal = vec![Vec3::Z; points.len()];
-    let stars = slices::complete(Stars::new(&tree, &normal));
+    let stars = slices::complete(Stars::new(&tree, &normal, &[]));
     let mut patch = slices::complete(Patch::new(&tree.position, &normal, &stars));
     let mut in_tree: Vec<u32> = (0..points.len() as u32).collect();
     in_tree.iter().for_each(|&v| patch.clear(v));

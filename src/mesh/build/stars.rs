@@ -61,8 +61,9 @@ struct Star {
 }
 
 impl Stars {
-    /// The stars of the points of `tree` with the unit `normal`s (in tree order).
-    pub(super) async fn new(tree: &Tree, normal: &[Vec3]) -> Self {
+    /// The stars of the points of `tree` with the unit `normal`s (in tree order), of which `tips` are at the apex of a cone, in ascending
+    /// order.
+    pub(super) async fn new(tree: &Tree, normal: &[Vec3], tips: &[u32]) -> Self {
         let n = tree.len();
         let mut stars = Self {
             start: Vec::with_capacity(n + 1),
@@ -84,7 +85,7 @@ impl Stars {
             }
             let reach = BALL * (hi - lo).length();
             scratch.surroundings.gather(tree, normal, lo - reach, hi + reach);
-            range.for_each(|i| stars.add(tree, normal, i, reach, &mut scratch));
+            range.for_each(|i| stars.add((tree, normal, tips), i, reach, &mut scratch));
         }
         stars
     }
@@ -99,21 +100,30 @@ impl Stars {
     }
 
     /// Adds the star of point `i`, of a leaf whose surroundings reach as far as told.
-    fn add(&mut self, tree: &Tree, normal: &[Vec3], i: usize, reach: f32, scratch: &mut StarBuffers) {
+    fn add(
+        &mut self,
+        (tree, normal, tips): (&Tree, &[Vec3], &[u32]),
+        i: usize,
+        reach: f32,
+        scratch: &mut StarBuffers,
+    ) {
+        let is_tip = tips.binary_search(&(i as u32)).is_ok();
         let StarBuffers { surroundings, ball, star } = scratch;
         let reach_sq = reach * reach;
         let has_all = ball.take(surroundings, tree.position[i], reach_sq, i as u32);
         let mut known_sq = if has_all { reach_sq } else { 0.0 };
         // Of a few points all are known, however far away.
         let twin_sq = |known_sq: f32| TWIN * TWIN * if known_sq == f32::MAX { reach_sq } else { known_sq };
+        ball.level(tips, normal[i], is_tip);
         star.make(ball, normal[i], twin_sq(known_sq));
         let mut widest_sq = star.widest_sq(ball);
         if star.count == 0 || known_sq < widest_sq && !star.is_certain(known_sq) {
             known_sq = ball.search(tree, normal, i as u32, widest_sq.sqrt());
+            ball.level(tips, normal[i], is_tip);
             star.make(ball, normal[i], twin_sq(known_sq));
             widest_sq = star.widest_sq(ball).min(known_sq);
         }
-        if ball.has_earlier_twin(i as u32, twin_sq(known_sq)) {
+        if !is_tip && ball.has_earlier_twin(i as u32, twin_sq(known_sq)) {
             self.twins.push(i as u32);
         }
         let mut is_open = star.count == 0;

@@ -1,5 +1,5 @@
 //! What a particle may lie on besides the surface: the creases along which two smooth branches of f give way to each other, and the
-//! corners where more than two meet.
+//! corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
 //! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches are zero; it ends at a corner, at the
@@ -16,6 +16,7 @@ mod ladder;
 mod meeting;
 #[cfg(test)]
 mod tests;
+pub(super) mod tips;
 mod trace;
 
 use crate::math::{Bounds, Forest};

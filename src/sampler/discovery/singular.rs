@@ -13,7 +13,7 @@
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
 use crate::field::{Bounded, Enclosure, Field};
-use crate::math::{Bounds, Forest, Interval, Sym3};
+use crate::math::{Bounds, Forest, Interval, Sym3, sort_few};
 use crate::particles::{Particles, Slots};
 use crate::sampler::discovery::interval_newton::ROUNDING;
 use crate::sampler::probe::BATCH;
@@ -59,7 +59,7 @@ pub(super) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
 /// Points of the survey from which one is searched, at most. On a surface that crosses itself along a curve there are many.
-const MOST_STARTS: usize = 2_048;
+const MOST_STARTS: usize = 4_096;
 /// Extent of linked points that are no curve, as a share of the search distance: at a point where sheets touch, Newton's method ends
 /// within a hundredth of it.
 const ONE_PLACE: f64 = 0.25;
@@ -111,6 +111,22 @@ pub(crate) struct SingularPlace {
     pub(crate) kind: SingularKind,
 }
 
+/// What is found near the points of a survey.
+#[derive(Debug, Default)]
+pub(crate) struct NearSurvey {
+    pub(crate) points: Vec<Singular>,
+    /// Points of the survey, far from each other, around which the surface bends sharply and there is no such point; the sharpest first.
+    pub(crate) bends: Vec<Bend>,
+}
+
+/// A point of the surface at which the gradient turns within a cell of the survey.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bend {
+    pub(crate) position: DVec3,
+    /// Square of the second derivatives over the first ones.
+    sharpness: f64,
+}
+
 /// The singular points near those of a survey, on a grid of this spacing: where the gradient vanishes within a distance d, it is no
 /// longer than the Hessian times d.
 pub(crate) fn near_survey(
@@ -118,10 +134,10 @@ pub(crate) fn near_survey(
     survey: &[Vec3],
     spacing: f64,
     bounds: &Bounds,
-) -> Vec<Singular> {
+) -> NearSurvey {
     let reach = NEAR * spacing;
-    let mut found: Vec<Singular> = Vec::new();
-    let mut starts = 0;
+    let NearSurvey { points: mut found, mut bends } = NearSurvey::default();
+    let mut tried: Vec<DVec3> = Vec::new();
     let mut value = [0.0; BATCH];
     let mut gradient = [Vec3::ZERO; BATCH];
     let mut hessian = [Sym3::splat(0.0); BATCH];
@@ -130,22 +146,39 @@ pub(crate) fn near_survey(
         for (k, p) in points.iter().enumerate() {
             let (p, slope_sq) = (p.as_dvec3(), gradient[k].as_dvec3().length_squared());
             let most_sq = size_sq(&matrix(&hessian[k].map(f64::from))) * reach * reach;
-            let is_within = |point: &Singular, most: f64| point.position.distance_squared(p) <= most * most;
+            let is_near = |other: DVec3| other.distance_squared(p) <= 0.25 * spacing * spacing;
             // False for NaN.
             let is_start = slope_sq <= most_sq
-                && starts < MOST_STARTS
-                && !found.iter().any(|point| is_within(point, 0.5 * spacing));
+                && tried.len() < MOST_STARTS
+                && !tried.iter().copied().any(is_near)
+                && !found.iter().any(|point| is_near(point.position));
             if !is_start {
                 continue;
             }
-            starts += 1;
+            tried.push(p);
             let new = singular_point(field, p, reach)
                 .filter(|point| point.is_zero && bounds.holds(point.position))
                 .filter(|point| !(point.is_alone && found.iter().any(|other| point.is_linked(other))));
             found.extend(new);
+            let is_far = |other: DVec3| other.distance_squared(p) > reach * reach;
+            let is_new = bends.iter().all(|bend| is_far(bend.position))
+                && found.iter().all(|point| is_far(point.position));
+            if is_new {
+                let sharpness = most_sq / slope_sq;
+                bends.push(Bend { position: p, sharpness });
+            }
         }
     }
-    found
+    sort_few(&mut bends, |a, b| a.sharpness > b.sharpness);
+    NearSurvey { points: found, bends }
+}
+
+impl Singular {
+    /// The tip of a cone, which f need not be differentiable at.
+    pub(crate) fn tip(position: DVec3, spacing: f64) -> Self {
+        let reach = NEAR * spacing;
+        Self { position, reach, is_zero: true, is_alone: true, has_two_signs: true, is_flat: false }
+    }
 }
 
 /// Finds a singular point within `reach` of `start`, by Newton's method on the gradient.

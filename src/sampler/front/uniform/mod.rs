@@ -271,8 +271,11 @@ impl LevelFront for UniformFront {
         let (distance, slack_sq) = (2.0 * self.radius, level_slack_sq(self.match_radius));
         let mut slots = particles.slots[parent];
         let mut is_seam = false;
-        // Slot 0 of every particle but a seed is its parent.
-        for (k, &direction) in SLOT_DIRECTION.iter().enumerate().skip(usize::from(!is_seed)) {
+        for (k, &direction) in SLOT_DIRECTION.iter().enumerate() {
+            // Slot 0 of every particle but a seed is its parent; those of a tip are taken.
+            if slots.get(k) != SlotFate::Open {
+                continue;
+            }
             let Prediction { offset, normal, turn } = self.predict(&frame, &form, direction);
             let (nearest_sq, any_sq) = self.around.nearest_sq(offset, normal, slack_sq);
             let is_matched = nearest_sq <= self.match_radius * self.match_radius;

@@ -1,0 +1,306 @@
+//! Tips: isolated points of the surface at which sheets end as cones, with one particle each.
+//!
+//! The *link* of a point is what a small sphere around it cuts out of the surface: around a smooth point one circle, around a tip a
+//! closed curve for each *nappe*, the sheets that meet there (J. Milnor, "Singular Points of Complex Hypersurfaces", §2, 1968). The
+//! particle of a tip has a row for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of particles
+//! from which the front grows.
+
+use crate::math::Bounds;
+use crate::particles::{Particles, SlotFate, Slots};
+use crate::sampler::probe::Probe;
+use glam::{DMat3, DVec3};
+
+/// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the narrowest nappe is three of them wide.
+const DIVISIONS: i32 = 8;
+/// Steps of Newton's method to the surface along the sphere.
+const STEPS: u32 = 6;
+/// A point of the link is found when a step is shorter than this share of the radius.
+const AT_REST: f64 = 1e-9;
+/// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded coefficients open a cone to a neck of
+/// a ten-thousandth of a spacing.
+const SMALL: f64 = 1.0 / 32.0;
+/// Rounds in which the place of a tip is found, on spheres of which each is a quarter of the one before: the error falls with the
+/// square.
+const ROUNDS: u32 = 10;
+/// Determinant of the mean of nnᵀ over the normals n of a link below which the surface is smooth: a cone flatter than 3°.
+const SMOOTH: f64 = 1e-5;
+/// Least cosine of the angle between a nappe's normals and their mean. The rows of the tip on two nappes are told apart by it.
+const LEAST_COSINE: f64 = 0.1;
+/// Cosine of the angle within which a nappe on a larger sphere is the one on the smaller: 45°.
+const ONE_NAPPE: f64 = 0.7;
+/// Least number of particles around a tip: three on a narrow cone would face away from each other.
+const LEAST_RING: f64 = 4.0;
+/// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is nearer.
+const FARTHEST: f64 = 1.4;
+
+/// A point of the surface, by the unit vector to it from the centre of a sphere, with its unit normal.
+#[derive(Clone, Copy, Debug)]
+struct LinkPoint {
+    direction: DVec3,
+    normal: DVec3,
+}
+
+/// A closed curve in which a sphere cuts the surface.
+type Loop = Vec<LinkPoint>;
+
+/// A tip, with the unit vectors towards the middle of each nappe.
+#[derive(Clone, Debug)]
+pub(in super::super) struct Tip {
+    pub(in super::super) position: DVec3,
+    nappes: Vec<DVec3>,
+}
+
+impl Tip {
+    /// The tip at a singular point; none if the surface there is smooth, or its sheets are no cones that face different ways.
+    pub(in super::super) fn at(probe: &mut Probe, position: DVec3, spacing: f64) -> Option<Self> {
+        let link = link(probe, position, SMALL * spacing)?;
+        let faces_out = |curve: &Loop| {
+            let normal = mean(curve, |point| point.normal);
+            curve.iter().all(|point| point.normal.dot(normal) > LEAST_COSINE)
+        };
+        let normals: Vec<DVec3> = link.iter().map(|curve| mean(curve, |point| point.normal)).collect();
+        let faces_away =
+            |(k, normal): (usize, &DVec3)| normals[..k].iter().all(|other| other.dot(*normal) < 0.0);
+        let is_cone = normals.iter().enumerate().all(faces_away)
+            && !link.is_empty()
+            && link.iter().all(faces_out)
+            && spread(&link).determinant() > SMOOTH;
+        let nappes = link.iter().map(|curve| mean(curve, |point| point.direction)).collect();
+        is_cone.then_some(Self { position, nappes })
+    }
+
+    /// The tip near `start`, within two spacings: the point in which the tangent planes around it meet.
+    pub(in super::super) fn near(probe: &mut Probe, start: DVec3, spacing: f64) -> Option<Self> {
+        let (mut position, mut radius) = (start, 2.0 * spacing);
+        for _ in 0..ROUNDS {
+            let link = link(probe, position, radius)?;
+            let matrix = spread(&link);
+            let count = link.iter().map(Vec::len).sum::<usize>() as f64;
+            let right: DVec3 =
+                link.iter().flatten().map(|point| point.normal * point.normal.dot(point.direction)).sum();
+            let step = matrix.inverse() * (right * (radius / count));
+            // Written so that NaN fails.
+            if !(matrix.determinant() > SMOOTH && step.length() <= radius) {
+                return None;
+            }
+            position += step;
+            radius *= 0.25;
+        }
+        Self::at(probe, position, spacing)
+    }
+
+    /// The nappes at a distance from the tip, in their order; none if the sphere of that radius shows others.
+    fn nappes(&self, probe: &mut Probe, distance: f64) -> Option<Vec<Loop>> {
+        let mut open = link(probe, self.position, distance)?;
+        if open.len() != self.nappes.len() {
+            return None;
+        }
+        let own = |nappe: &DVec3| {
+            let is_own = |curve: &Loop| mean(curve, |point| point.direction).dot(*nappe) > ONE_NAPPE;
+            open.iter().position(is_own).map(|k| open.swap_remove(k))
+        };
+        self.nappes.iter().map(own).collect()
+    }
+
+    /// A ring around each nappe. The distances along and around the nappe are a spacing in the mean.
+    fn rings(&self, probe: &mut Probe, spacing: f64) -> Option<Vec<Ring>> {
+        let nappes = self.nappes(probe, spacing)?;
+        let ring = |curve: &Loop| {
+            let parts = length(curve).round().max(LEAST_RING);
+            let distance = spacing * 2.0 / (1.0 + length(curve) / parts);
+            let point = |k| landed(probe, self.position, distance, along(curve, f64::from(k) / parts));
+            let points = (0..parts as u32).map(point).collect::<Option<Loop>>()?;
+            (distance <= FARTHEST * spacing).then_some(Ring { tip: 0, distance, points })
+        };
+        nappes.iter().map(ring).collect()
+    }
+}
+
+/// A ring of particles on a nappe.
+struct Ring {
+    /// The row of the tip.
+    tip: u32,
+    /// Distance from the tip.
+    distance: f64,
+    points: Vec<LinkPoint>,
+}
+
+/// Adds a particle for each tip to columns that are empty, and then a ring of particles around each nappe. A tip that has no room for its
+/// rings gets none.
+pub(in super::super) fn add(
+    probe: &mut Probe,
+    tips: &[Tip],
+    radius: f32,
+    match_radius: f32,
+    bounds: &Bounds,
+    particles: &mut Particles,
+) {
+    let spacing = 2.0 * f64::from(radius);
+    let mut rings: Vec<Ring> = Vec::new();
+    for tip in tips {
+        let Some(around) = tip.rings(probe, spacing) else { continue };
+        let first = particles.len() as u32;
+        for mut ring in around {
+            ring.tip = particles.len() as u32;
+            let normal = mean(&ring.points, |point| point.normal).as_vec3();
+            particles.push_seed(tip.position.as_vec3(), normal, radius, Some(0));
+            particles.twins.push(first);
+            // Its neighbours are known.
+            let slots = &mut particles.slots[ring.tip as usize];
+            (0..Slots::COUNT).for_each(|k| slots.set(k, SlotFate::Matched));
+            rings.push(ring);
+        }
+    }
+    for Ring { tip, distance, points } in rings {
+        let (others, apex) = (particles.len(), particles.position[tip as usize].as_dvec3());
+        for LinkPoint { direction, normal } in points {
+            let (position, normal) = ((apex + direction * distance).as_vec3(), normal.as_vec3());
+            let is_free = (0..others).all(|i| {
+                particles.position[i].distance(position) > match_radius
+                    || particles.normal[i].dot(normal) <= 0.0
+            });
+            if is_free && bounds.contains(position) {
+                let mut slots = Slots::default();
+                slots.set(0, SlotFate::Parent);
+                particles.push(position, normal, radius, tip, 1, slots);
+            }
+        }
+    }
+}
+
+/// The unit vector along the mean of something over a curve.
+fn mean(curve: &Loop, of: impl Fn(&LinkPoint) -> DVec3) -> DVec3 {
+    let sides = (0..curve.len()).map(|k| {
+        let (a, b) = (&curve[k], &curve[(k + 1) % curve.len()]);
+        (of(a) + of(b)) * a.direction.distance(b.direction)
+    });
+    sides.sum::<DVec3>().normalize_or_zero()
+}
+
+/// The mean of nnᵀ over the normals n of a link.
+fn spread(link: &[Loop]) -> DMat3 {
+    let (mut sum, mut count) = (DMat3::ZERO, 0.0);
+    for n in link.iter().flatten().map(|point| point.normal) {
+        sum += DMat3::from_cols(n * n.x, n * n.y, n * n.z);
+        count += 1.0;
+    }
+    sum * (1.0 / count)
+}
+
+/// The directions of a curve, with the first one again at its end.
+fn closed(curve: &Loop) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    (0..curve.len()).map(|k| [curve[k].direction, curve[(k + 1) % curve.len()].direction])
+}
+
+/// Length of a curve, in radii of its sphere.
+fn length(curve: &Loop) -> f64 {
+    closed(curve).map(|[a, b]| a.distance(b)).sum()
+}
+
+/// The direction at a share of the way along a curve.
+fn along(curve: &Loop, share: f64) -> DVec3 {
+    let mut left = share * length(curve);
+    for [a, b] in closed(curve) {
+        let side = a.distance(b);
+        if left < side {
+            return a.lerp(b, left / side);
+        }
+        left -= side;
+    }
+    curve[0].direction
+}
+
+/// The point of the surface on a sphere near a direction, by Newton's method along the sphere.
+fn landed(probe: &mut Probe, centre: DVec3, radius: f64, direction: DVec3) -> Option<LinkPoint> {
+    let mut d = direction.try_normalize()?;
+    for _ in 0..STEPS {
+        probe.count(1);
+        let (value, gradient) = probe.field.value_and_gradient(centre + d * radius);
+        let within = gradient - d * gradient.dot(d);
+        let step = within * (value / (radius * within.length_squared()));
+        d = (d - step).try_normalize()?;
+        if step.length() <= AT_REST {
+            return gradient.try_normalize().map(|normal| LinkPoint { direction: d, normal });
+        }
+    }
+    None
+}
+
+/// The closed curves in which a sphere cuts the surface, as far as a grid of triangles on the sphere shows them; none where f is not
+/// defined, or no point of the surface is found.
+fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
+    let mut values = vec![f64::INFINITY; (SIDE * SIDE * SIDE) as usize];
+    // The ways of the link through the triangles, each by the two sides that it crosses, from both ends.
+    let mut ways: Vec<[u32; 2]> = Vec::new();
+    for triangle in triangles() {
+        for v in triangle {
+            let value = &mut values[v as usize];
+            if *value == f64::INFINITY {
+                probe.count(1);
+                *value = probe.field.value_and_gradient(centre + direction(v) * radius).0;
+            }
+            if value.is_nan() {
+                return None;
+            }
+        }
+        let is_inside = triangle.map(|v| values[v as usize] <= 0.0);
+        let mut crossed = [[0, 1], [1, 2], [2, 0]]
+            .into_iter()
+            .filter(|&[a, b]: &[usize; 2]| is_inside[a] != is_inside[b])
+            .map(|[a, b]| triangle[a].min(triangle[b]) << SHIFT | triangle[a].max(triangle[b]));
+        if let (Some(one), Some(other)) = (crossed.next(), crossed.next()) {
+            ways.extend([[one, other], [other, one]]);
+        }
+    }
+    ways.sort_unstable();
+    let mut is_open = vec![true; ways.len()];
+    let mut curves = Vec::new();
+    // Two ways lead from each side.
+    for first in (0..ways.len()).step_by(2) {
+        let (mut curve, mut next) = (Vec::new(), Some(first));
+        while let Some(place) = next.filter(|&place| is_open[place]) {
+            is_open[place] = false;
+            let [a, b] = [ways[place][0] >> SHIFT, ways[place][0] & ((1 << SHIFT) - 1)];
+            let (at_a, at_b) = (values[a as usize], values[b as usize]);
+            let guess = direction(a).lerp(direction(b), at_a / (at_a - at_b));
+            curve.push(landed(probe, centre, radius, guess)?);
+            let ends = [place, place + 1].map(|way| ways.partition_point(|other| other[0] < ways[way][1]));
+            next = ends.into_iter().find(|&end| is_open[end]);
+        }
+        if !curve.is_empty() {
+            curves.push(curve);
+        }
+    }
+    Some(curves)
+}
+
+/// Numbers of a coordinate of a corner of the octahedron.
+const SIDE: u32 = 2 * DIVISIONS as u32 + 1;
+/// Bits that hold the number of a corner: 2¹³ is above 17³.
+const SHIFT: u32 = 13;
+
+/// The direction of a corner.
+fn direction(corner: u32) -> DVec3 {
+    let [x, y, z] = [corner / (SIDE * SIDE), corner / SIDE % SIDE, corner % SIDE].map(f64::from);
+    (DVec3::new(x, y, z) - f64::from(DIVISIONS)).normalize_or_zero()
+}
+
+/// The triangles of an octahedron whose edges are divided, by the numbers of their corners.
+fn triangles() -> impl Iterator<Item = [u32; 3]> {
+    let signs = (0..8).map(|octant| [0, 1, 2].map(|axis| 1 - 2 * (octant >> axis & 1)));
+    signs.flat_map(|[x, y, z]| {
+        let corner = move |a: i32, b: i32| {
+            let place = [x * a, y * b, z * (DIVISIONS - a - b)].map(|c| (c + DIVISIONS) as u32);
+            (place[0] * SIDE + place[1]) * SIDE + place[2]
+        };
+        (0..DIVISIONS * DIVISIONS).flat_map(move |k| {
+            let (a, b) = (k / DIVISIONS, k % DIVISIONS);
+            let up = [corner(a, b), corner(a + 1, b), corner(a, b + 1)];
+            let down = [corner(a + 1, b), corner(a + 1, b + 1), corner(a, b + 1)];
+            [(1, up), (2, down)]
+                .into_iter()
+                .filter(move |(room, _)| a + b + room <= DIVISIONS)
+                .map(|(_, t)| t)
+        })
+    })
+}

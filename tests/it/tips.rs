@@ -1,0 +1,107 @@
+//! Tips: isolated points of the surface at which sheets end as cones, where one particle stands for all of them.
+
+use crate::settings;
+use glam::Vec3;
+use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
+use marching_particles::mesh::build::{MeshOptions, triangulate_particles};
+use marching_particles::sampler::Settings;
+use marching_particles::session::{FieldRequest, Session};
+
+/// A surface with its tips and its topology in a cube, whose nappes are sheets of their own.
+struct Tipped {
+    formula: String,
+    half: f64,
+    tips: usize,
+    components: usize,
+    euler: i64,
+}
+
+fn tipped(formula: &str, half: f64, tips: usize, components: usize, euler: i64) -> Tipped {
+    Tipped { formula: formula.to_owned(), half, tips, components, euler }
+}
+
+fn surfaces() -> Vec<Tipped> {
+    let gallery = |id: &str| gallery::find(id).expect("in the gallery").formula.to_owned();
+    vec![
+        // Two discs at the apex.
+        tipped("x^2 + y^2 = z^2", 1.0, 1, 2, 2),
+        // f has no gradient at the apex.
+        tipped("sqrt(x^2 + y^2) = z", 1.0, 1, 1, 1),
+        tipped("sqrt(x^2 + 4y^2) + 0.3x = z", 1.0, 1, 1, 1),
+        // Narrow and wide cones, one that is no quadric, and one that opens along a diagonal.
+        tipped("x^2 + y^2 = z^2/9", 1.0, 1, 2, 2),
+        tipped("x^2 + y^2 = 9z^2", 1.0, 1, 2, 2),
+        tipped("x^4 + y^4 = z^4", 1.0, 1, 2, 2),
+        tipped("x y + y z + z x = x y z", 1.1, 1, 2, 2),
+        // A drop on a trumpet, a spindle with a tip at either end, and two drops.
+        tipped("x^2 + y^2 + z^3 = z^2", 1.3, 1, 2, 3),
+        tipped("sqrt(x^2 + y^2) = 1 - z^2", 1.3, 2, 1, 2),
+        tipped(&gallery("octdong").replace("a z", "z"), 1.2, 1, 2, 4),
+        // A tetrahedron with a trumpet at each corner.
+        tipped(&gallery("cayley").replace("= t", "= 1"), 1.6, 4, 5, 6),
+    ]
+}
+
+#[test]
+fn one_particle_stands_at_a_tip_and_the_sheets_close_around_it() {
+    for Tipped { formula, half, tips, components, euler } in surfaces() {
+        for radius_share in [0.004, 0.009] {
+            let settings = settings!(radius_share: radius_share; ..Settings::default());
+            let mut session = Session::new();
+            let request = FieldRequest {
+                formula: Some(formula.clone()),
+                bounds: Some(Bounds::cube(half)),
+                ..FieldRequest::default()
+            };
+            session.set_field(&request).expect("a formula");
+            session.start(&settings).expect("valid settings");
+            while session.run.step(100_000).stop_reason.is_none() {}
+            let name = format!("{formula} at {radius_share}");
+            let report = session.report();
+            let quality = report.measures.quality.expect("particles");
+            assert_eq!(report.proof.singular_points, Some(tips as u64), "{name}");
+            assert_eq!((report.proof.components, quality.connectivity.euler), (components, euler), "{name}");
+            let is_open = |text: &str| text.contains("leave") || text.contains("The mesh has");
+            let warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+            assert!(!warnings.iter().any(|text| is_open(text)), "{name}: {warnings:?}");
+
+            let particles = session.run.particles();
+            let firsts: Vec<usize> =
+                (0..particles.twins.len()).filter(|&i| particles.first_row(i) == i).collect();
+            assert_eq!(firsts.len(), tips, "{name}");
+            assert_eq!(particles.count(), particles.len() - (particles.twins.len() - tips), "{name}");
+            let spacing = 2.0 * particles.radius[0];
+            let bounds = session.run.bounds();
+            let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
+            let mesh = triangulate_particles(particles, &options);
+            assert_eq!(
+                (mesh.topology.components.len(), mesh.topology.euler()),
+                (components, euler),
+                "{name}"
+            );
+            assert_eq!((&mesh.unfilled[..], &mesh.left_out[..]), (&[][..], &[][..]), "{name}");
+            for i in 0..particles.twins.len() {
+                let tip = particles.position[i];
+                assert_eq!(
+                    (particles.level[i], tip),
+                    (0, particles.position[particles.first_row(i)]),
+                    "{name}"
+                );
+                let around: Vec<Vec3> = mesh
+                    .triangles
+                    .iter()
+                    .filter(|triangle| triangle.contains(&(i as u32)))
+                    .flatten()
+                    .map(|&v| particles.position[v as usize])
+                    .filter(|&p| p != tip)
+                    .collect();
+                assert!(around.len() >= 6, "{name}: {} corners around {tip}", around.len());
+                for p in around {
+                    let share = p.distance(tip) / spacing;
+                    assert!((0.5..1.45).contains(&share), "{name}: {p} is {share} spacings from {tip}");
+                }
+            }
+        }
+    }
+}
