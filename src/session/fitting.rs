@@ -75,7 +75,7 @@ impl SolidSettings {
     /// given.
     #[must_use]
     pub fn made_of(&self, field: Formula, closing: Option<&Bounds>) -> Formula {
-        let mut solid = field.as_surface();
+        let mut solid = field.without_solid();
         if let Some(thickness) = self.sheet() {
             solid = solid.thickened(thickness);
         }

@@ -272,7 +272,7 @@ impl Formula {
 
     /// Field of the surface itself again, after [`Formula::thickened`] and [`Formula::closed_by`].
     #[must_use]
-    pub fn as_surface(mut self) -> Self {
+    pub fn without_solid(mut self) -> Self {
         if self.solid != Solid::default() {
             self.solid = Solid::default();
             self.make_solid();
