@@ -84,7 +84,8 @@ pub(crate) struct SampleArguments {
     pub(crate) out: Vec<PathBuf>,
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
-    /// colours), obj, stl or ply (with what --out writes). May be given again; replaces what is there
+    /// colours), obj, stl or ply (with what --out writes). May be given again; replaces what is there. Unless --method or --relax is
+    /// given, the method is refined, whose triangles are better
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 

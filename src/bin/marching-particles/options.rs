@@ -17,6 +17,9 @@ const SAMPLING: &str = "sampling";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
+/// The method, and the steps that only one of them takes.
+const METHOD: &str = "method";
+const RELAX_STEPS: &str = "relax_steps";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
@@ -46,6 +49,11 @@ impl SamplingOptions {
             settings.max_particles = settings.max_particles.max(room);
         }
         settings
+    }
+
+    /// Whether the options leave it open which method places the particles.
+    pub(crate) fn leaves_method_open(&self) -> bool {
+        ![METHOD, RELAX_STEPS].iter().any(|name| self.values.contains_key(*name))
     }
 }
 

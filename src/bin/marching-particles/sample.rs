@@ -15,8 +15,8 @@ use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{BoxFaces, SolidSettings};
 use marching_particles::{
-    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Parameter, Phase, Reach,
-    Run, Settings, StopReason, gallery,
+    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Method, Parameter, Phase,
+    Reach, Run, Settings, StopReason, gallery,
 };
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -60,6 +60,9 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
     let settings_in = |fitted: &Bounds| {
         let mut settings = arguments.sampling.settings(&bounds.unwrap_or(*fitted));
         settings.bounds = bounds;
+        if !arguments.mesh.is_empty() && arguments.sampling.leaves_method_open() {
+            settings.method = Method::Refined;
+        }
         settings
     };
     let mut run = Run::start_with(field, settings_in).map_err(refused)?;
