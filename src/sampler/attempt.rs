@@ -72,7 +72,7 @@ pub(super) struct Refining {
     pub(super) bend: Vec3,
     /// Number of refinements that could not go on.
     pub(super) failures: u32,
-    /// Error of the last refinement that could not go on.
+    /// Why coarser fronts could not be refined, if that is known.
     pub(super) failure: Option<Refusal>,
 }
 
@@ -155,7 +155,9 @@ impl Attempt {
         if let Some(sizing) = &mut sizing {
             sizing.scale_to(count / self.packing);
         }
-        self.refining = Some(Refining { halvings, sizing, ladder: None, bend, failures: 0, failure: None });
+        // Why no coarser front is tried, should this one fail.
+        let failure = (halvings == 0).then_some(Refusal::Bent { at: bend.into() });
+        self.refining = Some(Refining { halvings, sizing, ladder: None, bend, failures: 0, failure });
         None
     }
 

@@ -3,7 +3,7 @@
 use super::Sampler;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
-use crate::sampler::attempt::Attempt;
+use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips;
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular;
@@ -437,15 +437,21 @@ impl Sampler {
         })
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it
-    /// leaves coarser ones to other components.
+    /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between creases are refined once at least, and
+    /// so is a lone component of sizes that differ.
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
-        let least = if self.tools.coarse.are_several { 0 } else { 1 };
+        let is_lone = !self.tools.coarse.are_several;
         self.tools.coarse.end();
+        let least = |refining: &Refining| {
+            u32::from(refining.ladder.is_some() || is_lone && refining.sizing.is_some())
+        };
         match &mut self.attempt.refining {
-            Some(refining) if refining.halvings > least && refusal.is_coarse() => refining.halvings -= 1,
+            Some(refining) if refining.halvings > least(refining) && refusal.is_coarse() => {
+                // Why a coarser front failed says more than the last refusal, which may only be that no other front can be tried.
+                refining.failure = refining.failure.or(Some(refusal));
+                refining.halvings -= 1;
+            }
             refining => {
-                // Why a refinement failed says more than the last refusal, which may only be that no other front can be tried.
                 let failure = refining.as_ref().and_then(|refining| refining.failure);
                 self.counts.refusal = failure.or(Some(refusal));
                 self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());

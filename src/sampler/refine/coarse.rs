@@ -26,9 +26,9 @@ pub(crate) const FRONT_RADIUS: f64 = 0.95;
 const MAX_LEVELS: u32 = 6;
 /// Largest product of coarse spacing and curvature: 0.89 has worked wherever it was tried, 1.45 once, 1.54 nowhere.
 const MAX_BEND: f64 = 0.9;
-/// Largest product of coarse spacing and curvature for a front that is refined once only: there is no finer front to choose. With up to
-/// 3.0 it was good enough wherever that was tried; beyond, an edge spans half a turn.
-const MAX_BEND_ONCE: f64 = 3.2;
+/// Largest product of spacing and curvature for a front that is refined once, or healed at full resolution. With up to 3.0 it was good
+/// enough wherever that was tried; beyond, an edge spans half a turn.
+const MAX_BEND_LEAST: f64 = 3.2;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
 pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<f64> {
@@ -39,13 +39,14 @@ pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<
 }
 
 /// Number of times that a front can be refined that has `count` particles in the end, where the spacing times the largest curvature
-/// is `bend`; `None` if it cannot be refined. A front at full resolution is no choice: surgery on it leaves pairs that crowd.
+/// is `bend`; 0 if order is made at full resolution, and `None` if it cannot be made.
 pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     let particles = |halvings: u32| count / f64::from(1_u32 << (2 * halvings));
-    let is_large = |halvings: u32| particles(halvings) >= f64::from(LEAST_PARTICLES);
-    let is_coarse = |&halvings: &u32| bend * f64::from(1_u32 << halvings) <= MAX_BEND && is_large(halvings);
-    let once = || (2.0 * bend <= MAX_BEND_ONCE && is_large(1)).then_some(1);
-    (1..=MAX_LEVELS).rev().find(is_coarse).or_else(once)
+    let is_large = |halvings: &u32| particles(*halvings) >= f64::from(LEAST_PARTICLES);
+    let bends_up_to = |most: f64| move |&halvings: &u32| bend * f64::from(1_u32 << halvings) <= most;
+    let coarsest = (1..=MAX_LEVELS).rev().filter(is_large).find(bends_up_to(MAX_BEND));
+    // With fewer particles the front has no fewer defects than a mesh that is healed.
+    coarsest.or_else(|| [1, 0].into_iter().filter(|_| is_large(&1)).find(bends_up_to(MAX_BEND_LEAST)))
 }
 
 /// The triangles between the particles of a front, if they can be had beyond doubt.
@@ -246,7 +247,8 @@ mod tests {
             (0.3, 56_000.0, Some(1)),
             (0.5, 56_000.0, Some(1)),
             (1.59, 56_000.0, Some(1)),
-            (1.61, 56_000.0, None),
+            (1.61, 56_000.0, Some(0)),
+            (3.21, 56_000.0, None),
             (f64::INFINITY, 56_000.0, None),
             (f64::NAN, 56_000.0, None),
             (0.033, 719.0, None),

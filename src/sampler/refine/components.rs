@@ -118,7 +118,9 @@ impl CoarseFronts {
         if let Some(candidate) = self.candidates.last() {
             return Ok(Next::Front(candidate.halvings));
         }
-        if self.components.iter().all(|component| component.refinement.target.halvings == 0) {
+        // Sizes that differ are healed at full resolution beside coarser components only: alone, pairs and holes may come out worse.
+        let is_whole = |component: &AcceptedComponent| component.refinement.target.halvings == 0;
+        if surface.sizing.is_some() && self.components.iter().all(is_whole) {
             return Err(surface.bent());
         }
         let components = mem::take(&mut self.components);
@@ -143,9 +145,6 @@ impl CoarseFronts {
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
-        if target.halvings == 0 && !self.are_several {
-            return Err(surface.bent());
-        }
         for part in &parts {
             let refinement = Refinement::of_component(probe, surface, part, target)?;
             let mut part = part.clone();

@@ -113,6 +113,8 @@ struct Shape {
 /// Goals of the level under way, and the recipe that leads to them.
 #[derive(Clone, Debug)]
 struct Goals {
+    /// Whether it is the level of the front, where order is made. At full resolution the goals of a last level follow on it.
+    is_first: bool,
     /// Levels still to come after this one.
     to_come: u32,
     recipe: Recipe,
@@ -154,7 +156,8 @@ enum Task {
 
 impl Goals {
     fn new(facts: &LevelFacts) -> Self {
-        Self { to_come: facts.to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
+        let &LevelFacts { is_first, to_come, .. } = facts;
+        Self { is_first, to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
     }
 }
 
@@ -197,7 +200,7 @@ impl Refinement {
             target,
             patch,
             level: Goals::new(&LevelFacts {
-                halvings: target.halvings,
+                is_first: true,
                 to_come: target.halvings,
                 is_graded: target.grading.is_some(),
                 has_border: shape.has_border,
@@ -240,6 +243,11 @@ impl Refinement {
         let at = match self.task {
             Task::Pass { pass, .. } => pass as f64 / self.level.recipe.passes.len() as f64,
             _ => 1.0,
+        };
+        let at = match (self.target.halvings, self.level.is_first) {
+            (0, true) => 0.5 * at,
+            (0, false) => 0.5 + 0.5 * at,
+            _ => at,
         };
         // From a quarter of the share of this level to all of it.
         coarse_share(self.level.to_come) * (1.0 + 3.0 * at)
@@ -321,12 +329,21 @@ impl Refinement {
 
     /// The task that begins a pass of the recipe, or the task after the last pass.
     fn begin_pass(&mut self, pass: usize) -> Task {
-        let mesh = &self.net.mesh;
         let Some(&kind) = self.level.recipe.passes.get(pass) else {
+            if self.level.is_first && self.level.to_come == 0 {
+                // At full resolution the lattice comes to rest where order was made.
+                let net = &self.net;
+                let all = (0..net.mesh.vertex_slots() as u32).filter(|&v| net.mesh.has_vertex(v));
+                let (count, defects) =
+                    all.fold((0, 0), |(n, defects), v| (n + 1, defects + u32::from(net.excess(v) != 0)));
+                self.level = self.finer(0, defects as f32 / count as f32);
+                return self.begin_pass(0);
+            }
             // Before the columns of the finished level take their place.
             self.memory = Memory { block: core::mem::take(&mut self.memory.block), ..Memory::default() };
             return Task::Show(Rings::new(&self.net));
         };
+        let mesh = &self.net.mesh;
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
             Pass::Thin => {
@@ -383,7 +400,12 @@ impl Refinement {
                 self.net.limit_sizes(rise, (next..last).map(way));
             }
             Pass::Measure => self.tally.measure(net, next..last),
-            Pass::Inspect => self.tally.inspect(net, next..last),
+            Pass::Inspect => {
+                self.tally.inspect(net, next..last);
+                if self.target.halvings == 0 && !net.is_graded() {
+                    self.tally.inspect_shapes(net, self.level.spacing, next..last);
+                }
+            }
             Pass::Sweep => net.relax(&mut ground, springs, next..last),
             Pass::Flip => net.flip(next..last),
             Pass::Mend { loss } => {
@@ -393,7 +415,13 @@ impl Refinement {
                 }
             }
             Pass::Find => {
-                let is_defect = |&v: &u32| net.mesh.has_vertex(v) && net.excess(v) != 0;
+                // Where the box cuts the surface, the springs leave fives alone better: Lloyd's method there costs 0.5° of the mean angle.
+                let is_cut = self.shape.has_border && !net.is_creased();
+                let is_defect = |&v: &u32| {
+                    net.mesh.has_vertex(v)
+                        && net.excess(v) != 0
+                        && (!is_cut || net.mesh.is_border(v) || net.excess(v) > 1)
+                };
                 self.memory.near.extend((next..last).filter(is_defect));
             }
             Pass::Centre => {
@@ -421,6 +449,12 @@ impl Refinement {
         Ok((self.begin_pass(following), units))
     }
 
+    /// Goals of a level after the coarse one. A share of its particles has `defects`.
+    fn finer(&self, to_come: u32, defects: f32) -> Goals {
+        let (is_graded, has_border) = (self.target.grading.is_some(), self.shape.has_border);
+        Goals::new(&LevelFacts { is_first: false, to_come, is_graded, has_border, defects })
+    }
+
     /// Largest slope of the sizes at this level, per unit of length.
     fn rise(&self) -> f32 {
         let spacing = 2.0 * self.target.radius * (1_u32 << self.level.to_come) as f32;
@@ -436,6 +470,9 @@ impl Refinement {
             Pass::Inspect => {
                 if let Some(at) = self.tally.inverted() {
                     return Err(Refusal::Folded { at: at.into() });
+                }
+                if let Some(at) = self.tally.stretched() {
+                    return Err(Refusal::Bent { at: at.into() });
                 }
             }
             _ => {}
@@ -512,13 +549,7 @@ impl Refinement {
         if end < ends.len() {
             return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
         }
-        self.level = Goals::new(&LevelFacts {
-            halvings: self.target.halvings,
-            to_come: self.level.to_come - 1,
-            is_graded: self.target.grading.is_some(),
-            has_border: self.shape.has_border,
-            defects: defects as f32 / ends.len() as f32,
-        });
+        self.level = self.finer(self.level.to_come - 1, defects as f32 / ends.len() as f32);
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }

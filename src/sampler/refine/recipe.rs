@@ -56,7 +56,9 @@ pub(super) struct Tuning {
     between: Plan,
     /// Plan of the last level, where the lattice comes to rest. Surgery would add more defects there than it removes.
     last: Plan,
-    /// Rounds of surgery at a level, with a sweep after each. On the last level but one, which costs most, the first half of them is left out.
+    /// Rounds of surgery at a first level at full resolution, which then comes to rest by the plan of the last one. No trial may lose.
+    whole_rounds: usize,
+    /// Rounds of surgery at any other level, with a sweep after each. On the last level but one, which costs most, the first half of them is left out.
     rounds: usize,
     /// Loss that the first round of surgery accepts, in units of the spacing squared.
     loss: f32,
@@ -89,6 +91,9 @@ pub(super) const TUNING: Tuning = Tuning {
     between: Plan { sweeps: 4, theta: 0.9, delta: 0.015 },
     // θ without a defect, before the limits below.
     last: Plan { sweeps: 6, theta: 1.3, delta: 0.0 },
+    // In 23 runs on random surfaces and models 84.2 % have six neighbours with two rounds, in 1.5 times the time of the front; 81.9 % with one, and
+    // 87.0 % with ten and losses as at coarse levels, in 2.2 times. The fronts have 77 %.
+    whole_rounds: 2,
     // With 16 rounds at the first level, and two or three sweeps after each, no figure is better beyond noise.
     rounds: 10,
     // With 0.06 the share of particles with six neighbours is 0.09 points smaller, and holes are 0.6 % wider.
@@ -114,8 +119,8 @@ pub(super) const TUNING: Tuning = Tuning {
 /// The level for which a recipe is made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelFacts {
-    /// Levels after the first one.
-    pub(super) halvings: u32,
+    /// Whether it is the coarse level, where order is made.
+    pub(super) is_first: bool,
     /// Levels still to come after this one.
     pub(super) to_come: u32,
     /// Whether sizes differ.
@@ -135,8 +140,8 @@ fn losses() -> impl Iterator<Item = f32> {
 
 impl Recipe {
     pub(super) fn of(level: &LevelFacts) -> Self {
-        let &LevelFacts { halvings, to_come, is_graded, has_border, defects } = level;
-        let (is_first, is_last) = (to_come == halvings, to_come == 0);
+        let &LevelFacts { is_first, to_come, is_graded, has_border, defects } = level;
+        let is_last = to_come == 0 && !is_first;
         let plan = match (is_first, is_last) {
             (true, _) => TUNING.first,
             (false, false) => TUNING.between,
@@ -146,20 +151,19 @@ impl Recipe {
             }
         };
         let mut recipe = Self { passes: vec![Pass::Measure], theta: plan.theta, delta: plan.delta };
-        let left_out = match to_come {
-            _ if is_first => 0,
-            0 => TUNING.rounds,
-            1 => TUNING.rounds / 2,
-            _ => 0,
+        let losses: Vec<f32> = match to_come {
+            0 if is_last => Vec::new(),
+            0 => vec![0.0; TUNING.whole_rounds],
+            1 if !is_first => losses().skip(TUNING.rounds / 2).collect(),
+            _ => losses().collect(),
         };
-        let losses = losses().skip(left_out);
         match (is_graded, is_first) {
-            (false, _) => recipe.even(plan, losses),
-            (true, true) => recipe.blend(plan, losses),
-            (true, false) => recipe.graded(plan, losses),
+            (false, _) => recipe.even(plan, &losses),
+            (true, true) => recipe.blend(plan, &losses),
+            (true, false) => recipe.graded(plan, &losses),
         }
         // Lloyd's method is for one size: it would draw small particles and large ones to one distance.
-        if is_last && !is_first && !is_graded {
+        if is_last && !is_graded {
             recipe.passes.push(Pass::Find);
             recipe.passes.extend([Pass::Centre].repeat(TUNING.lloyd));
         }
@@ -176,17 +180,16 @@ impl Recipe {
         recipe
     }
 
-    fn even(&mut self, plan: Plan, losses: impl Iterator<Item = f32>) {
+    fn even(&mut self, plan: Plan, losses: &[f32]) {
         self.sweep(plan.sweeps);
-        for loss in losses {
+        for &loss in losses {
             self.passes.push(Pass::Mend { loss });
             self.sweep(1);
         }
     }
 
     /// The first level of sizes that differ: it is brought to rest with one size, and led to the others in two steps.
-    fn blend(&mut self, plan: Plan, losses: impl Iterator<Item = f32>) {
-        let losses: Vec<f32> = losses.collect();
+    fn blend(&mut self, plan: Plan, losses: &[f32]) {
         let (half, whole) = losses.split_at(TUNING.blend_rounds);
         self.sweep(plan.sweeps);
         for (is_whole, losses) in [(false, half), (true, whole)] {
@@ -200,10 +203,10 @@ impl Recipe {
         }
     }
 
-    fn graded(&mut self, plan: Plan, losses: impl Iterator<Item = f32>) {
+    fn graded(&mut self, plan: Plan, losses: &[f32]) {
         self.size(true);
         self.sweep(plan.sweeps);
-        for loss in losses {
+        for &loss in losses {
             self.size(true);
             self.passes.push(Pass::Mend { loss });
             self.sweep(1);
@@ -230,7 +233,8 @@ mod tests {
     use super::{LevelFacts, Pass, Recipe, TUNING};
 
     fn passes(to_come: u32, is_graded: bool) -> Vec<Pass> {
-        Recipe::of(&LevelFacts { halvings: 3, to_come, is_graded, has_border: false, defects: 0.0 }).passes
+        let is_first = to_come == 3;
+        Recipe::of(&LevelFacts { is_first, to_come, is_graded, has_border: false, defects: 0.0 }).passes
     }
 
     fn rounds(passes: &[Pass]) -> usize {
@@ -267,8 +271,8 @@ mod tests {
     #[test]
     fn more_defects_make_the_last_level_stiffer() {
         let theta = |to_come, defects| {
-            Recipe::of(&LevelFacts { halvings: 2, to_come, is_graded: false, has_border: false, defects })
-                .theta
+            let facts = LevelFacts { is_first: false, to_come, is_graded: false, has_border: false, defects };
+            Recipe::of(&facts).theta
         };
         let thetas = [0.0, 0.01, 0.015, 0.02, 0.03, 1.0].map(|defects| theta(0, defects));
         assert!(thetas.is_sorted_by(|a, b| a >= b) && thetas[1] > thetas[4], "{thetas:?}");

@@ -18,7 +18,15 @@ pub(super) struct Tally {
     border: f64,
     /// A corner of the first face that looks against the normal of a corner.
     inverted: Option<Vec3>,
+    /// A corner of the first face that is stretched.
+    stretched: Option<Vec3>,
 }
+
+/// A face is stretched if its circumcircle is wider than this, over that of the lattice's faces. The front that would stand in its place has
+/// holes of 1.25 to 1.4.
+const WIDEST: f32 = 1.33;
+/// A face is stretched if it has an angle with a larger cosine, that of 30°. The front has angles of 31° to 35°.
+const LARGEST_COS: f32 = 0.866;
 
 impl Tally {
     /// Adds the areas of some faces.
@@ -50,6 +58,27 @@ impl Tally {
         }
     }
 
+    /// Looks for stretched faces that are not at the border among some faces of one size.
+    pub(super) fn inspect_shapes(&mut self, net: &Net, spacing: f32, faces: Range<u32>) {
+        let widest = WIDEST * spacing / SQRT_3 as f32;
+        for face in faces.filter_map(|f| net.mesh.face(f)) {
+            if self.stretched.is_some() || face.iter().any(|&v| net.mesh.is_border(v)) {
+                continue;
+            }
+            let p = face.map(|v| net.position[v as usize]);
+            let [a, b, c] = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
+            let [la, lb, lc] = [a, b, c].map(Vec3::length);
+            let radius = la * lb * lc / (2.0 * a.cross(c).length());
+            let largest_cos = [-a.dot(b) / (la * lb), -b.dot(c) / (lb * lc), -c.dot(a) / (lc * la)]
+                .into_iter()
+                .fold(0.0, f32::max);
+            // Written so that NaN counts.
+            if !(radius <= widest && largest_cos <= LARGEST_COS) {
+                self.stretched = Some(p[0]);
+            }
+        }
+    }
+
     /// Area of the faces.
     pub(super) fn flat_area(&self) -> f64 {
         0.5 * self.coarse
@@ -73,5 +102,10 @@ impl Tally {
     /// A place where a face looks against the normal of a corner, if there is one.
     pub(super) fn inverted(&self) -> Option<Vec3> {
         self.inverted
+    }
+
+    /// A place where a face is stretched, if there is one.
+    pub(super) fn stretched(&self) -> Option<Vec3> {
+        self.stretched
     }
 }
