@@ -1,6 +1,5 @@
 //! Tips: isolated points of the surface at which sheets end as cones, where one particle stands for all of them.
 
-use crate::settings;
 use glam::Vec3;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
