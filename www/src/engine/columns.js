@@ -40,7 +40,7 @@ export class Columns {
     this.count = 0;
     /** Number of particles. */
     this.particles = 0;
-    /** Of each row of a particle on a crease, which come first, the first row of that particle; empty without creases. */
+    /** The first row of the particle of each row on a crease. Those rows come first; empty without creases. */
     this.twins = new Uint32Array(0);
     /** Pairs of rows between which a crease goes on. */
     this.segments = new Uint32Array(0);

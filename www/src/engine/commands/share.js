@@ -9,8 +9,7 @@ import { description } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { SampleRequest } from '../sampling/types.js'
- * @import { EngineCommands } from '../types.js'
+ * @import { EngineCommands, FieldRequest, Settings } from '../types.js'
  */
 
 /** Largest width or height of a saved picture. */
@@ -74,7 +73,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     },
   };
 
-  /** Returns a description of what was sampled for the header of a file. @param {SampleRequest} request */
+  /** Returns a description of what was sampled for the header of a file. @param {{ field: FieldRequest, settings: Settings }} request */
   function titleOf({ field, settings }) {
     const model = field.points && runs.loader.client.get(field.points)?.info.info;
     if (model) return `${model.name}, interpolated from ${model.centres} of ${model.points} points`;

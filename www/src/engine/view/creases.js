@@ -1,6 +1,6 @@
 /**
- * Uploads the creases of a surface to the graphics device: thin lines along them. The particles on them are drawn as dots
- * on the lines, because a disc on either side would stick out beyond the edge.
+ * Uploads the creases of a surface to the graphics device: thin lines along them. The particles on them are drawn as
+ * dots on the lines, because a disc on either side would stick out beyond the edge.
  *
  * @module
  */
@@ -16,8 +16,8 @@ import { PALETTES } from './palettes.js';
 const END = 4;
 
 /**
- * Returns the radii of rows from `first` to `last` as the renderers take them: that of a particle on a crease is negative
- * in its first row, which is drawn as a dot, and 0 in the others, which are not drawn.
+ * Returns the radii of rows from `first` to `last` as the renderers take them: that of a particle on a crease is
+ * negative in its first row, which is drawn as a dot, and 0 in the others, which are not drawn.
  * @param {Columns} columns @param {number} first @param {number} last
  */
 export function radiiOf({ radii, twins }, first, last) {
@@ -39,7 +39,10 @@ export function endsOf({ segments, positions, radii }) {
 }
 
 export class CreaseUpload {
-  /** The segments that the device holds, and the theme of their colours. @type {{segments: Uint32Array, theme: Theme}} */
+  /**
+   * The segments that the device holds, and the theme of their colours.
+   * @type {{segments: Uint32Array, theme: Theme}}
+   */
   #held;
 
   /** @param {Columns} columns */

@@ -1,4 +1,4 @@
-/** The choices of the solid that is made of the surface of a formula: closed by the clip box, a sheet of some thickness. */
+/** The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. */
 import { computed, signal } from '@preact/signals-core';
 import { readThickness } from '../box.js';
 import { h, live, uniqueId } from '../dom.js';

@@ -177,7 +177,8 @@ function choices(engine, name, key, values, hidden) {
  * Creates a line of buttons that switch parts of the view on and off.
  * @param {Engine} engine
  * @param {string} name
- * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label, explanation
+ * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label,
+ *   explanation
  * @param {() => boolean} [hidden]
  */
 function switches(engine, name, parts, hidden) {
