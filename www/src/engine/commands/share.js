@@ -73,7 +73,10 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     },
   };
 
-  /** Returns a description of what was sampled for the header of a file. @param {{ field: FieldRequest, settings: Settings }} request */
+  /**
+   * Returns a description of what was sampled for the header of a file.
+   * @param {{ field: FieldRequest, settings: Settings }} request
+   */
   function titleOf({ field, settings }) {
     const model = field.points && runs.loader.client.get(field.points)?.info.info;
     if (model) return `${model.name}, interpolated from ${model.centres} of ${model.points} points`;
