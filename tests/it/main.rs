@@ -56,6 +56,7 @@ mod shaders;
 mod sharp;
 mod sizing;
 mod smooth;
+mod solid_table;
 mod solids;
 mod systems;
 mod tips;

@@ -63,21 +63,21 @@ impl Meeting {
         None
     }
 
-    /// Unit vectors from the crease into the patches of the first and of the second branch, in their tangent planes. There are none
-    /// where one of the branches gives f on neither side, or on both.
-    pub(super) fn inward(&self, probe: &mut Probe, reach: f64) -> Option<[DVec3; 2]> {
-        let mut inward = [DVec3::ZERO; 2];
-        for (b, inward) in self.branches.into_iter().zip(&mut inward) {
+    /// Whether the patches of the first and of the second branch are on the left of the crease, in the direction of its tangent and seen from
+    /// outside. There is no crease where one of the branches gives f on neither side, or on both.
+    pub(super) fn are_left(&self, probe: &mut Probe, reach: f64) -> Option<[bool; 2]> {
+        let mut are_left = [false; 2];
+        for (b, is_left) in self.branches.into_iter().zip(&mut are_left) {
             let (_, gradient) = branch(probe, b, self.position);
             let aside = gradient.cross(self.tangent).try_normalize()?;
-            let [ahead, behind] =
+            let [left, right] =
                 [aside, -aside].map(|d| probe.field.branch_at(self.position + d * (ASIDE * reach)) == b);
-            if ahead == behind {
+            if left == right {
                 return None;
             }
-            *inward = if ahead { aside } else { -aside };
+            *is_left = left;
         }
-        Some(inward)
+        Some(are_left)
     }
 }
 

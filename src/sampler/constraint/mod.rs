@@ -72,7 +72,7 @@ impl Creases {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
                         .filter(|meeting| bounds.holds(meeting.position) && !creases.has_point(meeting, step))
-                        .filter(|meeting| meeting.inward(probe, step).is_some());
+                        .filter(|meeting| meeting.are_left(probe, step).is_some());
                     if let Some(meeting) = meeting {
                         trace::follow(probe, bounds, &mut creases, meeting, step);
                     }

@@ -32,7 +32,8 @@ enum WalkEnd {
 
 /// Follows the crease through `start`, and adds it with its corners.
 pub(super) fn follow(probe: &mut Probe, bounds: &Bounds, creases: &mut Creases, start: Meeting, step: f64) {
-    let mut walk = Walk { probe, bounds, start, step };
+    let are_left = start.are_left(probe, step);
+    let mut walk = Walk { probe, bounds, start, are_left, step };
     let mut points = vec![start.position];
     let end = walk.run(creases, start.tangent, &mut points);
     let is_closed = matches!(end, WalkEnd::Closed);
@@ -57,6 +58,8 @@ struct Walk<'a, 'f> {
     probe: &'a mut Probe<'f>,
     bounds: &'a Bounds,
     start: Meeting,
+    /// On which side the patches are: where a ridge becomes a groove a crease ends and another one begins.
+    are_left: Option<[bool; 2]>,
     /// Usual length of a step.
     step: f64,
 }
@@ -77,8 +80,7 @@ impl Walk<'_, '_> {
                 points.push(end);
                 return WalkEnd::Corner(creases.corner_at(end, &self.start.branches, ONE_END * self.step));
             }
-            let is_active = next.inward(self.probe, self.step).is_some();
-            if !is_active {
+            if next.are_left(self.probe, self.step) != self.are_left {
                 return self.end_before(creases, here, &next, points);
             }
             if !self.bounds.holds(next.position) {
@@ -164,7 +166,7 @@ impl Walk<'_, '_> {
             let middle = 0.5 * (active + inactive);
             let point = Meeting::of_branches(self.probe, branches, middle, way.length(), FADED);
             match point {
-                Some(point) if point.inward(self.probe, 1e-3 * self.step).is_some() => {
+                Some(point) if point.are_left(self.probe, 1e-3 * self.step) == self.are_left => {
                     active = point.position;
                 }
                 _ => inactive = middle,
