@@ -25,7 +25,7 @@ const fn solid(
 /// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
-pub(crate) const SOLIDS: [Solid; 17] = [
+pub(crate) const SOLIDS: [Solid; 18] = [
     solid("cube", "max(abs(x), abs(y), abs(z)) - 1", 2, 8.0, [12, 8]),
     solid(
         "turned cube",
@@ -105,4 +105,5 @@ pub(crate) const SOLIDS: [Solid; 17] = [
         4.0 * PI / 3.0 * 0.868_084_7,
         [2, 0],
     ),
+    solid("two cylinders", "max(x^2 + y^2, x^2 + z^2) - 1", 2, 16.0 / 3.0, [4, 2]),
 ];

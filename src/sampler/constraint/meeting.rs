@@ -32,6 +32,17 @@ fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
     probe.field.value_and_gradient(p)
 }
 
+/// The point on the surface near one where two branches touch without an angle, so that what is on one is on the other.
+pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVec3) -> DVec3 {
+    let mut p = start;
+    // Each step doubles the digits, of which the start has some.
+    for _ in 0..4 {
+        let (value, gradient) = branch(probe, first, p);
+        p -= gradient * (value / gradient.length_squared());
+    }
+    if p.is_finite() { p } else { start }
+}
+
 impl Meeting {
     /// The point near `start`, within `reach`, where both branches are zero and meet at an angle of this sine at least, whichever
     /// branch gives f there.

@@ -1,6 +1,6 @@
 //! Follows a crease from one of its points to both ends.
 
-use super::meeting::{FADED, Meeting, Third, common_point};
+use super::meeting::{FADED, Meeting, Third, common_point, touching_point};
 use super::{Crease, Creases};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
@@ -125,7 +125,7 @@ impl Walk<'_, '_> {
             let reach = before.distance(after);
             let Some(point) = Meeting::of_branches(self.probe, self.start.branches, middle, reach, FADED)
             else {
-                return middle;
+                return touching_point(self.probe, self.start.branches, middle);
             };
             if (point.tangent.dot(direction) > 0.0) == is_forward {
                 before = point.position;
