@@ -1,0 +1,121 @@
+//! Solids with sharp edges by both methods: `docs/solids.md` is what this writes.
+//!
+//! `cargo bench --bench solids --profile dev > docs/solids.md` measures every solid with 1,500, 6,000 and 24,000 particles.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
+
+#[path = "../tests/it/solid_table.rs"]
+mod solid_table;
+
+use core::f64::consts::PI;
+use marching_particles::particles::Particles;
+use marching_particles::{Bounds, Field, Formula, Method, Run, Settings, sample};
+use solid_table::SOLIDS;
+use std::io::{self, Write};
+use std::time::Instant;
+
+/// Numbers of particles.
+const COUNTS: [u32; 3] = [1_500, 6_000, 24_000];
+/// Runs of which the fastest counts.
+const RUNS: u32 = 3;
+
+/// Text above the table.
+const HEAD: &str = "\
+Solids by the front with ten relaxation steps and by the refined method. This page is written by `cargo bench --bench solids
+--profile dev > docs/solids.md`; the times are wall time, fastest of three runs on a machine that had other work, without measuring and
+meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the edge* is the largest distance of a particle on
+a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of the mesh over the exact one. The smallest
+angle is that of the triangles of the report, and so are six neighbours, holes and pairs, which README.md defines.";
+
+/// A solid: its name, its field and its exact volume, where that is known.
+struct Solid {
+    name: &'static str,
+    field: Formula,
+    volume: Option<f64>,
+}
+
+/// The solids of the tests, a cone and a thick gyroid that its box closes.
+fn solids() -> Vec<Solid> {
+    let parse = |text| Formula::parse(text).expect("a formula");
+    let mut solids: Vec<Solid> = SOLIDS
+        .iter()
+        .map(|solid| Solid { name: solid.name, field: parse(solid.formula), volume: Some(solid.volume) })
+        .collect();
+    solids.push(Solid { name: "cone", field: parse("max(hypot(x, y) + z - 1, -z)"), volume: Some(PI / 3.0) });
+    let gyroid = parse("sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)");
+    let gyroid = gyroid.thickened(0.6).closed_by(&Bounds::cube(4.0));
+    solids.push(Solid { name: "gyroid, 0.6 thick", field: gyroid, volume: None });
+    solids
+}
+
+/// Largest distance of a row on a crease from the surface of its patch, over the spacing.
+fn off_the_edge(particles: &Particles, field: &mut Formula) -> f64 {
+    let mut farthest = 0.0_f64;
+    for row in 0..particles.twins.len() {
+        field.select_branch(particles.patch_of(row));
+        let (value, gradient) = field.value_and_gradient(particles.place(row));
+        let spacing = 2.0 * f64::from(particles.radius[row]);
+        farthest = farthest.max(value.abs() / gradient.length() / spacing);
+    }
+    farthest
+}
+
+fn write_row(out: &mut dyn Write, solid: &Solid, settings: &Settings) -> io::Result<()> {
+    let mut seconds = f64::INFINITY;
+    let mut off = 0.0;
+    for _ in 0..RUNS {
+        let field = solid.field.clone();
+        let start = Instant::now();
+        let mut run = Run::start(field, settings).expect("valid settings");
+        while run.step(65_536).stop_reason.is_none() {}
+        seconds = seconds.min(start.elapsed().as_secs_f64());
+        let particles = run.particles().clone();
+        off = off_the_edge(&particles, &mut run.into_field());
+    }
+    let sample = sample(solid.field.clone(), settings).expect("particles");
+    let report = sample.report();
+    let method = match (settings.method, report.growth.refined_levels) {
+        (Method::Front, _) => "front".to_owned(),
+        (Method::Refined, Some(levels)) => format!("refined {levels} ×"),
+        (Method::Refined, None) => "the front stands".to_owned(),
+    };
+    let components = &sample.mesh().topology.components;
+    let euler: i64 = components.iter().map(|component| component.euler()).sum();
+    let open: u32 = components.iter().map(|component| component.border_edges).sum();
+    let volume = match (sample.volume(), solid.volume) {
+        (Some(volume), Some(exact)) => format!("{:.4}", volume / exact),
+        (Some(volume), None) => format!("({volume:.2})"),
+        (None, _) => format!("{open} open edges"),
+    };
+    let figures = report.measures.quality.as_ref().expect("figures");
+    writeln!(
+        out,
+        "| {} | {method} | {} | {euler} | {volume} | {off:.0e} | {:.1} % | {:.1} | {:.2} | {:.2} | {:.2} |",
+        solid.name,
+        report.count,
+        100.0 * figures.order.six,
+        figures.angles.ang_min,
+        figures.coverage.cover,
+        figures.spacing.rho,
+        1e6 * seconds / report.count as f64
+    )
+}
+
+fn main() -> io::Result<()> {
+    let out = &mut io::stdout();
+    writeln!(out, "# Solids with sharp edges\n\n{HEAD}")?;
+    for count in COUNTS {
+        writeln!(out, "\n## {count} particles\n")?;
+        writeln!(
+            out,
+            "| Solid | Method | Particles | Euler number | Volume | Off the edge | Six neighbours | Smallest angle | Largest hole | \
+             Closest pair | µs per particle |"
+        )?;
+        writeln!(out, "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
+        for solid in &solids() {
+            let settings = Settings::with_count(count);
+            write_row(out, solid, &settings)?;
+            write_row(out, solid, &settings.refined())?;
+        }
+    }
+    Ok(())
+}
