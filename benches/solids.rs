@@ -22,15 +22,17 @@ const RUNS: u32 = 3;
 const HEAD: &str = "\
 Solids by the front with ten relaxation steps and by the refined method. This page is written by `cargo bench --bench solids
 --profile dev > docs/solids.md`; the times are wall time, fastest of three runs on a machine that had other work, without measuring and
-meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the edge* is the largest distance of a particle on
-a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of the mesh over the exact one. The smallest
-angle is that of the triangles of the report, and so are six neighbours, holes and pairs, which README.md defines.";
+meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the
+edge* is the largest distance of a particle on a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of
+the mesh over the exact one. The smallest angle is that of the triangles of the report, and so are six neighbours, holes and pairs,
+which README.md defines.";
 
-/// A solid: its name, its field and its exact volume, where that is known.
+/// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and corners, where they are known.
 struct Solid {
     name: &'static str,
     field: Formula,
     volume: Option<f64>,
+    shape: Option<(i64, [usize; 2])>,
 }
 
 /// The solids of the tests, a cone and a thick gyroid that its box closes.
@@ -38,12 +40,18 @@ fn solids() -> Vec<Solid> {
     let parse = |text| Formula::parse(text).expect("a formula");
     let mut solids: Vec<Solid> = SOLIDS
         .iter()
-        .map(|solid| Solid { name: solid.name, field: parse(solid.formula), volume: Some(solid.volume) })
+        .map(|solid| Solid {
+            name: solid.name,
+            field: parse(solid.formula),
+            volume: Some(solid.volume),
+            shape: Some((solid.euler, solid.creases)),
+        })
         .collect();
-    solids.push(Solid { name: "cone", field: parse("max(hypot(x, y) + z - 1, -z)"), volume: Some(PI / 3.0) });
+    let cone = parse("max(hypot(x, y) + z - 1, -z)");
+    solids.push(Solid { name: "cone", field: cone, volume: Some(PI / 3.0), shape: None });
     let gyroid = parse("sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)");
     let gyroid = gyroid.thickened(0.6).closed_by(&Bounds::cube(4.0));
-    solids.push(Solid { name: "gyroid, 0.6 thick", field: gyroid, volume: None });
+    solids.push(Solid { name: "gyroid, 0.6 thick", field: gyroid, volume: None, shape: None });
     solids
 }
 
@@ -80,6 +88,10 @@ fn write_row(out: &mut dyn Write, solid: &Solid, settings: &Settings) -> io::Res
     };
     let components = &sample.mesh().topology.components;
     let euler: i64 = components.iter().map(|component| component.euler()).sum();
+    let creases = [report.proof.creases, report.proof.corners].map(Option::unwrap_or_default);
+    if let Some(expected) = solid.shape {
+        assert_eq!((euler, creases), expected, "{}: Euler number, creases and corners", solid.name);
+    }
     let open: u32 = components.iter().map(|component| component.border_edges).sum();
     let volume = match (sample.volume(), solid.volume) {
         (Some(volume), Some(exact)) => format!("{:.4}", volume / exact),
