@@ -2,8 +2,8 @@
  * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
  *
  * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
- * from points), readme/meshes-{light,dark}.webp (refined runs as meshes) and readme/levels-{light,dark}.webp
- * (generation levels growing).
+ * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges)
+ * and readme/levels-{light,dark}.webp (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -52,6 +52,36 @@ const MESHES = [
   { surface: 'gyroid', settings: { ...MESH_SETTINGS, count: 9000, method: 'refined' }, view: MESH_VIEW, zoom: 1.1 },
 ];
 
+/** What the two rows of solids show: as discs above, over the faint surface, and as meshes below. */
+const SOLIDS = [
+  { formula: 'max(abs(x), abs(y), abs(z)) = 1', zoom: 1 },
+  {
+    formula: 'max(max(abs(x), abs(y), abs(z)) - 1, 0.55 - hypot(x, y), 0.55 - hypot(y, z), 0.55 - hypot(z, x))',
+    zoom: 1,
+  },
+  { formula: 'min(hypot(x, y - 0.6, z), hypot(x, y + 0.6, z)) = 1', zoom: 1.05 },
+  { formula: 'max(hypot(x, y) + z - 1, -z)', zoom: 1.05 },
+  { formula: 'max(abs(x) - 1, abs(y) - 1.4, abs(z) - 0.25, 0.3 - hypot(abs(x) - 0.5, abs(y) - 0.85))', zoom: 1.15 },
+  { formula: 'max(hypot(x, y), hypot(y, z), hypot(z, x)) = 1', zoom: 0.9 },
+  {
+    formula: 'max(abs(y), abs(0.866025 x + y / 2), abs(0.866025 x - y / 2), abs(z) + 0.5, 1.5 - hypot(x, y)) = 1',
+    zoom: 1.05,
+  },
+  {
+    surface: 'gyroid',
+    bounds: { min: [-2.6, -2.6, -2.6], max: [2.6, 2.6, 2.6] },
+    settings: { box_faces: 'closed', thickness: 0.6, count: 3000 },
+    zoom: 0.95,
+  },
+].map(({ settings, ...shown }, k) => ({
+  ...shown,
+  settings: { size_mode: 'count', count: 1200, method: 'refined', ...settings },
+  view: {
+    ...(k < 4 ? { colour: 'level', draw: 'discs', ghost: true } : { ...MESH_VIEW, colour: 'normal', marks: false }),
+    camera: { yaw: 0.5, pitch: 0.55, fit: true },
+  },
+}));
+
 /** A frame of the strip, and device pixels per pixel of it. */
 const LEVEL_PX = { width: 300, height: 240 };
 const LEVEL_SCALE = 1.5;
@@ -75,21 +105,23 @@ async function write(name, bytes) {
  * Compresses pictures side by side, in a page without a content security policy.
  * @param {Buffer[]} pngs
  * @param {number} quality
+ * @param {number} [columns]  pictures in a row
  */
-async function webp(pngs, quality) {
+async function webp(pngs, quality, columns = pngs.length) {
   const page = await browser.newPage();
   const bytes = await page.evaluate(
-    async ({ datas, quality }) => {
+    async ({ datas, quality, columns }) => {
       const bitmaps = await Promise.all(
         datas.map(async (data) => createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())),
       );
       const { width, height } = bitmaps[0];
-      const canvas = new OffscreenCanvas(width * bitmaps.length, height);
+      const canvas = new OffscreenCanvas(width * columns, height * Math.ceil(bitmaps.length / columns));
       const context = canvas.getContext('2d');
-      for (const [k, bitmap] of bitmaps.entries()) context?.drawImage(bitmap, k * width, 0);
+      for (const [k, bitmap] of bitmaps.entries())
+        context?.drawImage(bitmap, (k % columns) * width, Math.floor(k / columns) * height);
       return [...new Uint8Array(await (await canvas.convertToBlob({ type: 'image/webp', quality })).arrayBuffer())];
     },
-    { datas: pngs.map((png) => png.toString('base64')), quality },
+    { datas: pngs.map((png) => png.toString('base64')), quality, columns },
   );
   await page.close();
   return new Uint8Array(bytes);
@@ -121,9 +153,10 @@ const onlyThePicture = (page) =>
 /**
  * Draws surfaces side by side in both themes.
  * @param {string} name of the files
- * @param {{ zoom: number, surface: string, settings: object, view: { colour: string, camera?: object } }[]} states
+ * @param {{ zoom: number, surface?: string, formula?: string, settings: object, view: { colour: string, camera?: object } }[]} states
+ * @param {number} [columns]  surfaces in a row
  */
-async function strip(name, states) {
+async function strip(name, states, columns) {
   for (const theme of /** @type {const} */ (['light', 'dark'])) {
     const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
     await page.goto(base);
@@ -146,12 +179,13 @@ async function strip(name, states) {
       frames.push(await page.screenshot());
     }
     await page.close();
-    await write(`${name}-${theme}.webp`, await webp(frames, 0.86));
+    await write(`${name}-${theme}.webp`, await webp(frames, 0.86, columns));
   }
 }
 
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
+await strip('solids', SOLIDS, 4);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({
   zoom: 1.15,

@@ -116,7 +116,17 @@ export class Columns {
 
   /** Returns whether a row is a further one of a particle on a crease. @param {number} i */
   isFurther(i) {
-    return i < this.twins.length && this.twins[i] !== i;
+    return this.firstRow(i) !== i;
+  }
+
+  /** Returns the first row of the particle of a row. @param {number} i */
+  firstRow(i) {
+    return i < this.twins.length ? this.twins[i] : i;
+  }
+
+  /** Returns whether the particle of a first row lies on a crease. @param {number} i */
+  isOnCrease(i) {
+    return i < this.twins.length && this.segments.includes(i);
   }
 
   /** The positions that are drawn. */

@@ -157,6 +157,8 @@ export interface Hover {
   level: number;
   /** null for a seed */
   parent: number | null;
+  /** whether it lies on a crease */
+  crease: boolean;
   position: Vec3;
   normal: Vec3;
   radius: number;

@@ -1,5 +1,6 @@
 /** What is in the picture, by the painter: levels, the cutting plane, the inside, and when it is drawn at all. */
 import { describe, expect, test } from 'vitest';
+import { PALETTES } from '../../src/engine/view/palettes.js';
 import { halvesOf, INSIDE_TOLD, isInsideTold, SIDES } from '../engine/pixels.js';
 import { coarse, eventually, expectSurface, hide, link, open, pause, picture, until, wishes } from './engine.js';
 
@@ -138,6 +139,29 @@ describe('the cutting plane', () => {
     p.engine.setPlane({ normal: [1, 0, 0], offset: -2 });
     expect(picked()).toBe(null);
   });
+});
+
+test('creases are lines, on which dots are picked once', async () => {
+  const p = await open();
+  p.engine.setView({ theme: 'light' });
+  await p.set({ formula: 'max(abs(x), abs(y), abs(z)) = 1', settings: { radius_share: 0.03 } });
+  /** Number of pixels in the colour of creases. */
+  const inked = async () => {
+    const { pixels } = await p.pixels(160, 120);
+    return new Uint32Array(pixels.buffer).filter((pixel) => pixel === PALETTES.light.ink).length;
+  };
+  expect(await inked()).toBeGreaterThan(100);
+  p.engine.setView({ creases: false });
+  expect(await inked()).toBe(0);
+  // The corner (1, 1, 1) has a row on each of three faces.
+  const { positions } = p.particles();
+  const rows = Array.from({ length: positions.length / 3 }, (_, i) => i).filter((i) =>
+    [0, 1, 2].every((k) => Math.abs(positions[3 * i + k] - 1) < 1e-4),
+  );
+  expect(rows).toHaveLength(3);
+  const camera = { target: /** @type {[number, number, number]} */ ([1, 1, 1]), distance: 4, yaw: 0.6, pitch: 0.5 };
+  p.engine.setView({ camera: { ...camera, fit: false } });
+  expect(p.engine.pick(...MIDDLE)).toBe(rows[0]);
 });
 
 test('discs seen from behind are darker and greyer, on a light and on a dark ground', async () => {

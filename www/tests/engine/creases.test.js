@@ -26,8 +26,16 @@ describe('creases', () => {
     const columns = creased();
     expect(columns.particles).toBe(4);
     expect([0, 1, 2, 3, 4, 5].filter((i) => columns.isFurther(i))).toEqual([1, 3]);
+    expect([0, 1, 2, 3, 4, 5].map((i) => columns.firstRow(i))).toEqual([0, 0, 2, 2, 4, 5]);
     columns.clear();
     expect([columns.particles, columns.twins.length, columns.segments.length]).toEqual([0, 0, 0]);
+  });
+
+  it('have particles that are told from the tip of a cone, which has rows but no crease', () => {
+    const columns = creased();
+    expect([0, 2, 4].map((i) => columns.isOnCrease(i))).toEqual([true, true, false]);
+    columns.segments = new Uint32Array(0);
+    expect([0, 2, 4].map((i) => columns.isOnCrease(i))).toEqual([false, false, false]);
   });
 
   it('carry dots: negative radii in the first rows, none in the others', () => {

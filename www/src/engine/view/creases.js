@@ -7,13 +7,12 @@
 import { PALETTES } from './palettes.js';
 
 /**
- * @import { Renderer } from '../../wasm/render-webgpu/render.js'
  * @import { Columns } from '../types.js'
- * @import { Look, Theme } from './types.js'
+ * @import { Device, Look, Theme } from './types.js'
  */
 
 /** Numbers of the record of an end: its position and the radius of its particle. */
-const END = 4;
+export const END = 4;
 
 /**
  * Returns the radii of rows from `first` to `last` as the renderers take them: that of a particle on a crease is
@@ -56,7 +55,7 @@ export class CreaseUpload {
     this.#held = { segments: new Uint32Array(0), theme: 'light' };
   }
 
-  /** Uploads what has changed. @param {Renderer} renderer @param {Look} look */
+  /** Uploads what has changed. @param {Device['renderer']} renderer @param {Look} look */
   write(renderer, { creases, theme }) {
     const { columns } = this;
     const segments = creases ? columns.segments : new Uint32Array(0);

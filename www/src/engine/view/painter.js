@@ -1,13 +1,14 @@
 /**
  * Draws discs on a 2-D canvas without a graphics API, as the last fallback. Each disc is an ellipse on the screen,
- * filled pixel by pixel with the depth of its plane. The picture is like that of a graphics card, but without
- * antialiasing, domes and fading in.
+ * filled pixel by pixel with the depth of its plane. Creases and the clip box are lines one pixel wide. The picture is
+ * like that of a graphics card, but without antialiasing, domes and fading in.
  *
  * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *
  * @module
  */
 import { grown, NO_LEVEL } from '../columns.js';
+import { END } from './creases.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
@@ -22,6 +23,8 @@ const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * enc
 
 /** Radius of the dot of a particle on a crease, as a share of that of a disc. */
 const DOT = 0.5;
+/** Distance in radii by which a crease is drawn nearer to the eye, as in shaders/lines.wgsl. */
+const CREASE_LIFT = 0.3;
 /** Radius on the screen below which a disc is drawn as one pixel. */
 const POINT_PX = 0.7;
 
@@ -70,7 +73,7 @@ function shadeOf(keyward, skyward, edgeOn) {
  * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
  * @param {Target} target @param {PaintedDisc} disc
  */
-function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, depthPerPx, value, rim, coreSq }) {
+function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, near, depthPerPx, value, rim, coreSq }) {
   const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
   const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
   const qa = 1 + ka * ka;
@@ -86,11 +89,33 @@ function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, dept
     for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
       const dx = ix + 0.5 - sx;
       const dz = -(ka * dx + kb * dy);
-      const near = inv + dz * depthPerPx;
-      if (near > depth[at]) {
-        depth[at] = near;
+      const depthHere = near + dz * depthPerPx;
+      if (depthHere > depth[at]) {
+        depth[at] = depthHere;
         out[at] = dx * dx + dy * dy + dz * dz > coreSq ? rim : value;
       }
+    }
+  }
+}
+
+/**
+ * Draws a line, one pixel wide, where nothing hides it.
+ * @param {Target} target
+ * @param {{ ends: number[][], steps: number, value: number }} line  `ends`: horizontal and vertical clip coordinates
+ *   and w of each; `steps`: number of equal parts between them, with a pixel at each end of a part
+ */
+function paintLine({ out, depth, width, height }, { ends: [p, q], steps, value }) {
+  for (let i = 0; i <= steps; i += 1) {
+    const t = i / steps;
+    const w = p[2] + (q[2] - p[2]) * t;
+    if (!(w > 1e-9)) continue;
+    const x = Math.floor((0.5 + (0.5 * (p[0] + (q[0] - p[0]) * t)) / w) * width);
+    const y = Math.floor((0.5 - (0.5 * (p[1] + (q[1] - p[1]) * t)) / w) * height);
+    if (x < 0 || y < 0 || x >= width || y >= height) continue;
+    const at = y * width + x;
+    if (1 / w > depth[at]) {
+      depth[at] = 1 / w;
+      out[at] = value;
     }
   }
 }
@@ -125,6 +150,9 @@ export class Painter {
     this.levels = new Uint32Array(0);
     this.colours = new Uint32Array(0);
     this.#births = new Float64Array(0);
+    /** The ends of the pieces of creases, as `endsOf` returns them, and the colour of each piece. */
+    this.ends = new Float32Array(0);
+    this.lineColours = new Uint32Array(0);
     this.view = new Float32Array(23);
     this.#style = {
       background: [1, 1, 1, 1],
@@ -184,6 +212,12 @@ export class Painter {
   /** @type {Renderer['write_colours']} */
   write_colours(first, colours) {
     this.colours.set(colours.subarray(0, Math.max(0, this.colours.length - first)), first);
+  }
+
+  /** @type {Renderer['write_lines']} */
+  write_lines(ends, colours) {
+    this.ends = ends.slice();
+    this.lineColours = colours.slice();
   }
 
   /** @type {Renderer['set_count']} */
@@ -256,7 +290,40 @@ export class Painter {
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
     const scene = { target: { out, depth, width, height }, axes, key, ground };
     for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
+    this.#paintCreases(scene.target, ground);
     if (box) this.#paintBox(scene.target, box);
+  }
+
+  /** Returns a position as {@link paintLine} takes it. @param {ArrayLike<number>} p */
+  #clip(p) {
+    const m = this.view;
+    return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+  }
+
+  /** Draws the creases. @param {Target} target @param {number[]} ground  the background in linear light */
+  #paintCreases(target, ground) {
+    const { dim, plane = null } = this.#style;
+    const { ends, lineColours, view: m } = this;
+    for (const [k, colour] of lineColours.entries()) {
+      const piece = [2 * k, 2 * k + 1].map((end) => [...ends.subarray(END * end, END * (end + 1))]);
+      const middle = [0, 1, 2].map((c) => 0.5 * (piece[0][c] + piece[1][c]));
+      if (plane && isBeyond(plane, middle, 0)) continue;
+      const places = piece.map(([x, y, z, radius]) => {
+        const toEye = [m[16] - x, m[17] - y, m[18] - z];
+        const lift = (CREASE_LIFT * radius) / (Math.hypot(toEye[0], toEye[1], toEye[2]) || 1);
+        return this.#clip([x + lift * toEye[0], y + lift * toEye[1], z + lift * toEye[2]]);
+      });
+      const [p, q] = places;
+      if (!(p[2] > 1e-9 && q[2] > 1e-9)) continue;
+      // Two parts for each pixel, but no more than the box has, where an end is close to the eye.
+      const most = 2 * Math.max(target.width, target.height);
+      const share = 0.5 * Math.max(...[0, 1].map((r) => Math.abs(p[r] / p[2] - q[r] / q[2])));
+      const steps = Math.ceil(most * Math.min(1, share)) || 1;
+      const [red, green, blue] = [0, 8, 16].map(
+        (shift, c) => LINEAR[(colour >> shift) & 255] * (1 - dim) + ground[c] * dim,
+      );
+      paintLine(target, { ends: places, steps, value: packed(red, green, blue) });
+    }
   }
 
   /**
@@ -287,6 +354,8 @@ export class Painter {
     const isDot = radii[i] < 0;
     const r = Math.abs(radii[i]) * disc_scale * (isDot ? DOT : 1);
     if (r === 0) return;
+    // It is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
+    const near = isDot ? 1 / (w - r) : inv;
     const px = clipXPerWorld * r * inv * 0.5 * width;
     if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return;
     let nx = isDot ? -forward[0] : normals[3 * i];
@@ -318,8 +387,8 @@ export class Painter {
     const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
     if (px < POINT_PX) {
       const at = (sy | 0) * width + (sx | 0);
-      if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
-        depth[at] = inv;
+      if (sx >= 0 && sx < width && sy >= 0 && sy < height && near > depth[at]) {
+        depth[at] = near;
         out[at] = value;
       }
       return;
@@ -331,15 +400,14 @@ export class Painter {
     // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
     const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
     const depthPerPx = (r / px) * inv * inv;
-    fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, inv, depthPerPx, value, rim, coreSq });
+    fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
   }
 
   /**
    * Draws the twelve edges of the clip box, one pixel wide, where no disc hides them.
    * @param {Target} target @param {NonNullable<Style['box']>} box
    */
-  #paintBox({ out, depth, width, height }, box) {
-    const m = this.view;
+  #paintBox(target, box) {
     const value =
       ((255 << 24) |
         (Math.round(box.colour[2] * 255) << 16) |
@@ -348,27 +416,13 @@ export class Painter {
       0;
     const corner = (/** @type {number} */ k) => {
       const p = [k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1], k & 4 ? box.max[2] : box.min[2]];
-      return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+      return this.#clip(p);
     };
+    const steps = 2 * Math.max(target.width, target.height);
     for (let k = 0; k < 8; k += 1) {
       for (const bit of [1, 2, 4]) {
         if (k & bit) continue;
-        const p = corner(k);
-        const q = corner(k | bit);
-        const steps = 2 * Math.max(width, height);
-        for (let i = 0; i <= steps; i += 1) {
-          const t = i / steps;
-          const w = p[2] + (q[2] - p[2]) * t;
-          if (!(w > 1e-9)) continue;
-          const x = Math.floor((0.5 + (0.5 * (p[0] + (q[0] - p[0]) * t)) / w) * width);
-          const y = Math.floor((0.5 - (0.5 * (p[1] + (q[1] - p[1]) * t)) / w) * height);
-          if (x < 0 || y < 0 || x >= width || y >= height) continue;
-          const at = y * width + x;
-          if (1 / w > depth[at]) {
-            depth[at] = 1 / w;
-            out[at] = value;
-          }
-        }
+        paintLine(target, { ends: [corner(k), corner(k | bit)], steps, value });
       }
     }
   }

@@ -81,7 +81,7 @@ export interface PaintedDisc {
   ka: number;
   kb: number;
   /** depth at the centre */
-  inv: number;
+  near: number;
   depthPerPx: number;
   /** colour within the squared distance `coreSq` from the centre; beyond it the disc has the colour of its rim */
   value: number;

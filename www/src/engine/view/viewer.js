@@ -267,13 +267,16 @@ export class Viewer {
     return viewOf(this.camera.state, cssWidth, cssHeight, this.#scene.ball(), this.look.insets);
   }
 
-  /** Returns the index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
+  /**
+   * Returns the first row of the particle under a point of the host, in CSS pixels; null if there is none.
+   * @param {number} x @param {number} y
+   */
   pick(x, y) {
     const { columns, look } = this;
     const { cssWidth, cssHeight } = this.screen;
     if (columns.count === 0 || columns.stale || cssWidth === 0 || cssHeight === 0) return null;
     const view = this.currentView();
-    return pick(
+    const row = pick(
       columns,
       { eye: view.eye, direction: rayThrough(view, x, y) },
       {
@@ -284,6 +287,7 @@ export class Viewer {
         upto: look.upto ?? Infinity,
       },
     );
+    return row === null ? null : columns.firstRow(row);
   }
 
   /**
@@ -354,8 +358,8 @@ export class Viewer {
       // The ghost of a surface shows where it will grow.
       const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
       this.#faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
-      this.#creases.write(/** @type {any} */ (renderer), look);
     }
+    this.#creases.write(renderer, look);
     this.#tellView(renderer, this.currentView(), count);
     if (due.style) {
       renderer.set_style(JSON.stringify(this.#style(nowS)));

@@ -86,7 +86,7 @@ function rowsOf(hover) {
   const rows = [
     ['Particle', formatCount(hover.index)],
     ['Level', formatCount(hover.level)],
-    ['Parent', hover.parent === null ? 'seed' : formatCount(hover.parent)],
+    hover.crease ? ['Lies on', 'a crease'] : ['Parent', hover.parent === null ? 'seed' : formatCount(hover.parent)],
     ['Position', hover.position.map((value) => formatFixed(value, 3)).join('  ')],
   ];
   if (hover.valence !== null) rows.push(['Neighbours', formatCount(hover.valence)]);
