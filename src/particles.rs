@@ -34,6 +34,8 @@ pub struct Particles {
     pub twins: Vec<u32>,
     /// Pairs of particles that follow each other along a crease, each by its first row.
     pub segments: Vec<[u32; 2]>,
+    /// For each of the segments, the patches on its left and on its right, seen from outside.
+    pub sides: Vec<[u32; 2]>,
 }
 
 /// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
@@ -240,7 +242,15 @@ impl Particles {
         self.slots.truncate(len);
         self.patch.truncate(len);
         self.twins.truncate(len);
-        self.segments.retain(|pair| pair.iter().all(|&row| (row as usize) < len));
+        self.keep_segments(len);
+    }
+
+    /// Keeps the segments between the first `len` rows.
+    fn keep_segments(&mut self, len: usize) {
+        let is_kept = |pair: &[u32; 2]| pair.iter().all(|&row| (row as usize) < len);
+        let mut kept = self.segments.iter().map(is_kept);
+        self.sides.retain(|_| kept.next().unwrap_or(false));
+        self.segments.retain(is_kept);
     }
 
     /// Returns, for each particle, the index of the seed from which its front grew.
@@ -290,8 +300,9 @@ impl Particles {
         self.slots.extend_from_slice(&others.slots[..len]);
         self.patch.extend_from_slice(&others.patch[..len.min(others.patch.len())]);
         self.twins.extend_from_slice(&others.twins[..len.min(others.twins.len())]);
-        let is_kept = |pair: &&[u32; 2]| pair.iter().all(|&row| (row as usize) < len);
-        self.segments.extend(others.segments.iter().filter(is_kept));
+        self.segments.extend_from_slice(&others.segments);
+        self.sides.extend_from_slice(&others.sides);
+        self.keep_segments(len);
     }
 
     /// Removes all particles and keeps the memory.
@@ -305,6 +316,7 @@ impl Particles {
         self.patch.clear();
         self.twins.clear();
         self.segments.clear();
+        self.sides.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,

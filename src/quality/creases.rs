@@ -188,6 +188,7 @@ impl Creases {
             patch: patches.patch.to_vec(),
             twins: patches.twins.to_vec(),
             segments: patches.segments.to_vec(),
+            sides: patches.sides.to_vec(),
             ..Particles::default()
         };
         let mut place = vec![u32::MAX; count];

@@ -32,11 +32,13 @@ pub struct Patches<'a> {
     pub twins: &'a [u32],
     /// Pairs of particles that follow each other along a crease, each by its first row.
     pub segments: &'a [[u32; 2]],
+    /// For each of them, the patches on its left and on its right, seen from outside.
+    pub sides: &'a [[u32; 2]],
 }
 
 impl<'a> From<&'a Particles> for Patches<'a> {
-    fn from(Particles { patch, twins, segments, .. }: &'a Particles) -> Self {
-        Self { patch, twins, segments }
+    fn from(Particles { patch, twins, segments, sides, .. }: &'a Particles) -> Self {
+        Self { patch, twins, segments, sides }
     }
 }
 

@@ -51,6 +51,7 @@ pub(super) struct ParticleCopy {
     patch: Vec<u32>,
     twins: Vec<u32>,
     segments: Vec<[u32; 2]>,
+    sides: Vec<[u32; 2]>,
 }
 
 impl ParticleCopy {
@@ -62,6 +63,7 @@ impl ParticleCopy {
             patch: particles.patch.clone(),
             twins: particles.twins.clone(),
             segments: particles.segments.clone(),
+            sides: particles.sides.clone(),
         }
     }
 
@@ -76,8 +78,8 @@ impl ParticleCopy {
             Sampling::Uniform => quality::Sizes::None,
             Sampling::Adaptive => quality::Sizes::Given(&self.radius),
         };
-        let Self { patch, twins, segments, .. } = self;
-        let patches = quality::Patches { patch, twins, segments };
+        let Self { patch, twins, segments, sides, .. } = self;
+        let patches = quality::Patches { patch, twins, segments, sides };
         let options = quality::MeasureOptions { sizes, patches, ..quality::MeasureOptions::default() };
         quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
     }

@@ -54,6 +54,14 @@ fn a_box_is_closed_with_its_edges() {
 }
 
 #[test]
+fn a_strip_beside_a_larger_part_of_its_patch_is_filled() {
+    // Its only particles are those of its creases, and the nearest others of the patch lie beyond a slot.
+    let comb =
+        [[0.0, 0.0], [1.16, 0.0], [1.16, 1.0], [1.07, 1.0], [1.07, 0.5], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]];
+    assert_closed("comb", &prism(&[&comb], 0.9, 0.1), 2, 1e-6);
+}
+
+#[test]
 fn no_triangle_spans_the_outside_of_a_patch() {
     for spacing in [0.5, 0.17, 0.06] {
         let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.6], [0.7, 0.6], [0.7, 1.8], [0.0, 1.8]];

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, Vec3};
 use marching_particles::Field;
 use marching_particles::particles::{Particles, Slots};
 
-/// A crease: points in order along it, and the patches that meet there.
+/// A crease: points in order along it, and the patches on its left and on its right.
 pub(crate) struct Crease {
     pub(crate) points: Vec<DVec3>,
     pub(crate) patches: [u32; 2],
@@ -56,7 +56,7 @@ impl Creased {
     pub(crate) fn particles(&self) -> Particles {
         // Each particle on a crease, with its patches.
         let mut places: Vec<(Vec3, Vec<u32>)> = Vec::new();
-        let mut pairs = Vec::new();
+        let (mut pairs, mut sides) = (Vec::new(), Vec::new());
         for Crease { points, patches } in &self.creases {
             let mut last = None;
             for point in points {
@@ -70,6 +70,7 @@ impl Creased {
                 let new: Vec<u32> = new.collect();
                 places[k].1.extend(new);
                 pairs.extend(last.replace(k).map(|from| [from, k]));
+                sides.resize(pairs.len(), *patches);
             }
         }
         let mut particles = Particles::default();
@@ -89,6 +90,7 @@ impl Creased {
                 particles.twins.push(first);
             }
         }
+        particles.sides = sides;
         particles.segments = pairs.into_iter().map(|pair| pair.map(|k| first_of[k])).collect();
         for &(patch, point) in &self.inner {
             push(&mut particles, point.as_vec3(), patch);
@@ -258,7 +260,7 @@ pub(crate) fn two_spheres(spacing: f64) -> Creased {
     };
     let inner = (0..2).flat_map(|patch| (0..count).map(move |k| (patch, centre(patch) + on_sphere(k))));
     Creased {
-        creases: vec![Crease { points, patches: [0, 1] }],
+        creases: vec![Crease { points, patches: [1, 0] }],
         inner: inner.filter(is_inner).collect(),
         branch: Box::new(move |patch, p| {
             let offset = p - centre(patch);
@@ -277,8 +279,8 @@ pub(crate) fn drilled_cube(radius: f64, spacing: f64) -> Creased {
     let distance = |p: DVec3| p.truncate().length();
     solid.inner.retain(|&(patch, p)| patch >= 10 || distance(p) > radius + 0.6 * spacing);
     let (x, y) = (DVec3::X * radius, DVec3::Y * radius);
-    for (patch, z) in [(3, 0.0), (7, 2.0)] {
-        solid.creases.push(Crease { points: around(DVec3::Z * z, x, y, spacing), patches: [patch, HOLE] });
+    for (patches, z) in [([3, HOLE], 0.0), ([HOLE, 7], 2.0)] {
+        solid.creases.push(Crease { points: around(DVec3::Z * z, x, y, spacing), patches });
     }
     let count = (core::f64::consts::TAU * radius / spacing).round();
     let rows = (2.0 / (0.75_f64.sqrt() * spacing)).round();

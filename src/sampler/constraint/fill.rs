@@ -24,6 +24,8 @@ pub(in super::super) struct CreaseParticle {
 pub(in super::super) struct CreaseParticles {
     pub(in super::super) list: Vec<CreaseParticle>,
     pub(in super::super) segments: Vec<[u32; 2]>,
+    /// For each of them, the patches on its left and on its right.
+    sides: Vec<[u32; 2]>,
     /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end to its second.
     between: Vec<Vec3>,
 }
@@ -130,6 +132,7 @@ fn fill_curve(
         });
     }
     filled.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
+    filled.sides.resize(filled.segments.len(), curve.sides);
 }
 
 impl CreaseParticles {
@@ -161,6 +164,7 @@ impl CreaseParticles {
                 pair.map(|particle| first[particle as usize].expect("a particle lies on a patch"))
             }),
         );
+        particles.sides.extend_from_slice(&self.sides);
         along
     }
 

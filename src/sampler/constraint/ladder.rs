@@ -11,6 +11,8 @@ use glam::Vec3;
 pub(in super::super) struct CreaseLadder {
     /// Pairs of particles of the coarse front that follow each other along a crease.
     segments: Vec<[u32; 2]>,
+    /// For each of them, the patches on its left and on its right.
+    sides: Vec<[u32; 2]>,
     /// Equal parts of a segment at the last level.
     parts: usize,
     /// Number of rows of the coarse front.
@@ -31,8 +33,15 @@ impl CreaseLadder {
         let mut ends = vec![0; rows.twins.len()];
         segments.as_flattened().iter().for_each(|&row| ends[row as usize] += 1);
         let parts = between.len() / segments.len().max(1) + 1;
-        let mut ladder =
-            Self { segments, parts, rows: rows.twins.len() as u32, between, middles: Vec::new(), ends };
+        let mut ladder = Self {
+            segments,
+            sides: rows.sides.clone(),
+            parts,
+            rows: rows.twins.len() as u32,
+            between,
+            middles: Vec::new(),
+            ends,
+        };
         let mut half = parts / 2;
         while half > 0 {
             for segment in 0..ladder.segments.len() {
@@ -75,12 +84,14 @@ impl CreaseLadder {
         Some((number, self.between[(number - self.rows) as usize]))
     }
 
-    /// The pairs that follow each other along a crease at the level after which so many are to come.
-    pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = [u32; 2]> {
+    /// The pairs that follow each other along a crease at the level after which so many are to come, each with the patches on its left and
+    /// on its right.
+    pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = ([u32; 2], [u32; 2])> {
         let stride = 1 << to_come;
         (0..self.segments.len()).flat_map(move |segment| {
             let starts = (0..self.parts).step_by(stride);
-            starts.map(move |k| [k, k + stride].map(|k| self.number(segment, k)))
+            let pair = move |k| [k, k + stride].map(|k| self.number(segment, k));
+            starts.map(move |k| (pair(k), self.sides[segment]))
         })
     }
 

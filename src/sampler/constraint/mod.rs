@@ -33,6 +33,8 @@ const CELL: f64 = 1.0 / 128.0;
 pub(super) struct Crease {
     /// The two patches.
     patches: [u32; 2],
+    /// The patch on its left and the one on its right, seen from outside.
+    sides: [u32; 2],
     /// Points along the curve, in its order.
     points: Vec<DVec3>,
     /// Corners at its start and its end; none where the curve ends at the box or is closed.

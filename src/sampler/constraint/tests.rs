@@ -107,7 +107,7 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
     let mut place: BTreeMap<u32, Vec3> =
         (0..).zip(&rows.position).map(|(row, &p)| (rows.first_row(row) as u32, p)).collect();
     for to_come in (0..3).rev() {
-        for [a, b] in ladder.pairs(to_come + 1) {
+        for ([a, b], _) in ladder.pairs(to_come + 1) {
             let (number, middle) = ladder.middle(a, b).expect("the middle of a pair");
             assert_eq!(ladder.middle(b, a), Some((number, middle)));
             place.insert(number, middle);
@@ -115,11 +115,11 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
         let parts = 14 << (3 - to_come);
         assert_eq!((ladder.pairs(to_come).count(), place.len()), (parts, parts));
         let chord = 2.0 * 0.75_f32.sqrt() * libm::sinf(core::f32::consts::PI / parts as f32);
-        for pair in ladder.pairs(to_come) {
+        for (pair, _) in ladder.pairs(to_come) {
             let [p, q] = pair.map(|number| place[&number]);
             assert!((p.distance(q) / chord - 1.0).abs() < 1e-3, "{p} {q}: not {chord} apart");
         }
     }
     assert_eq!((ladder.len(), ladder.ambiguous()), (rows.len() + 14 * 7, None));
-    assert!(ladder.pairs(0).all(|[a, b]| ladder.middle(a, b).is_none() && !ladder.is_corner(a)));
+    assert!(ladder.pairs(0).all(|([a, b], _)| ladder.middle(a, b).is_none() && !ladder.is_corner(a)));
 }

@@ -50,7 +50,10 @@ pub(super) fn follow(probe: &mut Probe, bounds: &Bounds, creases: &mut Creases, 
     }
     let corner = |end: &WalkEnd| if let WalkEnd::Corner(index) = end { Some(*index) } else { None };
     let corners = [corner(&first), corner(&end)];
-    creases.curves.push(Crease { patches: start.branches, points, corners, is_closed });
+    let [a, b] = start.branches;
+    // The points follow the tangent of the start.
+    let sides = if are_left.is_some_and(|[is_left, _]| is_left) { [a, b] } else { [b, a] };
+    creases.curves.push(Crease { patches: start.branches, sides, points, corners, is_closed });
 }
 
 /// A walk along a crease, from one of its points.

@@ -504,8 +504,10 @@ impl Joint {
             *first = row.min(*first);
             *twin = *first;
         }
-        let pairs = ladder.pairs(self.to_come).map(|pair| pair.map(|number| first[number as usize]));
-        self.particles.segments.extend(pairs);
+        for (pair, sides) in ladder.pairs(self.to_come) {
+            self.particles.segments.push(pair.map(|number| first[number as usize]));
+            self.particles.sides.push(sides);
+        }
     }
 }
 
