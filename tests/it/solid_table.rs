@@ -25,7 +25,7 @@ const fn solid(
 /// Volume of the union of two unit balls whose centres are 1 apart: two balls less their lens of 5π/12.
 const TWO_BALLS: f64 = 8.0 * PI / 3.0 - 5.0 * PI / 12.0;
 
-pub(crate) const SOLIDS: [Solid; 18] = [
+pub(crate) const SOLIDS: [Solid; 19] = [
     solid("cube", "max(abs(x), abs(y), abs(z)) - 1", 2, 8.0, [12, 8]),
     solid(
         "turned cube",
@@ -106,4 +106,12 @@ pub(crate) const SOLIDS: [Solid; 18] = [
         [2, 0],
     ),
     solid("two cylinders", "max(x^2 + y^2, x^2 + z^2) - 1", 2, 16.0 / 3.0, [4, 2]),
+    // The corner of the cuts is just outside the ball, and three creases are too short to be found by themselves.
+    solid(
+        "ball with three cuts",
+        "max(x^2 + y^2 + z^2 - 1, x - 0.5785, y - 0.5785, z - 0.5785)",
+        2,
+        2.809_211_7,
+        [9, 6],
+    ),
 ];

@@ -7,7 +7,8 @@
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
 //!    branches.
-//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner.
+//! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner. From there
+//!    the other creases of the corner are followed.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
 //!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once.
 
@@ -81,8 +82,37 @@ impl Creases {
                 }
             }
         }
+        creases.follow_from_corners(probe, bounds, step);
         probe.select(None);
         creases
+    }
+
+    /// Follows the creases between patches that meet at a corner: one shorter than a cell is not always found from a cell.
+    fn follow_from_corners(&mut self, probe: &mut Probe, bounds: &Bounds, step: f64) {
+        /// Distance from the corner, in steps, at which the crease is looked for: ten times that within which corners are one.
+        const ASIDE: f64 = 1e-2;
+        let mut next = 0;
+        while let Some(Corner { position, patches }) = self.corners.get(next).cloned() {
+            next += 1;
+            for (k, &a) in patches.iter().enumerate() {
+                for &b in &patches[..k] {
+                    let near = |probe: &mut Probe, place, reach: f64| {
+                        Meeting::of_branches(probe, [b, a], place, reach * step, SHARP)
+                    };
+                    let Some(at_corner) = near(probe, position, ASIDE) else { continue };
+                    for way in [at_corner.tangent, -at_corner.tangent] {
+                        let meeting = near(probe, position + way * (ASIDE * step), ASIDE)
+                            .filter(|meeting| {
+                                bounds.holds(meeting.position) && !self.has_point(meeting, step)
+                            })
+                            .filter(|meeting| meeting.are_left(probe, step).is_some());
+                        if let Some(meeting) = meeting {
+                            trace::follow(probe, bounds, self, meeting, step);
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// Whether a crease that is known runs through a meeting of two branches.
