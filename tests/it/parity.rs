@@ -53,7 +53,7 @@ fn run(case: &Run) -> (usize, String) {
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     while session.run.step(BUDGET).stop_reason.is_none() {}
-    (session.run.rows(), format!("{:016x}", session.run.particles().digest()))
+    (session.run.count(), format!("{:016x}", session.run.particles().digest()))
 }
 
 #[test]

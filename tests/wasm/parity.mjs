@@ -39,8 +39,10 @@ function sample({ name, field, model, settings }) {
   if (field) accepted(core.set_field(field), `${name}: set_field`);
   if (model) solve(core, model, name);
   accepted(core.start(settings), `${name}: start`);
-  while (core.step(BUDGET).stop_reason === null);
-  const result = { count: core.count(), digest: core.digest() };
+  let progress;
+  do progress = core.step(BUDGET);
+  while (progress.stop_reason === null);
+  const result = { count: progress.particles, digest: core.digest() };
   core.free();
   return result;
 }
