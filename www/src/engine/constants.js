@@ -13,4 +13,4 @@ export const MOST_STEPPED = 20_000;
 /** Largest number of parameters in a state or a link. */
 export const MOST_PARAMETERS = 64;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
-export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.txt';
+export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.csv,.txt';

@@ -2,13 +2,12 @@
 
 import { createDialog } from './dialog.js';
 import { h } from './dom.js';
+import { remembered } from './remembered.js';
 
 /** @import { Shortcut } from './types.js' */
 
 /** Name of the command key on this platform. */
 export const COMMAND_KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? '⌘' : 'Ctrl';
-
-const STORED = 'marching-particles.shortcuts';
 
 /** @param {EventTarget | null} target */
 function types(target) {
@@ -22,14 +21,13 @@ function types(target) {
 
 /** @param {Shortcut[]} shortcuts */
 export function mountShortcuts(shortcuts) {
-  let enabled = read();
+  const isEnabled = remembered('shortcuts', true);
   const toggle = h('input', {
     type: 'checkbox',
-    prop: { checked: enabled },
+    prop: { checked: isEnabled.peek() },
     on: {
       change: () => {
-        enabled = toggle.checked;
-        write(enabled);
+        isEnabled.value = toggle.checked;
       },
     },
   });
@@ -65,26 +63,9 @@ export function mountShortcuts(shortcuts) {
         (shortcut.ctrl ?? false) === ctrl &&
         (!ctrl || (shortcut.shift ?? false) === event.shiftKey),
     );
-    if (!found || (!enabled && !ctrl && event.key !== 'Escape')) return;
+    if (!found || (!isEnabled.peek() && !ctrl && event.key !== 'Escape')) return;
     event.preventDefault();
     found.act();
   });
   return { open: dialog.open };
-}
-
-function read() {
-  try {
-    return localStorage.getItem(STORED) !== 'off';
-  } catch {
-    return true;
-  }
-}
-
-/** @param {boolean} enabled */
-function write(enabled) {
-  try {
-    localStorage.setItem(STORED, enabled ? 'on' : 'off');
-  } catch {
-    // Without storage the choice is lost when the page closes.
-  }
 }

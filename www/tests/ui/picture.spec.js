@@ -9,7 +9,7 @@ import { afresh, atRest, open, report, scan, settled, state } from './helpers.js
 /** @param {Page} page */
 async function openDialog(page) {
   await page.getByRole('button', { name: 'Save picture' }).click();
-  const dialog = page.getByRole('dialog', { name: 'Take the picture away' });
+  const dialog = page.getByRole('dialog', { name: 'Save the picture' });
   await expect(dialog).toBeVisible();
   return dialog;
 }
@@ -55,7 +55,7 @@ test('the picture and what moves in it', async ({ page }) => {
     const save = async (/** @type {string} */ size, /** @type {string[]} */ checks) => {
       const dialog = await openDialog(page);
       await dialog.getByRole('combobox', { name: 'Size' }).first().selectOption({ label: size });
-      for (const name of ['No ground', 'Legend', 'Caption'])
+      for (const name of ['Transparent background', 'Legend', 'Caption'])
         await dialog.getByRole('checkbox', { name }).setChecked(checks.includes(name));
       const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Save PNG' }).click());
       expect(name).toMatch(/^ellipsoid-\d+\.png$/);
@@ -72,7 +72,7 @@ test('the picture and what moves in it', async ({ page }) => {
     expect(told.box.top).toBeLessThan(plain.box.top);
     expect(told.box.bottom).toBeGreaterThan(plain.box.bottom);
     expect(told.count).toBeGreaterThan(plain.count);
-    const bare = await save('Screen, 1280\u202f×\u202f800', ['No ground']);
+    const bare = await save('Screen, 1280\u202f×\u202f800', ['Transparent background']);
     expect([bare.width, bare.height, bare.alpha]).toEqual([1280, 800, 0]);
   });
 
@@ -173,7 +173,7 @@ test('the picture and what moves in it', async ({ page }) => {
     await afresh(page, { width: 390, height: 844 });
     await page.getByRole('button', { name: 'Save picture' }).focus();
     await page.keyboard.press('Enter');
-    const dialog = page.getByRole('dialog', { name: 'Take the picture away' });
+    const dialog = page.getByRole('dialog', { name: 'Save the picture' });
     await expect(dialog).toBeVisible();
     expect((await scan(page)).violations).toEqual([]);
     await page.keyboard.press('Escape');

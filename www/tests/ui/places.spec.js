@@ -1,6 +1,6 @@
 /** A press on a figure of the spacing shows the place in the picture. */
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, state } from './helpers.js';
+import { afresh, atRest, open, openFigures, scan, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -11,6 +11,7 @@ test('places that are pointed out', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await test.step('the closest pair, the crowded pairs and the largest hole are brought before the camera', async () => {
     await atRest(page);
+    await openFigures(page);
     const report = page.locator('#panel-report');
     const { pairs, holes } = await places(page);
     const before = (await state(page)).view.camera;

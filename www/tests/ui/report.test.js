@@ -2,6 +2,7 @@ import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, trim } from '../../src/ui/report/bins.js';
 import { listOf, placeOf } from '../../src/ui/report/places.js';
+import { PLAIN } from '../../src/ui/report/plain.js';
 import {
   compare,
   figuresOf,
@@ -91,26 +92,47 @@ describe('the report', () => {
     expect(valueAt(report, 'quality.none.deeper')).toBeUndefined();
     expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.psi6')).toBeNull();
     expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.rho')).toBeNull();
-    expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: 0.97, before: 0.93 });
+    expect(figuresOf(report, 'quality.six')).toEqual({ now: 0.97, before: 0.93 });
     expect(figuresOf({ ...report, quality_before: null }, 'quality.six').before).toBeUndefined();
-    expect(figuresOf(report, 'count')).toEqual({ paired: false, now: 5, before: undefined });
+    expect(figuresOf(report, 'count')).toEqual({ now: 5, before: undefined });
   });
 
-  it('gives the figures of a run without relaxation to the front', () => {
+  it('has one column of figures of a run without relaxation', () => {
     for (const energy of [null, [0.2]]) {
       const report = /** @type {any} */ ({ energy, quality: { six: 0.93 }, quality_before: null });
-      expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: undefined, before: 0.93 });
+      expect(figuresOf(report, 'quality.six')).toEqual({ now: 0.93, before: undefined });
       expect(isTold(report, row())).toBe(true);
     }
   });
 
   it('heads the figures of a refined run by what it is', () => {
-    const headings = (/** @type {number | null} */ levels) =>
-      headingsOf(/** @type {any} */ ({ refined_levels: levels, energy: null }));
-    expect(headings(3)).toEqual(['Refined', 'Relaxed']);
-    expect(headings(0)).toEqual(['Refined', 'Relaxed']);
-    expect(headings(null)).toEqual(['Front', 'Relaxed']);
+    const headings = (/** @type {number | null} */ levels, /** @type {number[] | null} */ energy = null) =>
+      headingsOf(/** @type {any} */ ({ refined_levels: levels, energy }));
+    expect(headings(3)).toEqual(['', 'Refined']);
+    expect(headings(0)).toEqual(['', 'Refined']);
+    expect(headings(3, [0.2, 0.1])).toEqual(['Refined', 'Relaxed']);
+    expect(headings(null)).toEqual(['', 'Front']);
+    expect(headings(null, [0.2, 0.1])).toEqual(['Front', 'Relaxed']);
     expect(headingsOf(null)).toEqual(['Front', 'Relaxed']);
+  });
+
+  it('begins with four figures in plain words', () => {
+    const plain = (/** @type {object} */ report) => PLAIN.map(({ write }) => write(/** @type {any} */ (report)));
+    const quality = { nn_cv: 0.0732, err_max: 5.3e-5 };
+    expect(plain({ count: 4301, quality, search: 'proven', sampled: { missing: 0 } })).toEqual([
+      '4,301 particles',
+      '±\u202f7.3\u202f%',
+      '0.0053\u202f%',
+      'proven',
+    ]);
+    const poor = { nn_cv: 0.3, size_cv: 0.081, err_max: 1e-8 };
+    expect(plain({ count: 1, quality: poor, search: 'searched', sampled: { missing: 2 } })).toEqual([
+      '1 particle',
+      '±\u202f8.1\u202f%',
+      'below 0.001\u202f%',
+      'all but 2',
+    ]);
+    expect(plain({ count: 3, quality: null, search: null })).toEqual(['3 particles', '–', '–', '–']);
   });
 
   it('writes shares as per cent, whole numbers grouped, and words as they are', () => {

@@ -1,6 +1,6 @@
 import { expect, test } from '@playwright/test';
 import { link } from '../engine/browser.js';
-import { afresh, atRest, open, report, settled, state, typeFormula } from './helpers.js';
+import { afresh, atRest, open, openFigures, report, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -161,14 +161,15 @@ test('the run and its buttons', async ({ page }) => {
     );
   });
 
-  await test.step('figures of a run without relaxation stand under the front, and go on to relaxed with the first step', async () => {
+  await test.step('figures of a run without relaxation are those of the front, and go on to relaxed with the first step', async () => {
     await page.waitForTimeout(DOUBLE_CLICK_MS);
     await afresh(page);
+    await openFigures(page);
     const cells = page.locator('tr', { has: page.getByRole('button', { name: 'Six neighbours' }) }).locator('td');
     await page.getByRole('button', { name: 'Generate only' }).click();
     await settled(page);
-    await expect(cells.nth(0)).toHaveText(/\d/);
-    await expect(cells.nth(1)).not.toHaveText(/\d/);
+    await expect(cells.nth(0)).toHaveText('');
+    await expect(cells.nth(1)).toHaveText(/\d/);
     await page.getByRole('button', { name: 'Relax one step' }).click();
     await settled(page);
     await expect(cells.nth(1)).toHaveText(/\d/);
@@ -243,9 +244,14 @@ test('the report, what can be taken away, and what is said where there is no sur
     const rows = await page.evaluate(
       () => /** @type {any} */ (window).marchingParticles.engine.description.value.report,
     );
+    const plain = page.locator('.plain-figures');
+    await expect(plain.locator('.term')).toHaveText(['How many', 'How even', 'How exact', 'All found']);
+    await expect(plain.locator('dd')).toHaveText([/4,301 particles/, /%$/, /%$/, 'proven']);
+    await expect(page.locator('.figures')).toBeHidden();
+    await openFigures(page);
     await expect(page.locator('.figures .term')).toHaveCount(rows.length);
     const row = rows.find((/** @type {any} */ { key }) => key === 'quality.six');
-    const term = page.locator('.term', { hasText: row.label });
+    const term = page.locator('.figures .term', { hasText: row.label });
     await term.focus();
     await page.keyboard.press('Shift+Tab');
     await page.keyboard.press('Tab');

@@ -66,7 +66,7 @@ test('the view', async ({ page }) => {
     await expect(page.locator('#panel-field')).toBeVisible();
     await tabs.getByRole('button', { name: 'Report' }).click();
     await expect(page.locator('#panel-field')).toBeHidden();
-    await expect(page.locator('.figures')).toBeVisible();
+    await expect(page.locator('.plain-figures')).toBeVisible();
     await tabs.getByRole('button', { name: 'Report' }).click();
     await expect(page.locator('#panel-report')).toBeHidden();
     await tabs.getByRole('button', { name: 'Run' }).dblclick();

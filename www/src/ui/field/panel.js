@@ -1,4 +1,4 @@
-/** The field panel: the surface, its formula, its parameters, its clip box and the cutting plane. */
+/** The field panel: the formula, its parameters, the gallery, the clip box and the cutting plane. */
 import { computed } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { createClipBox } from './clip-box.js';
@@ -25,12 +25,12 @@ import { storyOf } from './story.js';
 export function mountField(body, engine, description, motion) {
   fill(
     body,
-    createGallery(engine, description),
-    ...createLoading(engine),
-    createStory(engine, description),
     createFormula(engine, description),
     createModel(engine, description),
     createParameters(engine, motion),
+    createGallery(engine, description),
+    ...createLoading(engine),
+    createStory(engine, description),
     ...createClipBox(engine),
     createSolid(engine, description),
     createCuttingPlane(engine),

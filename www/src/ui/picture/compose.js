@@ -1,5 +1,5 @@
 /** Draws the legend and a caption on a picture of the surface. */
-import { formatCount, formatSignificant, plural } from '../format.js';
+import { cycleEnds, formatCount, formatSignificant, plural } from '../format.js';
 
 /**
  * @import { Engine, Legend } from '../../engine/types.js'
@@ -114,7 +114,7 @@ function dot({ context, em }, colour, x, y) {
 
 /** Returns what stands at the ends of a scale. @param {Legend} legend @returns {[string, string]} */
 export function endsOf({ kind, colours, range }) {
-  if (kind === 'cyclic') return ['0', `${colours.length - 1}, then again`];
+  if (kind === 'cyclic') return cycleEnds(colours.length);
   if (!range) return ['', ''];
   if (range[0] === range[1]) return [`${formatSignificant(range[0])} everywhere`, ''];
   return kind === 'diverging'

@@ -1,4 +1,4 @@
-/** The dialog that takes the picture away: as a file, on paper, as a film or as a sequence of pictures. */
+/** The dialog that saves the picture: as a file, on paper, as a film or as a sequence of pictures. */
 import { button } from '../button.js';
 import { createDialog } from '../dialog.js';
 import { fill, h, uniqueId } from '../dom.js';
@@ -28,7 +28,7 @@ const TURN = 'turn';
  * @param {{ motion: Motion, toast: Toast }} page
  */
 export function createPictureDialog(engine, page) {
-  const transparent = check('No ground', false);
+  const transparent = check('Transparent background', false);
   const legend = check('Legend', false);
   const caption = check('Caption', false);
   const parts = () => ({
@@ -38,7 +38,7 @@ export function createPictureDialog(engine, page) {
   });
   const shared = { engine, page, parts, transparent: transparent.input };
   const dialog = createDialog(
-    'Take the picture away',
+    'Save the picture',
     h('div', { class: 'picture-line' }, transparent.label, legend.label, caption.label),
     ...pictureSection({ ...shared, close: () => dialog.close() }),
     ...filmSection({ ...shared, close: () => dialog.close() }),

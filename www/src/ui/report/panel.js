@@ -1,14 +1,19 @@
-/** The report panel: the quality figures, the timing, and the distribution of the nearest distances. */
+/**
+ * The report panel: four figures in plain words, and behind them all figures, the timing and the distribution of the
+ * nearest distances.
+ */
 import { computed } from '@preact/signals-core';
 import { term } from '../button.js';
 import { fill, h, live } from '../dom.js';
 import { withCounts } from '../format.js';
+import { remembered } from '../remembered.js';
 import { createHistogram } from './histogram.js';
 import { listOf, placeOf } from './places.js';
+import { PLAIN } from './plain.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
 
-/** @import { Description, Engine, ReportRow } from '../../engine/types.js' */
+/** @import { Description, Engine, ReadonlySignal, Report, ReportRow } from '../../engine/types.js' */
 
 const DRAWN = {
   starting: 'Graphics starting',
@@ -57,11 +62,53 @@ export function mountReport(body, engine, description) {
     waiting,
     whose,
     warnings,
-    createTable(report, description.report, { counted, show: createShow(engine, said) }),
-    said,
-    createTiming(engine, report),
-    createHistogram(report, engine),
-    backend,
+    createPlain(report, counted),
+    createAll(
+      createTable(report, description.report, { counted, show: createShow(engine, said) }),
+      said,
+      createTiming(engine, report),
+      createHistogram(report, engine),
+      backend,
+    ),
+  );
+}
+
+/** @param {ReadonlySignal<Report | null>} report @param {ReadonlySignal<number>} counted  of a run without a report yet, or 0 */
+function createPlain(report, counted) {
+  return h(
+    'dl',
+    { class: 'section facts plain-figures', hidden: () => report.value === null },
+    PLAIN.map(({ label, help, write }) => [
+      h(
+        'dt',
+        null,
+        term(() => ({ title: label, text: help }), { side: 'left' }, label),
+      ),
+      h(
+        'dd',
+        null,
+        () => report.value && write(counted.value ? { ...report.value, count: counted.value } : report.value),
+      ),
+    ]),
+  );
+}
+
+/** Folds the rest of the report, until it is opened; the page keeps the choice. @param {...HTMLElement} parts */
+function createAll(...parts) {
+  const isOpen = remembered('report', false);
+  return h(
+    'details',
+    {
+      class: 'section all-figures',
+      prop: { open: () => isOpen.value },
+      on: {
+        toggle: ({ currentTarget }) => {
+          isOpen.value = /** @type {HTMLDetailsElement} */ (currentTarget).open;
+        },
+      },
+    },
+    h('summary', { class: 'disclose' }, 'All figures'),
+    ...parts,
   );
 }
 

@@ -27,16 +27,15 @@ export function valueAt(root, key) {
 const isRelaxed = ({ energy }) => energy !== null && energy.length > 1;
 
 /**
- * Returns a figure of the whole run or, for a quality figure, its values before and after relaxation.
+ * Returns a figure and, for a quality figure of a relaxed run, what it was before the relaxation.
  * @param {Report} report
  * @param {string} key
- * @returns {{ paired: boolean, now: unknown, before: unknown }} undefined for a value that does not exist
+ * @returns {{ now: unknown, before: unknown }} undefined for a value that does not exist
  */
 export function figuresOf(report, key) {
-  const value = valueAt(report, key);
-  if (!key.startsWith('quality.')) return { paired: false, now: value, before: undefined };
-  if (!isRelaxed(report)) return { paired: true, now: undefined, before: value };
-  return { paired: true, now: value, before: valueAt(report, key.replace(/^quality\./, 'quality_before.')) };
+  const paired = key.startsWith('quality.') && isRelaxed(report);
+  const before = paired ? valueAt(report, key.replace(/^quality\./, 'quality_before.')) : undefined;
+  return { now: valueAt(report, key), before };
 }
 
 /**
@@ -55,10 +54,13 @@ export function isTold(report, { key, unless }) {
 
 /**
  * Returns the headings of the two columns of quality figures: of the particles as they were placed, and after
- * relaxation.
+ * relaxation. Without a relaxation there is only the second column.
  * @param {Report | null} report
  */
-export const headingsOf = (report) => [report?.refined_levels != null ? 'Refined' : 'Front', 'Relaxed'];
+export function headingsOf(report) {
+  const placed = report?.refined_levels != null ? 'Refined' : 'Front';
+  return report && !isRelaxed(report) ? ['', placed] : [placed, 'Relaxed'];
+}
 
 /** Words shown for the core's values. @type {Record<string, string>} */
 const WORDS = { proven: 'proven', searched: 'by search' };
@@ -68,10 +70,12 @@ const MOST_DIGITS = 5;
 /** Number of decimals beyond which a figure is written as a power of ten. */
 const TINY_DIGITS = 4;
 
+/** @param {unknown} value */
+export const writeWord = (value) => (typeof value === 'string' ? (WORDS[value] ?? value) : MISSING);
+
 /** @param {ReportRow} row @param {unknown} value */
 export function writeFigure({ digits, unit }, value) {
-  if (typeof value === 'string') return WORDS[value] ?? value;
-  if (typeof value !== 'number') return MISSING;
+  if (typeof value !== 'number') return writeWord(value);
   if (unit === '%') return formatFixed(value * 100, digits);
   // Such figures are usually very small and easier to read as powers of ten.
   if (digits > TINY_DIGITS) return value === 0 ? '0' : formatSignificant(value, 2);

@@ -54,14 +54,9 @@ function createRow(report, row, { counted, show }) {
     const found = report.value && figuresOf(report.value, row.key);
     return found && row.key === 'count' ? { ...found, now: counted.value || found.now } : found;
   });
-  // The places are those of the present particles.
-  const placed = () => {
-    if (listOf(report.value, row.places).length === 0) return null;
-    return figures.value?.now === undefined ? 'before' : 'now';
-  };
   const change = () => (figures.value ? compare(row, figures.value.before, figures.value.now) : 'same');
   const paired = isPaired(row);
-  const before = () => writeFigure(row, figures.value?.before);
+  const before = () => (figures.value?.before === undefined ? '' : writeFigure(row, figures.value.before));
   const now = () => (report.value && row.to ? writeRange(row, report.value) : writeFigure(row, figures.value?.now));
   // A range or a word spans both columns.
   const wide = () => Boolean(row.to || typeof figures.value?.now === 'string');
@@ -73,16 +68,11 @@ function createRow(report, row, { counted, show }) {
       { scope: 'row', colspan: () => (paired || wide() ? 1 : 2) },
       term(help, { side: 'left' }, row.label, row.unit && unitOf(row.unit)),
     ),
-    paired &&
-      h(
-        'td',
-        null,
-        figureOf(before, () => placed() === 'before', { row, show }),
-      ),
+    paired && h('td', null, before),
     h(
       'td',
       { class: 'now', data: { change }, colspan: () => (!paired && wide() ? 2 : 1) },
-      figureOf(now, () => placed() === 'now', { row, show }),
+      figureOf(now, () => listOf(report.value, row.places).length > 0, { row, show }),
     ),
   );
 }

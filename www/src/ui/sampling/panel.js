@@ -53,9 +53,21 @@ function createTrack({ busy, reveal, progress, loading }) {
   });
 }
 
+/**
+ * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet, as
+ * changes are sampled by themselves.
+ * @param {Engine} engine
+ */
+export const isDue = ({ typing, partial, report, empty, busy, progress }) =>
+  computed(() => {
+    const isWhole = report.value !== null || empty.value || busy.value || progress.value.phase !== 'done';
+    return typing.value || partial.value || !isWhole;
+  });
+
 /** @param {Engine} engine */
 function createActions(engine) {
   const { busy, loading, progress } = engine;
+  const due = isDue(engine);
   const idle = () => !busy.value && loading.value === null;
   const fixed = () => busy.value || progress.value.particles === 0;
   /** @type {[string, string, ButtonProps][]} */
@@ -63,7 +75,7 @@ function createActions(engine) {
     [
       'Run',
       'Samples the surface from its first particle. Key R.',
-      { class: 'primary in-tabs', press: () => engine.run() },
+      { class: () => (due.value ? 'primary in-tabs' : 'in-tabs'), press: () => engine.run() },
     ],
     [
       'Stop',

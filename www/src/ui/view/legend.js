@@ -1,7 +1,7 @@
 /** Shows the choice of the colouring and its legend, with range and unit. */
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
-import { formatCount, formatSignificant } from '../format.js';
+import { cycleEnds, formatCount, formatSignificant } from '../format.js';
 
 /**
  * @import { Description, Engine, Legend } from '../../engine/types.js'
@@ -57,7 +57,11 @@ const SCALES = {
       { class: 'cycle', role: 'img', 'aria-label': `${colours.length} colours, repeating` },
       colours.map(swatch),
     ),
-    h('div', { class: 'ends' }, h('span', null, '0'), h('span', null, `${colours.length - 1}, then again`)),
+    h(
+      'div',
+      { class: 'ends' },
+      cycleEnds(colours.length).map((end) => h('span', null, end)),
+    ),
     unit ? h('span', { class: 'unit' }, unit) : null,
   ],
   categories: ({ entries }) => [

@@ -1,0 +1,49 @@
+/** The four figures in plain words with which the report begins: how many particles, how even, how exact, and whether all parts have some. */
+import { formatCount, formatSignificant, MISSING, plural } from '../format.js';
+import { valueAt, writeWord } from './rows.js';
+
+/** @import { Report } from '../../engine/types.js' */
+
+/** Share below which a distance from the surface is nothing to anyone: a thousandth of a per cent. */
+const LEAST_SHARE = 1e-5;
+
+/** @param {number} share */
+const percent = (share) => `${formatSignificant(100 * share, 2)}\u202f%`;
+
+/**
+ * Each figure has a name, a sentence that explains it, and a function that writes it.
+ * @type {readonly { label: string, help: string, write: (report: Report) => string }[]}
+ */
+export const PLAIN = [
+  {
+    label: 'How many',
+    help: 'Particles on the surface. A smaller radius, or a larger count, gives more.',
+    write: ({ count }) => plural(count, 'particle'),
+  },
+  {
+    label: 'How even',
+    help: 'By so much the distances between neighbours vary around their mean. In a perfect lattice it is 0 %.',
+    write: (report) => {
+      // Particles of many sizes are measured by their own radii.
+      const variation = valueAt(report, 'quality.size_cv') ?? valueAt(report, 'quality.nn_cv');
+      return typeof variation === 'number' ? `±\u202f${percent(variation)}` : MISSING;
+    },
+  },
+  {
+    label: 'How exact',
+    help: 'The largest distance of a particle from the surface, as a share of the distance between neighbours.',
+    write: (report) => {
+      const farthest = valueAt(report, 'quality.err_max');
+      if (typeof farthest !== 'number') return MISSING;
+      return farthest < LEAST_SHARE ? `below ${percent(LEAST_SHARE)}` : percent(farthest);
+    },
+  },
+  {
+    label: 'All found',
+    help: 'Whether every part of the surface in the box has particles. Proven: there is no other part. By search: one smaller than the cells of the search can be missing.',
+    write: (report) => {
+      const missing = Number(valueAt(report, 'sampled.missing') ?? 0);
+      return missing > 0 ? `all but ${formatCount(missing)}` : writeWord(valueAt(report, 'search'));
+    },
+  },
+];
