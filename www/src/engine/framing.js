@@ -12,22 +12,17 @@ import { effect } from '@preact/signals-core';
  * @import { Viewer } from './view/viewer.js'
  */
 
-/** Pause in typing after which the formula counts as finished. */
-const TYPING_MS = 900;
-
 export class Framing {
   #store;
   #columns;
   #viewer;
 
-  /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
-  #writtenMs;
+  /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
+  #isWritten;
 
   /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
   #isTyped;
 
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  #timer;
   #effects;
 
   /** @param {{ store: Store, columns: Columns, viewer: Viewer }} parts */
@@ -35,20 +30,13 @@ export class Framing {
     this.#store = store;
     this.#columns = columns;
     this.#viewer = viewer;
-    this.#writtenMs = NaN;
+    this.#isWritten = false;
     this.#isTyped = false;
-    this.#timer = undefined;
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
     this.#effects = [
       effect(() => {
-        if (!this.#rests() || Number.isNaN(this.#writtenMs) || this.#waits()) return;
-        this.hold();
-        // The camera waits for a pause in typing, so that the picture does not move with every key. A link is whole at
-        // once.
-        if (this.#isTyped)
-          this.#timer = setTimeout(() => this.#come(), this.#writtenMs + TYPING_MS - performance.now());
-        else queueMicrotask(() => this.#come());
+        if (this.#rests() && this.#isWritten && !this.#waits()) queueMicrotask(() => this.#come());
       }),
       effect(() => {
         // Without a surface the camera shows the box. It returns to the surface when there is one again.
@@ -63,7 +51,7 @@ export class Framing {
 
   /** Notes that the formula changed or a link was read. @param {{typed: boolean}} how */
   written({ typed }) {
-    this.#writtenMs = performance.now();
+    this.#isWritten = true;
     this.#isTyped = typed;
   }
 
@@ -75,14 +63,9 @@ export class Framing {
     return this.#isTyped && this.#columns.stale;
   }
 
-  /** Cancels the fit that the text typed so far would cause. */
-  hold() {
-    clearTimeout(this.#timer);
-  }
-
   #come() {
     if (!this.#rests() || this.#waits()) return;
-    this.#writtenMs = NaN;
+    this.#isWritten = false;
     this.#fit();
   }
 
@@ -91,16 +74,15 @@ export class Framing {
   }
 
   /**
-   * Returns whether no run is active and the last one has a report or found no surface. A faulty formula makes no
-   * difference: the surface still shown may come from an earlier state of the same text.
+   * Returns whether nobody types, no run is active and the last one has a report or found no surface. A faulty formula
+   * makes no difference: the surface still shown may come from an earlier state of the same text.
    */
   #rests() {
-    const { busy, report, empty } = this.#store;
-    return !busy.value && (report.value !== null || empty.value);
+    const { busy, typing, report, empty } = this.#store;
+    return !typing.value && !busy.value && (report.value !== null || empty.value);
   }
 
   close() {
-    this.hold();
     for (const stop of this.#effects) stop();
   }
 }

@@ -16,6 +16,8 @@ import { change, description } from './store.js';
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
 const REST_MS = 250;
+/** Pause in typing after which a formula is sampled: one and a half times that between the keys of a slow typist, 30 words a minute. */
+const TYPING_MS = 600;
 
 /** @returns {any} */
 const spawnSolver = () =>
@@ -87,15 +89,17 @@ export class Runs {
     this.resample(options);
   }
 
-  /** Does the same after a pause, unless another request comes first. @param {number} pauseMs */
-  chooseLater(pauseMs) {
+  /** Samples a formula that is being typed once the typing pauses, unless another request comes first. */
+  chooseTyped() {
     this.forgetLater();
-    this.#timer = setTimeout(() => this.choose(), pauseMs);
+    this.store.typing.value = true;
+    this.#timer = setTimeout(() => this.choose(), TYPING_MS);
   }
 
   /** Cancels the run that waits for a pause. */
   forgetLater() {
     clearTimeout(this.#timer);
+    this.store.typing.value = false;
   }
 
   stop() {

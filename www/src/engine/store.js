@@ -53,6 +53,8 @@ export function createStore() {
     legend: signal(null),
     reveal: signal(null),
     busy: signal(false),
+    typing: signal(false),
+    dragging: signal(false),
     partial: signal(false),
     revision: signal(0),
     empty: signal(false),

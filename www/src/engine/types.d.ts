@@ -271,6 +271,10 @@ export interface EngineSignals {
   reveal: ReadonlySignal<Reveal | null>;
   /** whether a run is active and can be stopped */
   busy: ReadonlySignal<boolean>;
+  /** whether a typed formula waits for a pause before it is sampled */
+  typing: ReadonlySignal<boolean>;
+  /** whether a control is being dragged, also while it rests */
+  dragging: ReadonlySignal<boolean>;
   /** whether the picture shows a run that was stopped or capped */
   partial: ReadonlySignal<boolean>;
   /** whether the last run found no surface */
@@ -296,23 +300,23 @@ export interface EngineCommands {
   setCentres: (count: number) => void;
   /** cancels the model or file that is loading */
   cancelLoading: () => void;
-  /** `unfinished`: the text is sampled only after a pause, or with the next change */
-  setFormula: (text: string, options?: { unfinished?: boolean }) => void;
+  /** `typing`: more keys may follow, so that the text is sampled once they pause; without it, at once */
+  setFormula: (text: string, options?: { typing?: boolean }) => void;
   /** `live` during a drag; call once more without it at the end */
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
   /** restores the value of the gallery or of the declaration */
   resetParameter: (name: string) => void;
-  /** declares an unknown name of the formula as a parameter */
-  declareParameter: (name: string) => void;
+  /** declares unknown names of the formula as parameters */
+  declareParameters: (names: readonly string[]) => void;
   setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
   /** the normal may have any length but 0 */
-  setPlane: (plane: CuttingPlane | null) => void;
+  setPlane: (plane: CuttingPlane | null, options?: { live?: boolean }) => void;
   /** takes the box of the gallery surface back, or fits it to the formula */
   fitBox: () => void;
   setSetting: (name: string, value: number | string, options?: { live?: boolean }) => void;
   resetSetting: (name: string) => void;
-  /** restores an earlier state, without the view */
-  restore: (shape: Shape) => void;
+  /** restores an earlier state; of the view the camera alone, where it is given */
+  restore: (shape: Shape & { camera?: CameraState }) => void;
   /** samples from the start; does nothing during a run of the same input */
   run: () => void;
   /** stops the run and keeps the partial result */

@@ -32,6 +32,7 @@ const once = (engine, isOver) =>
 const atRest = (engine) =>
   engine.description.value !== null &&
   engine.loading.value === null &&
+  !engine.typing.value &&
   !engine.busy.value &&
   engine.progress.value.phase === 'done';
 

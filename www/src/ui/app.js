@@ -11,7 +11,7 @@ import { createHistory } from './history.js';
 import { mountLayout } from './layout.js';
 import { createMotion } from './motion.js';
 import { mountReport } from './report/panel.js';
-import { mountSampling } from './sampling/panel.js';
+import { isDue, mountSampling } from './sampling/panel.js';
 import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
 import { mountToasts } from './toasts.js';
 import { mountHover } from './view/hover.js';
@@ -52,7 +52,14 @@ export function mountInterface(engine) {
   const motion = createMotion(engine, stage);
   const history = createHistory(
     engine,
-    computed(() => motion.playing.value !== null || motion.filming.value),
+    computed(
+      () =>
+        motion.playing.value !== null ||
+        motion.turning.value ||
+        motion.filming.value ||
+        engine.typing.value ||
+        engine.dragging.value,
+    ),
   );
   /** The generation level chosen on the timeline, in words. */
   /** @type {Signal<Told | null>} */
@@ -193,7 +200,7 @@ function followTheme(engine) {
 }
 
 /**
- * Returns what opens the dialog that takes the picture away, and what prints it. Both are loaded when they are first
+ * Returns what opens the dialog that saves the picture, and what prints it. Both are loaded when they are first
  * asked for.
  * @param {Engine} engine
  * @param {Motion} motion
@@ -296,7 +303,8 @@ function goButton(engine) {
     if (active.peek()) engine.stop();
     else engine.run();
   });
-  return button({ class: 'primary go', press }, () => (active.value ? 'Stop' : 'Run'));
+  const due = isDue(engine);
+  return button({ class: () => (due.value ? 'primary go' : 'go'), press }, () => (active.value ? 'Stop' : 'Run'));
 }
 
 /** @param {ReturnType<typeof createHistory>} history */
@@ -315,7 +323,7 @@ const historyButtons = ({ canUndo, undo, canRedo, redo }) => [
 function historyButton(name, label, keys, can, act) {
   return explain(button({ icon: name, 'aria-label': label, off: () => !can.value, press: act }), () => ({
     title: label,
-    text: `Surface, formula, clip box and settings. Keys ${keys}.`,
+    text: `Surface, formula, clip box, settings and camera. Keys ${keys}.`,
   }));
 }
 

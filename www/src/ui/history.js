@@ -1,18 +1,21 @@
 /**
- * Records the undo history: the last hundred changes of surface, formula, parameters, clip box, cutting plane and
- * settings. Continuous typing or dragging counts as one change. The browser's history is not used, so Back leaves the
- * page as usual.
+ * Records the undo history: the last hundred changes of surface, formula, parameters, clip box, cutting plane, settings
+ * and camera. Typing up to a pause, a drag and a look around count as one change each. The browser's history is not used,
+ * so Back leaves the page as usual.
  */
 import { effect, signal } from '@preact/signals-core';
 
-/** @import { Engine, ReadonlySignal, Shape, State } from '../engine/types.js' */
+/**
+ * @import { Engine, ReadonlySignal, State } from '../engine/types.js'
+ * @import { Moment } from './types.js'
+ */
 
 export const MOST_ENTRIES = 100;
 /** Largest pause between changes of the same value that are recorded as one. */
 const PAUSE_MS = 800;
 
-/** @param {State} state @returns {Shape} */
-export const shapeOf = ({ surface, formula, parameters, declared, centres, bounds, plane, settings }) => ({
+/** @param {State} state @returns {Moment} */
+export const momentOf = ({ surface, formula, parameters, declared, centres, bounds, plane, settings, view }) => ({
   surface,
   formula,
   parameters,
@@ -21,16 +24,26 @@ export const shapeOf = ({ surface, formula, parameters, declared, centres, bound
   bounds,
   plane,
   settings,
+  camera: view.camera,
 });
 
 /**
- * Returns the only value in which two states differ, such as `formula` or `settings.count`; null if several differ.
- * @param {Shape} before
- * @param {Shape} after
+ * Returns whether somebody has moved the camera. Where it follows the surface, its target and distance come from that.
+ * @param {Moment} before @param {Moment} after
  */
-export function difference(before, after) {
-  /** @type {string[]} */
-  const found = [];
+function isLookedAround({ camera: a }, { camera: b }) {
+  const isTurned = a.yaw !== b.yaw || a.pitch !== b.pitch;
+  const isMoved = a.distance !== b.distance || a.target.some((v, k) => v !== b.target[k]);
+  return isTurned || a.fit !== b.fit || (isMoved && !b.fit);
+}
+
+/**
+ * Returns the values in which two states differ, such as `formula` or `settings.count`.
+ * @param {Moment} before
+ * @param {Moment} after
+ */
+export function differences(before, after) {
+  const found = isLookedAround(before, after) ? ['camera'] : [];
   for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'centres', 'bounds', 'plane'])) {
     if (JSON.stringify(before[key]) !== JSON.stringify(after[key])) found.push(key);
   }
@@ -39,7 +52,7 @@ export function difference(before, after) {
     for (const name of new Set([...Object.keys(a), ...Object.keys(b)]))
       if (a[name] !== b[name]) found.push(`${key}.${name}`);
   }
-  return found.length === 1 ? found[0] : null;
+  return found;
 }
 
 /** The undo entries and the present position among them. */
@@ -57,7 +70,7 @@ export class History {
   /** @param {number} [most] */
   constructor(most = MOST_ENTRIES) {
     this.#most = most;
-    /** @type {Shape[]} */
+    /** @type {Moment[]} */
     this.entries = [];
     this.#at = -1;
     this.#open = null;
@@ -73,21 +86,31 @@ export class History {
   }
 
   /**
-   * @param {Shape} shape
+   * @param {Moment} moment
    * @param {number} nowMs
    * @param {boolean} [faulty] whether the previous entry has an invalid formula, which is not worth restoring
    */
-  record(shape, nowMs, faulty = false) {
+  record(moment, nowMs, faulty = false) {
     const present = this.entries[this.#at];
-    if (present && JSON.stringify(present) === JSON.stringify(shape)) return;
-    const what = present ? difference(present, shape) : null;
+    const found = present && differences(present, moment);
+    if (found?.length === 0) {
+      // The camera has followed the surface.
+      this.entries[this.#at] = moment;
+      return;
+    }
+    const what = found?.length === 1 ? found[0] : null;
     const goesOn =
-      what !== null && what === this.#open && (nowMs - this.#lastMs < PAUSE_MS || (faulty && what === 'formula'));
+      what !== null &&
+      what === this.#open &&
+      // A look around is one change, however long it takes; to fit the surface again is another.
+      (what === 'camera'
+        ? present?.camera.fit === moment.camera.fit
+        : nowMs - this.#lastMs < PAUSE_MS || (faulty && what === 'formula'));
     this.#lastMs = nowMs;
     this.#open = what;
     this.entries.length = this.#at + 1;
-    if (goesOn) this.entries[this.#at] = shape;
-    else this.entries.push(shape);
+    if (goesOn) this.entries[this.#at] = moment;
+    else this.entries.push(moment);
     if (this.entries.length > this.#most + 1) this.entries.shift();
     this.#at = this.entries.length - 1;
   }
@@ -112,6 +135,11 @@ export function createHistory(engine, moves) {
   const history = new History();
   const canUndo = signal(false);
   const canRedo = signal(false);
+  const record = (/** @type {State} */ state) => {
+    // Before the core has loaded there is no state to restore.
+    if (!engine.description.value || state.surface === '') return;
+    history.record(momentOf(state), performance.now(), engine.fieldError.peek() !== null);
+  };
   const tell = () => {
     canUndo.value = history.canUndo;
     canRedo.value = history.canRedo;
@@ -119,13 +147,13 @@ export function createHistory(engine, moves) {
   effect(() => {
     const state = engine.state.value;
     if (moves.value) return;
-    // Before the core has loaded there is no state to restore.
-    if (!engine.description.value || state.surface === '') return;
-    history.record(shapeOf(state), performance.now(), engine.fieldError.peek() !== null);
+    record(state);
     tell();
   });
   /** @param {-1 | 1} step */
   const move = (step) => {
+    // What is under way is recorded, so that the way back leads to it.
+    record(engine.state.peek());
     const entry = history.move(step);
     if (entry) engine.restore(entry);
     tell();

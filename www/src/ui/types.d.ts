@@ -1,7 +1,7 @@
 // Types of the interface's parts: what elements are created from, and what panels share.
 
 import type { ReadonlySignal } from '@preact/signals-core';
-import type { Bounds, Notice, Parameter } from '../engine/types.js';
+import type { Bounds, CameraState, Notice, Parameter, Shape } from '../engine/types.js';
 import type { createDialog } from './dialog.js';
 import type { createHistory } from './history.js';
 import type { IconName } from './icons.js';
@@ -148,6 +148,8 @@ export interface Drawn {
   /** where the ideal is, as a share of the width */
   ideal?: number;
 }
+/** A state that can be restored: what is sampled and how, and from where it is seen. */
+export type Moment = Shape & { camera: CameraState };
 export type Dialog = ReturnType<typeof createDialog>;
 export type Explanation = { title?: string; text: string; ideal?: string };
 /** The preferred side of a popover, used if there is room. */

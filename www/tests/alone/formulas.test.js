@@ -42,7 +42,6 @@ for (const phase of /** @type {const} */ (['relaxation', 'quality'])) {
 describe('the camera', () => {
   test('stays with the last surface where a formula on its way has none, and comes to the next', async () => {
     const p = await open();
-    // The longest pause in typing after which the camera moves, and what it takes to move.
     await pause(1200);
     await p.debug.still();
     const { camera } = p.state.view;
@@ -76,21 +75,73 @@ describe('the camera', () => {
   });
 });
 
-test('a sphere typed letter by letter over the ellipsoid is whole', async () => {
-  const p = await open();
-  const text = 'x^2+y^2+z^2=1';
-  for (let k = 0; k <= text.length; k += 1) {
-    p.engine.setFormula(text.slice(0, k), { unfinished: k < text.length });
-    await pause(30);
+describe('while somebody types', () => {
+  /** Types a text letter by letter, and returns what of the page has changed meanwhile. @param {Console} p @param {string} text */
+  async function type({ engine }, text) {
+    const seen = () => ({
+      run: engine.progress.value.run,
+      digest: engine.report.value?.digest,
+      field: engine.field.value,
+      fault: engine.fieldError.value,
+      camera: engine.state.value.view.camera,
+    });
+    const before = seen();
+    for (let k = 1; k <= text.length; k += 1) {
+      engine.setFormula(text.slice(0, k), { typing: true });
+      await pause(30);
+    }
+    const after = seen();
+    expect(after).toEqual(before);
+    expect(engine.typing.value).toBe(true);
   }
-  await settled(p);
-  expect(p.report()).toMatchObject({ quality: { euler: 2 }, border: 0 });
-  expect(p.state.bounds).toBe(null);
-  const { min, max } = p.engine.field.value?.bounds ?? { min: [], max: [] };
-  for (const k of [0, 1, 2]) {
-    expect(max[k] - min[k]).toBeGreaterThan(2);
-    expect(max[k] - min[k]).toBeLessThan(2.3);
-  }
+
+  test('no beginning of a formula is sampled, and the pause brings the whole of it', async () => {
+    const p = await open();
+    await type(p, 'x^2+y^2+z^2=1');
+    await until(p.engine.typing, (typing) => !typing);
+    await settled(p);
+    expect(p.report()).toMatchObject({ quality: { euler: 2 }, border: 0 });
+    expect(p.state.bounds).toBe(null);
+    const { min, max } = p.engine.field.value?.bounds ?? { min: [], max: [] };
+    for (const k of [0, 1, 2]) {
+      expect(max[k] - min[k]).toBeGreaterThan(2);
+      expect(max[k] - min[k]).toBeLessThan(2.3);
+    }
+  });
+
+  test('a formula without a surface leaves the surface that stood before, and the camera with it', async () => {
+    const p = await open();
+    const { positions, camera } = { ...p.particles(), camera: p.state.view.camera };
+    await type(p, 'x^2+y^2+z^2=-1');
+    await until(p.engine.empty, (empty) => empty);
+    const { columns } = p.engine;
+    expect(columns.positions.slice(0, 3 * columns.count)).toEqual(positions);
+    expect(p.state.view.camera).toEqual(camera);
+  });
+
+  test('the same text once more, as by Enter, or another control samples it without a pause', async () => {
+    const p = await open();
+    for (const finish of [
+      () => p.engine.setFormula(p.state.formula),
+      () => p.engine.setSetting('seed', 1),
+      () => p.engine.run(),
+    ]) {
+      p.engine.setFormula(`x^2+y^2+z^2=${p.state.formula.length}`, { typing: true });
+      expect(p.engine.busy.value).toBe(false);
+      finish();
+      expect(p.engine.busy.value).toBe(true);
+      expect(p.engine.typing.value).toBe(false);
+      await settled(p);
+      expect(p.engine.field.value?.formula).toBe(p.state.formula);
+    }
+  });
+
+  test('a mistake is told once the typing pauses', async () => {
+    const p = await open();
+    await type(p, 'x^2 + siin(y');
+    await until(p.engine.fieldError, (error) => error?.kind === 'unknown_function');
+    expect(p.engine.typing.value).toBe(false);
+  });
 });
 
 test('of an endless surface of short period the box holds two periods', async () => {

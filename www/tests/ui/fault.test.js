@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { beginsFunction, changeBetween, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
+import { changeBetween, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
 
 /** @import { FieldFault } from '../../src/engine/types.js' */
 
@@ -25,12 +25,13 @@ describe('a fault in a formula', () => {
     expect(describeFault('x^2', null)).toBeNull();
   });
 
-  it('marks its place and offers a slider for every unknown name', () => {
+  it('marks its place and offers a slider for every unknown name, and all at once', () => {
     const view = describeFault('x + foo = 1', { ...fault, names: ['foo', 'bar'] });
     expect(view?.excerpt).toEqual({ before: 'x + ', marked: 'foo', after: ' = 1' });
     expect(view?.repairs.map(({ label, declare }) => [label, declare])).toEqual([
-      ['Add slider foo', 'foo'],
-      ['Add slider bar', 'bar'],
+      ['Add all', ['foo', 'bar']],
+      ['Add slider foo', ['foo']],
+      ['Add slider bar', ['bar']],
     ]);
   });
 
@@ -83,23 +84,5 @@ describe('a fault in a formula', () => {
     expect(before.startsWith('…') && after.endsWith('…')).toBe(true);
     expect(before.length + after.length).toBeLessThan(60);
     expect(excerptOf('y'.repeat(5000), 0, 5000).marked.length).toBeLessThan(60);
-  });
-});
-
-describe('a name at the caret', () => {
-  const functions = ['sqrt', 'sin', 'sinh', 'exp'].map((name) => ({ name, signature: `${name}(a)`, help: '' }));
-  const begins = (/** @type {string} */ text, /** @type {string[]} */ parameters = []) =>
-    beginsFunction(text, functions, parameters);
-
-  it('may be the beginning of a function until it is one, or is another', () => {
-    expect(['x^2 + s', 'x^2 + sq', '2sq', 'x s'].map((text) => begins(text))).toEqual([true, true, true, true]);
-    expect(
-      ['', 'x^2 + ', 'x', 'x + e', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text)),
-    ).toEqual([]);
-  });
-
-  it('is none where the formula has such a parameter', () => {
-    expect(begins('x^2 + s', ['s'])).toBe(false);
-    expect(begins('x^2 + sq', ['s'])).toBe(true);
   });
 });

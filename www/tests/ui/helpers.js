@@ -65,6 +65,7 @@ export async function settled(page) {
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
     return (
+      !engine.typing.value &&
       !engine.busy.value &&
       engine.loading.value === null &&
       engine.reveal.value === null &&
@@ -81,7 +82,7 @@ export async function settled(page) {
 export async function atRest(page) {
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
-    return !engine.busy.value && engine.reveal.value === null;
+    return !engine.typing.value && !engine.busy.value && engine.reveal.value === null;
   });
   await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
@@ -92,6 +93,9 @@ export async function scan(page) {
   await atRest(page);
   return axe(page);
 }
+
+/** Opens the part of the report that is folded at first. @param {Page} page */
+export const openFigures = (page) => page.locator('.all-figures:not([open]) > summary').click();
 
 /** @param {Page} page @returns {Promise<any>} */
 export const report = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report());

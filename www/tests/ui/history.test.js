@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { difference, History, MOST_ENTRIES } from '../../src/ui/history.js';
+import { differences, History, MOST_ENTRIES } from '../../src/ui/history.js';
 
 /** @param {object} [change] @returns {any} */
 const shape = (change) => ({
@@ -10,6 +10,7 @@ const shape = (change) => ({
   bounds: null,
   plane: null,
   settings: {},
+  camera: { target: [0, 0, 0], distance: 5, yaw: 0.6, pitch: 0.4, fit: true },
   ...change,
 });
 
@@ -49,6 +50,25 @@ describe('the history', () => {
     expect(history.entries.map(({ formula }) => formula)).toEqual(['x', 'x+y']);
   });
 
+  it('takes a look around for one change, to fit the surface again for another, and what the camera does by itself for none', () => {
+    const history = new History();
+    const { camera } = shape();
+    const seen = (/** @type {object} */ change) => shape({ camera: { ...camera, ...change } });
+    history.record(shape(), 0);
+    // The camera follows a surface that has grown.
+    history.record(seen({ distance: 7 }), 9000);
+    expect(history.canUndo).toBe(false);
+    for (let i = 1; i <= 5; i += 1) history.record(seen({ distance: 7, yaw: i }), 10_000 * i);
+    expect(history.entries.length).toBe(2);
+    history.record(seen({ distance: 2, yaw: 5, fit: false }), 60_000);
+    history.record(seen({ distance: 7, yaw: 5 }), 60_001);
+    expect(history.entries.length).toBe(4);
+    expect(history.move(-1)?.camera.distance).toBe(2);
+    expect(history.move(-1)?.camera).toMatchObject({ distance: 7, yaw: 5 });
+    expect(history.move(-1)?.camera).toMatchObject({ distance: 7, yaw: 0.6 });
+    expect(history.canUndo).toBe(false);
+  });
+
   it('does not record what it has itself restored', () => {
     const history = new History();
     history.record(shape(), 0);
@@ -69,11 +89,11 @@ describe('the history', () => {
   });
 
   it('knows the one thing in which two states differ', () => {
-    expect(difference(shape(), shape({ formula: 'y' }))).toBe('formula');
-    expect(difference(shape(), shape({ settings: { count: 3 } }))).toBe('settings.count');
-    expect(difference(shape({ plane: { normal: [0, 0, 1], offset: 0 } }), shape())).toBe('plane');
-    expect(difference(shape({ parameters: { a: 1 } }), shape())).toBe('parameters.a');
-    expect(difference(shape(), shape({ formula: 'y', parameters: { a: 1 } }))).toBeNull();
-    expect(difference(shape(), shape())).toBeNull();
+    expect(differences(shape(), shape({ formula: 'y' }))).toEqual(['formula']);
+    expect(differences(shape(), shape({ settings: { count: 3 } }))).toEqual(['settings.count']);
+    expect(differences(shape({ plane: { normal: [0, 0, 1], offset: 0 } }), shape())).toEqual(['plane']);
+    expect(differences(shape({ parameters: { a: 1 } }), shape())).toEqual(['parameters.a']);
+    expect(differences(shape(), shape({ formula: 'y', parameters: { a: 1 } }))).toEqual(['formula', 'parameters.a']);
+    expect(differences(shape(), shape())).toEqual([]);
   });
 });

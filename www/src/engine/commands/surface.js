@@ -16,22 +16,19 @@ import {
   validPlane,
   validSetting,
 } from '../share/state.js';
-import { change, description, showAll } from '../store.js';
+import { change, changeView, description, showAll } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
  * @import { EngineCommands, Shape } from '../types.js'
  */
 
-/** Pause in typing after which a name counts as finished, although it could be the beginning of a longer one. */
-const NAME_MS = 1000;
-
 /**
  * @typedef {Pick<EngineCommands, 'setSurface' | 'openFile' | 'setCentres' | 'cancelLoading' | 'setFormula' |
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setPlane' |
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameters' | 'setBounds' | 'setPlane' |
  *   'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
@@ -40,7 +37,7 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, se
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, settings]);
 
 /** @param {Parts} parts @returns {SurfaceCommands} */
-export function surfaceCommands({ store, runs, framing }) {
+export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
   const { state } = store;
   return {
     setSurface(id) {
@@ -49,6 +46,12 @@ export function surfaceCommands({ store, runs, framing }) {
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
       showAll(store);
       change(store, freshShape(id, surface?.formula));
+      // Another surface is framed, wherever the hand has left the camera.
+      const { camera } = viewer;
+      if (!camera.state.fit) {
+        camera.set({ ...camera.state, fit: true });
+        changeView(store, { camera: camera.state });
+      }
       runs.choose({ grow: true, fit: true });
     },
     openFile(file) {
@@ -63,23 +66,28 @@ export function surfaceCommands({ store, runs, framing }) {
       runs.choose();
     },
     cancelLoading: () => runs.loader.cancel(),
-    setFormula(text, { unfinished = false } = {}) {
+    setFormula(text, { typing = false } = {}) {
       const { surface, formula } = state.value;
-      if (text === formula) return;
-      // A model has no formula. A formula typed in its place starts from the default surface.
-      const fresh = fromPoints(store.description.value, surface);
-      change(store, fresh ? freshShape(description(store).default_surface, text) : { formula: text });
-      framing.written({ typed: true });
-      framing.hold();
-      if (unfinished) runs.chooseLater(NAME_MS);
+      if (text !== formula) {
+        // A model has no formula. A formula typed in its place starts from the default surface.
+        const fresh = fromPoints(store.description.value, surface);
+        change(store, fresh ? freshShape(description(store).default_surface, text) : { formula: text });
+        framing.written({ typed: true });
+      } else if (!store.typing.value) return;
+      if (typing) runs.chooseTyped();
       else runs.choose();
     },
-    restore(shape) {
+    restore({ camera, ...shape }) {
       const another = shape.surface !== state.value.surface;
       const sampled = sampledOf(shape) !== sampledOf(state.value);
       if (another) showAll(store);
       change(store, shape);
-      if (sampled) runs.choose({ grow: another, fit: another });
+      if (camera) {
+        viewer.camera.set(camera);
+        changeView(store, { camera });
+        viewer.frames.ask();
+      }
+      if (sampled) runs.choose({ grow: another, fit: another && (camera?.fit ?? true) });
     },
   };
 }
@@ -88,7 +96,11 @@ export function surfaceCommands({ store, runs, framing }) {
 export function inputCommands({ store, runs }) {
   const { state } = store;
   /** @param {boolean} live */
-  const resample = (live) => (live ? runs.resampleLive() : runs.resample());
+  const resample = (live) => {
+    store.dragging.value = live;
+    if (live) runs.resampleLive();
+    else runs.resample();
+  };
   return {
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;
@@ -100,10 +112,11 @@ export function inputCommands({ store, runs }) {
       change(store, { parameters });
       runs.resample();
     },
-    declareParameter(name) {
+    declareParameters(names) {
       const { declared } = state.value;
-      if (declared.some((p) => p.name === name)) return;
-      change(store, { declared: [...declared, newParameter(description(store), name)] });
+      const fresh = names.filter((name) => !declared.some((p) => p.name === name));
+      if (fresh.length === 0) return;
+      change(store, { declared: [...declared, ...fresh.map((name) => newParameter(description(store), name))] });
       runs.resample();
     },
     setBounds(bounds, { live = false } = {}) {
@@ -112,9 +125,10 @@ export function inputCommands({ store, runs }) {
       change(store, { bounds: valid });
       resample(live);
     },
-    setPlane(plane) {
+    setPlane(plane, { live = false } = {}) {
       const valid = plane === null ? null : validPlane(plane);
       if (valid === undefined) return;
+      store.dragging.value = live;
       change(store, { plane: valid });
     },
     fitBox() {

@@ -130,6 +130,8 @@ const theme = EditorView.theme({
   '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },
   '.cm-content': { padding: '0.4375rem 0', minHeight: '2.125rem', caretColor: 'var(--ink)' },
   '.cm-line': { padding: '0 0.5rem' },
+  // A line breaks between names, not in one.
+  '.cm-number, .cm-function, .cm-name': { whiteSpace: 'nowrap' },
   '.cm-number': { color: 'var(--ink-2)' },
   '.cm-axis': { color: 'var(--ink)' },
   '.cm-function': { color: 'var(--accent-strong)' },
@@ -183,7 +185,7 @@ const typedOver = EditorView.domEventHandlers({
 });
 
 /** @param {CodeEditorOptions} options @returns {Editor} */
-export function createCodeEditor({ text, selection, functions, names, change }) {
+export function createCodeEditor({ text, selection, functions, names, change, finish }) {
   const element = h('div', { class: 'code-host' });
   const root = element.attachShadow({ mode: 'open', delegatesFocus: true });
   const sheet = new CSSStyleSheet();
@@ -192,6 +194,10 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
   );
   const message = h('span', { id: 'message' });
   let own = false;
+  const enter = () => {
+    finish();
+    return true;
+  };
   const view = new EditorView({
     root,
     parent: /** @type {any} */ (root),
@@ -207,7 +213,14 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
         theme,
         typedOver,
         EditorView.lineWrapping,
-        keymap.of([...closeBracketsKeymap, ...completionKeymap, ...historyKeymap, ...defaultKeymap]),
+        // Enter takes a name that is being completed, else the formula; Shift Enter begins a new line.
+        keymap.of([
+          ...closeBracketsKeymap,
+          ...completionKeymap,
+          { key: 'Enter', run: enter },
+          ...historyKeymap,
+          ...defaultKeymap,
+        ]),
         EditorView.updateListener.of((update) => {
           if (update.docChanged && !own) change(update.state.doc.toString());
         }),

@@ -99,9 +99,9 @@ function createPosition(engine, { bounds, plane, axis }) {
     scale: { min: -1, max: 1, step: 0.01 },
     value: 0,
     describe: (value) => formatSignificant(value, 3),
-    change(value) {
+    change(value, live) {
       const now = plane.peek();
-      if (now) engine.setPlane({ ...now, offset: sign() * value });
+      if (now) engine.setPlane({ ...now, offset: sign() * value }, { live });
     },
     reset() {
       const [now, box] = [plane.peek(), bounds.peek()];
@@ -127,8 +127,8 @@ function createPosition(engine, { bounds, plane, axis }) {
  */
 function createAngles(engine, { plane, axis, free }) {
   const angles = computed(() => anglesOf(plane.value?.normal ?? [1, 0, 0]));
-  /** @param {Partial<ReturnType<typeof anglesOf>>} patch */
-  const turn = (patch) => {
+  /** @param {Partial<ReturnType<typeof anglesOf>>} patch @param {boolean} [isLive] */
+  const turn = (patch, isLive = false) => {
     const [now, box] = [plane.peek(), engine.state.peek().bounds ?? engine.field.peek()?.bounds];
     if (!now || !box) return;
     free.value = true;
@@ -137,7 +137,7 @@ function createAngles(engine, { plane, axis, free }) {
     // The plane turns about the place on it that is nearest to the middle of the box.
     const centre = centreOf(box);
     const lift = now.offset - dot(now.normal, centre);
-    engine.setPlane({ normal, offset: dot(normal, centre) + lift });
+    engine.setPlane({ normal, offset: dot(normal, centre) + lift }, { live: isLive });
   };
   return /** @type {const} */ ([
     ['azimuth', 'Azimuth of the cutting plane', 'az', 180],
@@ -148,7 +148,7 @@ function createAngles(engine, { plane, axis, free }) {
       scale: { min: -most, max: most, step: 1 },
       value: () => Number((angles.value[key] * DEGREES).toFixed(2)),
       describe: (value) => `${formatSignificant(value, 3)}°`,
-      change: (value) => turn({ [key]: value / DEGREES }),
+      change: (value, live) => turn({ [key]: value / DEGREES }, live),
       reset: () => turn({ [key]: 0 }),
     });
     const caption = h('span', { class: 'name quiet' }, short);

@@ -1,7 +1,7 @@
 /** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
 
 /**
- * @import { Description, FieldFault } from '../../engine/types.js'
+ * @import { FieldFault } from '../../engine/types.js'
  * @import { FaultView, Repair } from './types.js'
  */
 
@@ -26,7 +26,8 @@ export function describeFault(formula, fault) {
   const start = Math.min(Math.max(0, fault.start), formula.length);
   const end = Math.min(Math.max(start, fault.end), formula.length);
   /** @type {Repair[]} */
-  const repairs = fault.names.map((name) => ({ label: `Add slider ${name}`, declare: name }));
+  const repairs = fault.names.map((name) => ({ label: `Add slider ${name}`, declare: [name] }));
+  if (repairs.length > 1) repairs.unshift({ label: 'Add all', declare: fault.names });
   const mending = fault.suggestion;
   if (mending !== null) {
     const marked = formula.slice(start, end);
@@ -90,17 +91,4 @@ export function segmentsOf(message) {
   // An unpaired backtick is a character of the formula.
   if (parts.length % 2 === 0) return [{ text: message, code: false }];
   return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
-}
-
-/**
- * Returns whether a text ends in an unknown name that is the beginning of a function's name, as `sq` is of `sqrt`. The
- * constant e is known.
- * @param {string} text  up to the caret
- * @param {Description['functions']} functions
- * @param {string[]} parameters  of the formula
- */
-export function beginsFunction(text, functions, parameters) {
-  const [name] = /[\p{L}_][\p{L}\p{N}_]*$/u.exec(text) ?? [''];
-  const known = name === 'e' || functions.some((entry) => entry.name === name) || parameters.includes(name);
-  return name !== '' && !known && functions.some((entry) => entry.name.startsWith(name));
 }

@@ -3,7 +3,7 @@ import { computed } from '@preact/signals-core';
 import { button } from '../button.js';
 import { fill, h, live, query, uniqueId } from '../dom.js';
 import { mathElement, mathParts } from '../mathml.js';
-import { beginsFunction, describeFault, segmentsOf } from './fault.js';
+import { describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
 
@@ -45,10 +45,11 @@ class FormulaInput {
   #engine;
   #functions;
 
-  /** Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys. */
-  #unfinished;
   #upgrading;
   #fault;
+
+  /** The text that the error is of: beside a later one it says nothing until that was read, too. */
+  #faulty;
   #change;
 
   /**
@@ -60,25 +61,26 @@ class FormulaInput {
     this.#functions = description.functions;
     this.error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
     this.holder = h('div', { class: 'editor', id: 'formula' });
-    this.#unfinished = false;
     this.#upgrading = false;
+    this.#faulty = '';
     const shown = computed(() => engine.state.value.formula);
     this.#fault = computed(() => engine.fieldError.value);
-    this.#change = (/** @type {string} */ text) => {
-      const { anchor, head } = this.editor.selection();
-      this.#unfinished = anchor === head && beginsFunction(text.slice(0, head), this.#functions, this.#names());
-      engine.setFormula(text, { unfinished: this.#unfinished });
-    };
+    this.#change = (/** @type {string} */ text) => engine.setFormula(text, { typing: true });
     /** @type {Editor} */
-    this.editor = createTextarea({ text: shown.peek(), change: this.#change, focused: () => this.#upgrade() });
+    this.editor = createTextarea({
+      text: shown.peek(),
+      change: this.#change,
+      finish: this.#finish,
+      focused: () => this.#upgrade(),
+    });
     this.holder.append(this.editor.element);
+    this.holder.addEventListener('focusout', this.#finish);
     live(this.holder, () => {
       const text = shown.value;
       if (this.editor.text() !== text) this.editor.setText(text);
     });
     live(this.holder, () => {
-      void this.#fault.value;
-      this.#unfinished = false;
+      if (this.#fault.value) this.#faulty = shown.peek();
       this.#render();
     });
     live(this.holder, () => {
@@ -86,6 +88,9 @@ class FormulaInput {
       this.#render();
     });
   }
+
+  /** Samples what was typed without waiting for a pause. */
+  #finish = () => this.#engine.setFormula(this.editor.text());
 
   #names() {
     return this.#engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
@@ -105,6 +110,7 @@ class FormulaInput {
         text: plain.text(),
         functions: this.#functions,
         change: this.#change,
+        finish: this.#finish,
         names: () => this.#names(),
         selection: plain.selection(),
       });
@@ -121,7 +127,7 @@ class FormulaInput {
   #render() {
     const { editor, holder, error } = this;
     const fault = this.#fault.peek();
-    const view = describeFault(editor.text(), this.#unfinished ? null : fault);
+    const view = describeFault(editor.text(), editor.text() === this.#faulty ? fault : null);
     holder.classList.toggle('has-fault', view?.tone === 'fault');
     editor.setFault(view?.tone === 'fault' ? fault : null, view?.message ?? '');
     if (!view) return fill(error);
@@ -151,8 +157,9 @@ class FormulaInput {
 
   /** @param {Repair} repair */
   #mend(repair) {
-    if (repair.declare) this.#engine.declareParameter(repair.declare);
+    if (repair.declare) this.#engine.declareParameters(repair.declare);
     if (repair.replace) this.editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
+    this.#finish();
     this.editor.focus();
   }
 

@@ -4,10 +4,10 @@ import { h } from '../dom.js';
 /** @import { Editor } from './types.js' */
 
 /**
- * @param {{ text: string, change: (text: string) => void, focused: () => void }} options
+ * @param {{ text: string, change: (text: string) => void, finish: () => void, focused: () => void }} options
  * @returns {Editor}
  */
-export function createTextarea({ text, change, focused }) {
+export function createTextarea({ text, change, finish, focused }) {
   const area = h('textarea', {
     class: 'code',
     rows: 1,
@@ -24,6 +24,11 @@ export function createTextarea({ text, change, focused }) {
         change(area.value);
       },
       focus: focused,
+      keydown: (event) => {
+        if (event.key !== 'Enter' || event.shiftKey || event.isComposing) return;
+        event.preventDefault();
+        finish();
+      },
       compositionstart: () => {
         area.dataset.composing = '';
       },

@@ -10,6 +10,8 @@ export interface CodeEditorOptions {
   /** returns the names of the formula's parameters */
   names: () => string[];
   change: (text: string) => void;
+  /** the text is complete */
+  finish: () => void;
 }
 export interface FaultView {
   tone: 'hint' | 'fault';
@@ -17,7 +19,11 @@ export interface FaultView {
   excerpt: { before: string; marked: string; after: string } | null;
   repairs: Repair[];
 }
-export type Repair = { label: string; declare?: string; replace?: { start: number; end: number; text: string } };
+export type Repair = {
+  label: string;
+  declare?: readonly string[];
+  replace?: { start: number; end: number; text: string };
+};
 /** The interface of both editors. Offsets are UTF-16 code units. */
 export interface Editor {
   element: HTMLElement;

@@ -95,10 +95,10 @@ class Mover {
         const { plane } = this.#engine.state.peek();
         if (!plane) return;
         const at = placeAlong(ray, this.#base, plane.normal);
-        if (at !== null && last !== null) this.#move((at - last) * (fine ? FINE : 1));
+        if (at !== null && last !== null) this.#move((at - last) * (fine ? FINE : 1), { live: true });
         last = at;
       },
-      drop: () => {},
+      drop: this.#drop,
       cancel: this.#cancel,
       press: (/** @type {number} */ presses, /** @type {boolean} */ fine) =>
         this.#move(presses * KEY_SHARE * (fine ? FINE : 1), { ofBox: true }),
@@ -123,9 +123,9 @@ class Mover {
       drag: (/** @type {Ray} */ ray) => {
         if (!this.#before || !(radius > 0)) return;
         const normal = directionOnSphere(ray, this.#base, radius, isFar);
-        this.#engine.setPlane({ normal, offset: dot(normal, this.#base) });
+        this.#engine.setPlane({ normal, offset: dot(normal, this.#base) }, { live: true });
       },
-      drop: () => {},
+      drop: this.#drop,
       cancel: this.#cancel,
       press: null,
     };
@@ -138,16 +138,19 @@ class Mover {
     return bounds && plane;
   }
 
+  /** Ends a drag where it is. */
+  #drop = () => this.#engine.setPlane(this.#engine.state.peek().plane);
+
   #cancel = () => {
     if (this.#before) this.#engine.setPlane(this.#before);
   };
 
-  /** @param {number} by  a length, or a share of the way through the box @param {{ ofBox?: boolean }} [unit] */
-  #move(by, { ofBox = false } = {}) {
+  /** @param {number} by  a length, or a share of the way through the box @param {{ ofBox?: boolean, live?: boolean }} [how] */
+  #move(by, { ofBox = false, live = false } = {}) {
     const [plane, bounds] = [this.#engine.state.peek().plane, this.#box.peek()];
     if (!plane || !bounds) return;
     const [low, high] = extentOf(bounds, plane.normal);
     const offset = clamp(plane.offset + by * (ofBox ? high - low : 1), low, high);
-    this.#engine.setPlane({ ...plane, offset });
+    this.#engine.setPlane({ ...plane, offset }, { live });
   }
 }
