@@ -9,8 +9,8 @@ use core::ops::Range;
 use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 
-/// A computation under way.
-pub type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
+/// A computation under way, which may borrow what it works on.
+pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
 /// Ends a slice of work. A slice should take 10 to 50 µs natively.
 pub fn pause() -> impl Future<Output = ()> + Send {
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn a_budget_is_a_number_of_slices() {
-        let mut work: Work<u32> = Box::pin(async {
+        let mut work: Work<'_, u32> = Box::pin(async {
             for _ in 0..5 {
                 pause().await;
             }

@@ -18,7 +18,7 @@ const ROOMS: [Room; 4] = [
             ("slices", &[]),
             // The form of an answer, whatever is answered.
             ("answer", &[]),
-            ("field", &["math"]),
+            ("field", &["math", "slices"]),
             ("differential", &["math", "field"]),
             // A box is found before anything is sampled.
             ("extent", &["math", "slices", "field"]),
@@ -29,7 +29,7 @@ const ROOMS: [Room; 4] = [
             ("particles", &["math"]),
             ("topology", &["slices"]),
             ("mesh", &["math", "slices", "spatial", "particles", "topology"]),
-            ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh"]),
+            ("sampler", &["math", "slices", "field", "differential", "spatial", "particles", "mesh"]),
             // Figures about a set of particles must not depend on what made them.
             (
                 "quality",
@@ -54,7 +54,7 @@ const ROOMS: [Room; 4] = [
                     "export",
                 ],
             ),
-            ("session", &["math", "field", "extent", "sampler", "run", "export"]),
+            ("session", &["math", "slices", "field", "extent", "sampler", "run", "export"]),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of them.
             ("paper", &["math", "field", "differential", "particles"]),
             // The lesson shares some words with the sampler, no algorithm.

@@ -96,7 +96,7 @@ pub fn find(field: &mut dyn Field) -> Extent {
 
 /// A search for the box of a surface, in slices.
 pub struct BoxFit {
-    work: Work<Extent>,
+    work: Work<'static, Extent>,
 }
 
 impl BoxFit {

@@ -14,6 +14,8 @@ pub(crate) mod scaled;
 pub use function::FnField;
 
 use crate::math::{Bounds, Interval, Sym3};
+use crate::slices::Work;
+use core::future::ready;
 use glam::{DVec3, Vec3};
 
 /// Second-order jet of a field at a point, in double precision.
@@ -173,12 +175,12 @@ pub trait Field: Send {
         None
     }
 
-    /// Looks for the creases of the surface in the box. Returns cells of it outside of which there are none, no wider than `width` but
-    /// where that would take too long; no cell if there is no crease, as by default. Branches that meet smoothly on the surface are one from
-    /// now on, numbers begin anew, and no branch is selected.
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    /// Looks for the creases of the surface in the box, in slices. Returns cells of it outside of which there are none, no wider than
+    /// `width` but where that would take too long; no cell if there is no crease, as by default. Once the work is done branches that meet
+    /// smoothly on the surface are one, numbers begin anew, and no branch is selected.
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         let _ = (bounds, width);
-        Vec::new()
+        Box::pin(ready(Vec::new()))
     }
 
     /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
@@ -298,7 +300,11 @@ macro_rules! forward_field {
                 $field.sampled_as()
             }
 
-            fn find_creases(&mut self, bounds: &$crate::math::Bounds, width: f64) -> Vec<$crate::math::Bounds> {
+            fn find_creases(
+                &mut self,
+                bounds: &$crate::math::Bounds,
+                width: f64,
+            ) -> $crate::slices::Work<'_, Vec<$crate::math::Bounds>> {
                 let $this = self;
                 $field_mut.find_creases(bounds, width)
             }

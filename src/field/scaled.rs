@@ -3,6 +3,7 @@
 
 use super::{Bounded, Enclosure, Field, Jet};
 use crate::math::{Bounds, Interval, Sym3, sort_numbers};
+use crate::slices::Work;
 use glam::{DVec3, Vec3};
 
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
@@ -139,7 +140,7 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         self.field.find_creases(bounds, width)
     }
 

@@ -19,7 +19,7 @@ pub(super) struct Measuring {
     /// The particles after the front, until they are measured.
     pub(super) front: Option<Arc<ParticleCopy>>,
     pub(super) front_figures: Option<Figures>,
-    pub(super) work: Option<Work<MeasuringResult>>,
+    pub(super) work: Option<Work<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
 }
@@ -109,7 +109,7 @@ impl MeasuringInput {
     }
 
     /// The measurement in slices.
-    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<MeasuringResult> {
+    pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<'static, MeasuringResult> {
         Box::pin(async move { self.in_slices(&mut *field).await })
     }
 

@@ -58,7 +58,7 @@ enum MeshState {
     #[default]
     None,
     /// The particles are being joined.
-    Joining(Work<Triangulation>),
+    Joining(Work<'static, Triangulation>),
     /// The mesh is complete.
     Joined(Triangulation),
 }
@@ -73,7 +73,12 @@ impl Meshing {
     }
 
     /// Joins particles to triangles, or takes those that are `known`, in slices of work.
-    fn work(particles: &Particles, count: usize, known: &[[u32; 3]], bounds: Bounds) -> Work<Triangulation> {
+    fn work(
+        particles: &Particles,
+        count: usize,
+        known: &[[u32; 3]],
+        bounds: Bounds,
+    ) -> Work<'static, Triangulation> {
         let mut copy = Particles::default();
         copy.copy_first(count, particles);
         let known = known.to_vec();

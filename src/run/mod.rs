@@ -22,8 +22,9 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::{
-    self, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
+    self, Creases, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
 };
+use crate::slices::Work;
 use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
@@ -93,6 +94,8 @@ pub struct Run<F> {
     sampler: Sampler,
     /// Whether field and box are those of the last start.
     is_surveyed: bool,
+    /// The creases of the surface in the box, if they were found before the start.
+    creases: Option<Creases>,
     /// Limit on the number of particles: a run that expects more is refused.
     most_particles: usize,
     /// The report on the start.
@@ -148,6 +151,7 @@ impl<F: Field> Run<F> {
             reach: None,
             sampler: Sampler::new(),
             is_surveyed: false,
+            creases: None,
             most_particles: usize::MAX,
             start: Start::default(),
             last: None,
@@ -168,7 +172,10 @@ impl<F: Field> Run<F> {
         } else {
             self.field.set_origin(self.bounds.local_origin());
             let bounds = self.bounds.relative_to(self.field.origin());
-            self.sampler.start(&mut self.field, &bounds, settings)?
+            match self.creases.take() {
+                Some(known) => self.sampler.start_with(&mut self.field, &bounds, settings, known)?,
+                None => self.sampler.start(&mut self.field, &bounds, settings)?,
+            }
         };
         self.is_surveyed = true;
         self.last = None;
@@ -363,6 +370,7 @@ impl<F: Field> Run<F> {
         self.reach = reach;
         if bounds != self.bounds {
             self.bounds = bounds;
+            self.creases = None;
             self.end();
         }
     }
@@ -375,9 +383,39 @@ impl<F: Field> Run<F> {
         } else {
             self.end();
         }
+        self.replace_field(field);
+        self.creases = None;
+    }
+
+    fn replace_field(&mut self, mut field: F) {
         field.set_origin(self.particles().origin);
         self.field = field;
         self.measuring.stop();
+    }
+
+    /// Whether the next start has nothing to find out about the creases of the surface.
+    pub(crate) fn knows_creases(&self) -> bool {
+        self.is_surveyed || self.creases.is_some()
+    }
+
+    /// Finds the creases of the surface in the box, in slices, on a copy of the field, which [`Run::know_creases`] takes.
+    pub(crate) fn find_creases(&self) -> Work<'static, (F, Creases)>
+    where
+        F: Clone + 'static,
+    {
+        let (mut field, origin) = (self.field.clone(), self.bounds.local_origin());
+        let bounds = self.bounds.relative_to(origin);
+        Box::pin(async move {
+            field.set_origin(origin);
+            let creases = sampler::find_creases(&mut field, &bounds).await;
+            (field, creases)
+        })
+    }
+
+    /// Takes the creases of the surface for the next start, and the field in which they were found.
+    pub(crate) fn know_creases(&mut self, (field, creases): (F, Creases)) {
+        self.replace_field(field);
+        self.creases = Some(creases);
     }
 
     /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.

@@ -39,8 +39,9 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
+use crate::slices::{self, Work};
 use attempt::Attempt;
-use constraint::Creases;
+pub(crate) use constraint::Creases;
 use constraint::tips::Tip;
 use discovery::search::ComponentSearch;
 use discovery::singular::{Bend, Singular};
@@ -109,6 +110,44 @@ struct Output {
     corners: Vec<u32>,
     /// Whether particles have moved or gone since the last step.
     moved: bool,
+}
+
+/// Finds the creases of the surface of a field in a box, in slices. From then on branches of the field that meet smoothly on the surface
+/// are one.
+pub(crate) fn find_creases<'a>(field: &'a mut dyn Field, bounds: &Bounds) -> Work<'a, Creases> {
+    let bounds = *bounds;
+    Box::pin(async move {
+        let cells = field.find_creases(&bounds, Creases::width(&bounds)).await;
+        if cells.is_empty() {
+            return Creases::default();
+        }
+        let PointScale { scale, .. } = PointScale::of(field, &bounds);
+        let field = &mut Scaled::new(field, scale);
+        Creases::find(&mut Probe::new(field, &mut ProbeMemory::default()), &bounds, &cells).await
+    })
+}
+
+/// How values and gradients of a field at points are brought within reach of the numbers they are computed with.
+struct PointScale {
+    /// The constant of [`Scaled`].
+    scale: f32,
+    /// That of [`Field::use_double`].
+    double: Option<f64>,
+}
+
+impl PointScale {
+    /// Finds the scale, and has the field compute in double precision where it is to.
+    fn of(field: &mut dyn Field, bounds: &Bounds) -> Self {
+        field.use_double(None);
+        let double = precision::double_scale(field, bounds);
+        field.use_double(double);
+        Self { scale: comfortable_scale(field, spread(bounds)), double }
+    }
+}
+
+fn check(settings: &Settings, bounds: &Bounds) -> Result<(), SettingsError> {
+    settings.validate()?;
+    if bounds.is_valid() { Ok(()) } else { Err(SettingsError::Box) }
 }
 
 impl Sampler {
@@ -209,8 +248,8 @@ impl Sampler {
         &self.settings
     }
 
-    /// Starts a run: surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to prove by) and fixes
-    /// the radius. Particles of an earlier run are dropped.
+    /// Starts a run: finds the creases, surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to prove by)
+    /// and fixes the radius. Particles of an earlier run are dropped.
     ///
     /// # Errors
     ///
@@ -222,7 +261,24 @@ impl Sampler {
         bounds: &Bounds,
         settings: &Settings,
     ) -> Result<Forecast, SettingsError> {
-        self.begin(field, bounds, settings, false)
+        check(settings, bounds)?;
+        let creases = slices::complete(find_creases(field, bounds));
+        self.start_with(field, bounds, settings, creases)
+    }
+
+    /// [`Sampler::start`] where the creases of the surface in the box are [known](find_creases).
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Sampler::start`].
+    pub(crate) fn start_with(
+        &mut self,
+        field: &mut dyn Field,
+        bounds: &Bounds,
+        settings: &Settings,
+        creases: Creases,
+    ) -> Result<Forecast, SettingsError> {
+        self.begin(field, bounds, settings, Some(creases))
     }
 
     /// [`Sampler::start`] on the field and the box of the last start, without surveying them again.
@@ -238,20 +294,19 @@ impl Sampler {
         let bounds = self.bounds;
         // A survey that has found nothing by itself is made again: what it was given since depends on the run.
         let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
-        self.begin(field, &bounds, settings, is_known)
+        let creases = (!is_known).then(|| core::mem::take(&mut self.creases));
+        self.begin(field, &bounds, settings, creases)
     }
 
+    /// Starts a run, with a survey unless creases are not given: they and the survey are known then.
     fn begin(
         &mut self,
         field: &mut dyn Field,
         bounds: &Bounds,
         settings: &Settings,
-        is_known: bool,
+        creases: Option<Creases>,
     ) -> Result<Forecast, SettingsError> {
-        settings.validate()?;
-        if !bounds.is_valid() {
-            return Err(SettingsError::Box);
-        }
+        check(settings, bounds)?;
         self.settings = *settings;
         self.bounds = *bounds;
         self.output.particles.clear();
@@ -262,7 +317,7 @@ impl Sampler {
         self.tools.relaxation.clear();
         self.counts = Counts::default();
         self.tools.memory.evaluations = 0;
-        self.look_over(field, is_known);
+        self.look_over(field, creases);
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
             let field = &mut Scaled::new(field, self.survey.scale);
             Sizing::new(&mut Probe::new(field, &mut self.tools.memory), bounds, settings, &self.survey)
@@ -294,33 +349,19 @@ impl Sampler {
         Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
 
-    /// Surveys the field, unless it `is_known`. Where the survey finds no point, the search is carried to its end at once: the
+    /// Surveys the field, unless creases are not given. Where the survey finds no point, the search is carried to its end at once: the
     /// area is then that of spheres with the curvature at the points that it finds.
-    fn look_over(&mut self, field: &mut dyn Field, is_known: bool) {
-        if !is_known {
-            self.creases = Creases::default();
+    fn look_over(&mut self, field: &mut dyn Field, creases: Option<Creases>) {
+        if let Some(creases) = creases {
             self.singular.clear();
             self.tips.clear();
-        }
-        // Bounds are those of the branches, where there are creases.
-        let creased = if is_known {
-            Vec::new()
-        } else {
-            field.find_creases(&self.bounds, Creases::width(&self.bounds))
-        };
-        if is_known {
-            field.use_double(self.survey.double);
-        } else {
-            field.use_double(None);
-            let double = precision::double_scale(field, &self.bounds);
-            field.use_double(double);
-            let scale = comfortable_scale(field, spread(&self.bounds));
+            self.tools.memory.evaluations += creases.evaluations;
+            self.creases = creases;
+            let PointScale { scale, double } = PointScale::of(field, &self.bounds);
             let is_dense = field.bounded().is_none();
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
-            let probe = &mut Probe::new(scaled, &mut self.tools.memory);
-            self.creases = Creases::find(probe, &self.bounds, &creased);
             self.survey.absence = match self.survey.absence {
                 Absence::Undefined if precision::overflows_double(field, &self.bounds) => Absence::TooLarge,
                 Absence::Constant if precision::varies(field, &self.bounds) => Absence::NotSeen,
@@ -332,7 +373,7 @@ impl Sampler {
                 let spacing = spacing(&self.bounds);
                 let near = singular::near_survey(scaled, &self.survey.position, spacing, &self.bounds);
                 self.singular = near.points;
-                if creased.is_empty() {
+                if !self.creases.may_be {
                     self.find_tips(
                         &mut Probe::new(scaled, &mut ProbeMemory::default()),
                         &near.bends,
@@ -340,6 +381,8 @@ impl Sampler {
                     );
                 }
             }
+        } else {
+            field.use_double(self.survey.double);
         }
         self.components.begin(field, &self.bounds, &self.singular);
         self.components.expect(0.0);

@@ -1,5 +1,5 @@
-//! The box of a session: given with the field, that of a gallery surface, or fitted around the surface of a formula; and the solid that is
-//! made of the surface in it.
+//! What a session finds before a run starts, in slices: the box, given with the field, that of a gallery surface, or fitted around the
+//! surface of a formula; the solid that is made of the surface in it; and its creases.
 
 use super::{FieldAnswer, Session, Source};
 use crate::extent::{BoxFit, Extent};
@@ -7,7 +7,8 @@ use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
 use crate::math::Bounds;
-use crate::sampler::{Settings, SettingsError};
+use crate::sampler::{Creases, Settings, SettingsError};
+use crate::slices::{self, Work};
 use core::ops::RangeInclusive;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -118,7 +119,9 @@ impl Around {
     }
 }
 
-/// State of the search for the box.
+type CreaseSearch = Work<'static, (Source, Creases)>;
+
+/// State of the searches.
 #[derive(Default)]
 pub(super) struct Fitting {
     /// The choice of the user.
@@ -129,6 +132,8 @@ pub(super) struct Fitting {
     unclosed: Around,
     /// The box around the solid that the clip box closes.
     closed: Around,
+    /// The search for the creases of the surface in the box, while it is under way.
+    creases: Option<(Bounds, CreaseSearch)>,
     /// Whether the box is that of the next run.
     pub(super) is_settled: bool,
     /// Whether the present clip box was fitted.
@@ -145,6 +150,7 @@ impl Fitting {
     /// Forgets what belongs to another field or another choice of the box; the box itself stays until the next is known.
     pub(super) fn restart(&mut self) {
         (self.unclosed, self.closed, self.is_settled) = (Around::default(), Around::default(), false);
+        self.creases = None;
     }
 }
 
@@ -164,9 +170,9 @@ impl Session {
         Ok(())
     }
 
-    /// Finds the box of the next run with these settings, up to `budget` slices of the work of some 10 to 50 microseconds each: the
-    /// field with its clip box, once it is known. [`Session::start`] does what is left. A box that `only_grows` holds the one before it
-    /// as long as the formula stays the same: while a slider moves.
+    /// Finds the box of the next run with these settings and the creases of the surface in it, up to `budget` slices of either work of some
+    /// 10 to 50 microseconds each: the field with its clip box, once all is known. [`Session::start`] does what is left. A box that
+    /// `only_grows` holds the one before it as long as the formula stays the same: while a slider moves.
     ///
     /// A solid that the clip box closes is sampled in a box around it: its faces are inside, and what they cut are creases.
     pub fn fit(&mut self, settings: &Settings, only_grows: bool, budget: u32) -> Option<FieldAnswer> {
@@ -187,6 +193,7 @@ impl Session {
             if (field.thickness(), field.closing_box()) != (choice.sheet(), closing) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());
                 self.fitting.closed = Around::default();
+                self.fitting.creases = None;
                 self.run.set_field(Source::Formula(solid), false);
             }
         }
@@ -196,6 +203,13 @@ impl Session {
         }
         (self.clip, self.reach) = (clip, reach);
         self.run.set_bounds(bounds, reach_in);
+        if self.run.field().formula().is_some() && !self.run.knows_creases() {
+            let under_way = self.fitting.creases.take().filter(|(of, _)| *of == bounds);
+            let search = under_way.unwrap_or_else(|| (bounds, self.run.find_creases()));
+            let found = slices::advance(self.fitting.creases.insert(search).1.as_mut(), budget)?;
+            self.fitting.creases = None;
+            self.run.know_creases(found);
+        }
         (self.fitting.is_fitted, self.fitting.is_settled) = (is_fitted, true);
         Some(self.answer())
     }

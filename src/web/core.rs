@@ -83,7 +83,7 @@ impl Core {
         }))
     }
 
-    /// Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
+    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
     /// it is known, nothing before. While a slider moves the box `only_grows`.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
     pub fn fit(

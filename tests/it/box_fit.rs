@@ -201,3 +201,26 @@ fn a_heavy_formula_is_searched_in_short_slices() {
     assert!(slices > 10 && slices < 2_000, "{slices}");
     assert_eq!(answer.reach, Some(Reach::Bounded));
 }
+
+#[test]
+fn creases_are_found_slice_by_slice_before_the_start() {
+    const CUBE: &str = "max(abs(x), abs(y), abs(z)) - 1";
+    let mut session = Session::new();
+    set(&mut session, CUBE);
+    let at_once = run(&mut session, &coarse()).digest;
+
+    let mut session = Session::new();
+    // The search in a box that is given up leaves nothing behind.
+    let given = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
+    set(&mut session, CUBE);
+    session.set_field(&given).expect("a good box");
+    assert!((0..500).all(|_| session.fit(&coarse(), false, 1).is_none()));
+    set(&mut session, CUBE);
+    let mut slices = 0;
+    while session.fit(&coarse(), false, 1).is_none() {
+        slices += 1;
+    }
+    assert!(slices > 3_000, "{slices}");
+    assert_eq!(run(&mut session, &coarse()).digest, at_once);
+    assert!(session.fit(&coarse(), false, 1).is_some());
+}

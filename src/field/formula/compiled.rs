@@ -146,6 +146,17 @@ impl Compiled {
         scalar::jet(&self.graph, self.root, values, p, scratch)
     }
 
+    /// f and ∇f at `p`, the same as those of [`Compiled::jet`].
+    pub(super) fn first_order(
+        &self,
+        values: &[f64],
+        p: DVec3,
+        scratch: &mut Vec<scalar::Order<0>>,
+    ) -> (f64, DVec3) {
+        scalar::jets(&self.graph, self.root, values, p, scratch);
+        scratch[self.root as usize].first_order()
+    }
+
     /// f, ∇f and ∇∇f at `p`, from the graphs of the derivatives.
     pub(super) fn transformed_jet(&mut self, values: &[f64], p: DVec3) -> Jet {
         self.hessian_program(values);

@@ -12,6 +12,7 @@ use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::{interval, scalar};
 use crate::math::Bounds;
+use crate::slices::pause;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -63,17 +64,17 @@ struct Cell {
 impl Branches {
     /// Cells of the box, no wider than `width`, outside of which the surface has no crease. Without any, f has no choices from now on;
     /// else only those whose operands meet smoothly on the surface are none. The branches begin anew.
-    pub(super) fn find_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    pub(super) async fn find_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         self.begin_again(values, &[]);
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return Vec::new() };
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], Role::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = Ties::new(&mut self.base, part, &choices, values);
         let search = Search { base: &self.base, part, ties, values, bounds };
-        let kinds = search.kinds(&choices);
+        let kinds = search.kinds(&choices).await;
         let creasing: Vec<Id> =
             kinds.iter().filter(|(_, kind)| **kind == Kind::Crease).map(|(&id, _)| id).collect();
-        let cells = search.cells(&creasing, width);
+        let cells = search.cells(&creasing, width).await;
         let smooth = |id: &Id| creasing.is_empty() || kinds.get(id) == Some(&Kind::Seam);
         let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
         self.begin_again(values, &smooth);
@@ -89,15 +90,20 @@ impl Branches {
 ///
 /// |f| − t/2 |∇f| is the greater of f − t/2 |∇f| and −f − t/2 |∇f|. Where both are equal it is −t/2 |∇f|, which has no zero.
 struct Ties {
-    /// For each choice, f with its first operand in its place, with the second one, and with what is half of their sum.
-    roots: BTreeMap<Id, Vec<Id>>,
-    /// The nodes of f and of these, in the order of the graph.
+    of_choice: BTreeMap<Id, Tie>,
+}
+
+/// Those of one choice.
+struct Tie {
+    /// f with the first operand in the place of the choice, with the second one, and with what is half of their sum.
+    roots: Vec<Id>,
+    /// The nodes that these need and f does not, in the order of the graph.
     nodes: Vec<Id>,
 }
 
 impl Ties {
     fn new(base: &mut Base, part: &Part, choices: &[Id], values: &[f64]) -> Self {
-        let mut roots = BTreeMap::new();
+        let mut roots: BTreeMap<Id, Vec<Id>> = BTreeMap::new();
         for &id in choices {
             let tied = match base.graph.node(id) {
                 Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
@@ -107,10 +113,15 @@ impl Ties {
             let with = tied.into_iter().map(|tied| base.root_with(part, id, tied)).collect();
             roots.insert(id, with);
         }
-        let outputs: Vec<Id> = roots.values().flatten().copied().chain([part.root]).collect();
-        let nodes = base.graph.needed_by(&outputs);
         base.extend(values);
-        Self { roots, nodes }
+        let own = |roots: &[Id]| {
+            let mut nodes = base.graph.needed_by(roots);
+            nodes.retain(|id| part.nodes.binary_search(id).is_err());
+            nodes
+        };
+        Self {
+            of_choice: roots.into_iter().map(|(id, roots)| (id, Tie { nodes: own(&roots), roots })).collect(),
+        }
     }
 }
 
@@ -166,7 +177,7 @@ fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
 #[derive(Default)]
 struct Scratch {
     ranges: Vec<interval::Range>,
-    jets: Vec<scalar::Order<0>>,
+    reaches: Vec<Reach>,
 }
 
 /// A search of a box.
@@ -180,10 +191,10 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The kind of each of the `choices` that is tied somewhere on the surface: it makes a seam or a crease there.
-    fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, Kind> {
+    async fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, Kind> {
         let mut kinds = BTreeMap::new();
         let mut open = vec![Cell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
-        let (mut scratch, mut left) = (Scratch::default(), MAX_CELLS);
+        let (mut scratch, mut jets, mut left) = (Scratch::default(), Vec::new(), MAX_CELLS);
         while let Some(mut cell) = open.pop() {
             cell.choices.retain(|id| kinds.get(id) != Some(&Kind::Crease));
             if cell.choices.is_empty() {
@@ -194,14 +205,15 @@ impl Search<'_> {
                 continue;
             }
             left -= 1;
-            let reached = self.tied(&cell.bounds, &mut scratch.ranges);
+            pause().await;
+            let tied = self.tied(&cell.bounds, &cell.choices, &mut scratch);
             cell.choices.retain(|id| {
-                let Some(reach) = reached.get(id) else { return false };
+                let Some((_, reach)) = tied.iter().find(|(tied, _)| tied == id) else { return false };
                 if cell.depth < DEPTH {
                     return true;
                 }
                 let kind = match reach {
-                    Reach::Reached => self.kind(*id, &cell.bounds, &mut scratch),
+                    Reach::Reached => self.kind(*id, &cell.bounds, &mut scratch, &mut jets),
                     Reach::Blended | Reach::Nowhere => Some(Kind::Seam),
                 };
                 if kind.is_none() && cell.depth < DEEPEST {
@@ -221,8 +233,8 @@ impl Search<'_> {
     }
 
     /// Cells no wider than `width`, but for those at the end of a long search, in which one of these choices may be tied on the surface.
-    fn cells(&self, creasing: &[Id], width: f64) -> Vec<Bounds> {
-        let (mut ranges, mut found) = (Vec::new(), Vec::new());
+    async fn cells(&self, creasing: &[Id], width: f64) -> Vec<Bounds> {
+        let (mut scratch, mut found) = (Scratch::default(), Vec::new());
         let mut open = if creasing.is_empty() { Vec::new() } else { vec![*self.bounds] };
         let mut left = MOST_VISITED;
         while let Some(cell) = open.pop() {
@@ -231,8 +243,12 @@ impl Search<'_> {
                 continue;
             }
             left -= 1;
-            let tied = self.tied(&cell, &mut ranges);
-            if creasing.iter().any(|id| tied.get(id) == Some(&Reach::Reached)) {
+            pause().await;
+            let open_to = self.open_to(&cell, creasing, &mut scratch);
+            let is_tied = |&(id, reach): &(Id, Reach)| {
+                reach == Reach::Reached && self.may_be_tied(id, &cell, &mut scratch.ranges)
+            };
+            if open_to.iter().any(is_tied) {
                 if cell.size().max_element() > width {
                     let [low, high] = halves(&cell);
                     open.extend([high, low]);
@@ -244,16 +260,33 @@ impl Search<'_> {
         found
     }
 
-    /// The choices that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
-    fn tied(&self, cell: &Bounds, ranges: &mut Vec<interval::Range>) -> BTreeMap<Id, Reach> {
+    /// Those of the `choices` that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
+    fn tied(&self, cell: &Bounds, choices: &[Id], scratch: &mut Scratch) -> Vec<(Id, Reach)> {
+        let mut open_to = self.open_to(cell, choices, scratch);
+        open_to.retain(|&(id, _)| self.may_be_tied(id, cell, &mut scratch.ranges));
+        open_to
+    }
+
+    /// Whether f may be zero in the cell where a choice is tied, which the cell is [open to](Self::open_to).
+    fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Range>) -> bool {
+        let Tie { roots, nodes } = &self.ties.of_choice[&id];
+        interval::bounds(&self.base.graph, nodes, self.values, cell, ranges);
+        !roots.iter().any(|&root| ranges[root as usize].is_nonzero())
+    }
+
+    /// Those of the `choices` whose operands may be equal somewhere in the cell and of which f depends there, with their reach; none if f
+    /// has no zero in it.
+    fn open_to(&self, cell: &Bounds, choices: &[Id], scratch: &mut Scratch) -> Vec<(Id, Reach)> {
         let (base, part) = (self.base, self.part);
-        interval::bounds(&base.graph, &self.ties.nodes, self.values, cell, ranges);
+        let Scratch { ranges, reaches, .. } = scratch;
+        interval::bounds(&base.graph, &part.nodes, self.values, cell, ranges);
         let range = |id: Id| ranges[id as usize];
-        let mut tied = BTreeMap::new();
+        let mut open_to = Vec::new();
         if range(part.root).is_nonzero() {
-            return tied;
+            return open_to;
         }
-        let mut reaches = vec![Reach::Nowhere; base.graph.len()];
+        reaches.clear();
+        reaches.resize(part.root as usize + 1, Reach::Nowhere);
         reaches[part.root as usize] = Reach::Reached;
         for &id in part.nodes.iter().rev().filter(|&&id| !base.graph.is_uniform(id)) {
             let reach = reaches[id as usize];
@@ -265,9 +298,8 @@ impl Search<'_> {
             match (role, node) {
                 (Role::Choice(condition), _) => {
                     let holds = condition.in_box(range);
-                    let is_nonzero = |root: &Id| range(*root).is_nonzero();
-                    if holds == Holds::Somewhere && !self.ties.roots[&id].iter().any(is_nonzero) {
-                        tied.insert(id, reach);
+                    if holds == Holds::Somewhere && choices.contains(&id) {
+                        open_to.push((id, reach));
                     }
                     for (side, other) in [(true, Holds::Never), (false, Holds::Always)] {
                         taken(node, side)
@@ -288,18 +320,23 @@ impl Search<'_> {
                 (Role::Plain, _) => node.operands(|operand| need(operand, reach)),
             }
         }
-        tied
+        open_to
     }
 
     /// What the surface is at a place near the cell at which choice `id` is tied; none if no such place is found.
-    fn kind(&self, id: Id, cell: &Bounds, scratch: &mut Scratch) -> Option<Kind> {
+    fn kind(
+        &self,
+        id: Id,
+        cell: &Bounds,
+        scratch: &mut Scratch,
+        jets: &mut Vec<scalar::Order<0>>,
+    ) -> Option<Kind> {
         // Enough for Newton's method, which doubles the digits with each step, from a start that is not too bad.
         const STEPS: usize = 12;
         let graph = &self.base.graph;
         // A place that is farther away is found from another cell.
         let reach = 2.0 * cell.diagonal();
         let size = self.bounds.diagonal();
-        let Scratch { ranges, jets } = scratch;
         let Role::Choice(condition) = self.base.roles[id as usize] else { return None };
         // f and the difference of the operands, which are below f in the graph, each with its gradient.
         let mut at = |p: DVec3| {
@@ -341,7 +378,7 @@ impl Search<'_> {
                     continue;
                 }
                 let around = Bounds::new(p - STEP * size, p + STEP * size);
-                if !self.bounds.holds(p) || self.tied(&around, ranges).get(&id) != Some(&Reach::Reached) {
+                if !self.bounds.holds(p) || self.tied(&around, &[id], scratch) != [(id, Reach::Reached)] {
                     break;
                 }
                 let across = h * (STEP * size / hh.sqrt());

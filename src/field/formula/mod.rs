@@ -58,6 +58,7 @@ pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Bounded, Enclosure, Field, Jet};
 use crate::math::{Bounds, Interval, Sym3};
+use crate::slices::Work;
 use ast::{COORDINATES, Constant, Equation, Function};
 use branches::Branches;
 use compiled::Compiled;
@@ -148,6 +149,7 @@ pub struct Formula {
     branches: Branches,
     scratch: eval::RegisterFile,
     jets: scalar::JetScratch,
+    slopes: Vec<scalar::Order<0>>,
     /// Scratch memory for the values of the nodes in double precision.
     doubles: Vec<f64>,
     /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
@@ -214,6 +216,7 @@ impl Formula {
             parameters,
             scratch: eval::RegisterFile::default(),
             jets: Vec::new(),
+            slopes: Vec::new(),
             doubles: Vec::new(),
             double: None,
             origin: DVec3::ZERO,
@@ -577,8 +580,9 @@ impl Field for Formula {
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let jet = self.jet(p);
-        (jet.value, jet.gradient)
+        let compiled = self.branches.active(&mut self.compiled);
+        let (value, gradient) = compiled.first_order(&self.values, place(self.origin, p), &mut self.slopes);
+        self.double.map_or((value, gradient), |scale| (value / scale, gradient / scale))
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
@@ -605,14 +609,15 @@ impl Field for Formula {
         self.origin = origin;
     }
 
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let mut cells = self.on_formula_boxes(&[*bounds], |field, boxes| {
-            field.branches.find_creases(&field.values, &boxes[0], width)
-        });
-        for cell in &mut cells {
-            *cell = Bounds::new(cell.lo() - self.origin, cell.hi() - self.origin);
-        }
-        cells
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
+        Box::pin(async move {
+            let mut cells = self.branches.find_creases(&self.values, &bounds, width).await;
+            for cell in &mut cells {
+                *cell = Bounds::new(cell.lo() - self.origin, cell.hi() - self.origin);
+            }
+            cells
+        })
     }
 
     /// The numbers are the same whatever was asked before, but for those beyond the first 256, and they outlast a change of the

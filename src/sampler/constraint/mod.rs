@@ -22,6 +22,7 @@ mod trace;
 
 use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
+use crate::slices::pause;
 use glam::{DVec3, Vec3};
 pub(super) use ladder::CreaseLadder;
 use meeting::{Meeting, SHARP};
@@ -54,9 +55,13 @@ pub(super) struct Corner {
 
 /// The creases and corners of a surface in a box.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Creases {
+pub(crate) struct Creases {
     curves: Vec<Crease>,
     corners: Vec<Corner>,
+    /// Whether there may be some: branches of f may meet on the surface.
+    pub(super) may_be: bool,
+    /// Number of evaluations that the search took.
+    pub(super) evaluations: u64,
 }
 
 impl Creases {
@@ -65,11 +70,13 @@ impl Creases {
         CELL * bounds.diagonal()
     }
 
-    /// Finds the creases of a field in `bounds`, which lie in these cells.
-    pub(super) fn find(probe: &mut Probe, bounds: &Bounds, cells: &[Bounds]) -> Self {
-        let mut creases = Self::default();
+    /// Finds the creases of a field in `bounds`, which lie in these cells, in slices.
+    pub(super) async fn find(probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds]) -> Self {
+        let mut creases = Self { may_be: !cells.is_empty(), ..Self::default() };
+        let start = probe.evaluations();
         let step = 0.5 * Self::width(bounds);
         for cell in cells {
+            pause().await;
             let branches = probe.field.branches_in(cell).unwrap_or_default();
             for (k, &a) in branches.iter().enumerate() {
                 for &b in &branches[..k] {
@@ -77,23 +84,25 @@ impl Creases {
                         .filter(|meeting| bounds.holds(meeting.position) && !creases.has_point(meeting, step))
                         .filter(|meeting| meeting.are_left(probe, step).is_some());
                     if let Some(meeting) = meeting {
-                        trace::follow(probe, bounds, &mut creases, meeting, step);
+                        trace::follow(probe, bounds, &mut creases, meeting, step).await;
                     }
                 }
             }
         }
-        creases.follow_from_corners(probe, bounds, step);
+        creases.follow_from_corners(probe, bounds, step).await;
         probe.select(None);
+        creases.evaluations = probe.evaluations() - start;
         creases
     }
 
     /// Follows the creases between patches that meet at a corner: one shorter than a cell is not always found from a cell.
-    fn follow_from_corners(&mut self, probe: &mut Probe, bounds: &Bounds, step: f64) {
+    async fn follow_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
         /// Distance from the corner, in steps, at which the crease is looked for: ten times that within which corners are one.
         const ASIDE: f64 = 1e-2;
         let mut next = 0;
         while let Some(Corner { position, patches }) = self.corners.get(next).cloned() {
             next += 1;
+            pause().await;
             for (k, &a) in patches.iter().enumerate() {
                 for &b in &patches[..k] {
                     let near = |probe: &mut Probe, place, reach: f64| {
@@ -107,7 +116,7 @@ impl Creases {
                             })
                             .filter(|meeting| meeting.are_left(probe, step).is_some());
                         if let Some(meeting) = meeting {
-                            trace::follow(probe, bounds, self, meeting, step);
+                            trace::follow(probe, bounds, self, meeting, step).await;
                         }
                     }
                 }

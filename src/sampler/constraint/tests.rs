@@ -3,6 +3,7 @@ use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::particles::Particles;
 use crate::sampler::probe::ProbeMemory;
+use crate::slices::complete;
 use std::collections::BTreeMap;
 
 /// The creases of a formula in the box from −`half` to `half`.
@@ -11,8 +12,8 @@ fn creases(text: &str, half: f64) -> (Formula, Creases) {
     let mut memory = ProbeMemory::default();
     let bounds = Bounds::cube(half);
     let probe = &mut Probe::new(&mut field, &mut memory);
-    let cells = probe.field.find_creases(&bounds, Creases::width(&bounds));
-    let creases = Creases::find(probe, &bounds, &cells);
+    let cells = complete(probe.field.find_creases(&bounds, Creases::width(&bounds)));
+    let creases = complete(Creases::find(probe, &bounds, &cells));
     (field, creases)
 }
 

@@ -4,6 +4,7 @@ use super::meeting::{FADED, Meeting, Third, common_point, touching_point};
 use super::{Crease, Creases};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
+use crate::slices::{Work, pause};
 use glam::DVec3;
 
 /// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved.
@@ -31,29 +32,46 @@ enum WalkEnd {
 }
 
 /// Follows the crease through `start`, and adds it with its corners.
-pub(super) fn follow(probe: &mut Probe, bounds: &Bounds, creases: &mut Creases, start: Meeting, step: f64) {
-    let are_left = start.are_left(probe, step);
-    let mut walk = Walk { probe, bounds, start, are_left, step };
-    let mut points = vec![start.position];
-    let end = walk.run(creases, start.tangent, &mut points);
-    let is_closed = matches!(end, WalkEnd::Closed);
-    let mut first = WalkEnd::Open;
-    if !is_closed {
-        points.reverse();
-        first = walk.run(creases, -start.tangent, &mut points);
-        points.reverse();
-    }
-    // At a corner two patches that have nothing else in common are met, too.
-    let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-    if !is_closed && length <= ONE_CORNER * step {
-        return;
-    }
-    let corner = |end: &WalkEnd| if let WalkEnd::Corner(index) = end { Some(*index) } else { None };
-    let corners = [corner(&first), corner(&end)];
-    let [a, b] = start.branches;
-    // The points follow the tangent of the start.
-    let sides = if are_left.is_some_and(|[is_left, _]| is_left) { [a, b] } else { [b, a] };
-    creases.curves.push(Crease { patches: start.branches, sides, points, corners, is_closed });
+pub(super) fn follow<'a>(
+    probe: &'a mut Probe<'_>,
+    bounds: &'a Bounds,
+    creases: &'a mut Creases,
+    start: Meeting,
+    step: f64,
+) -> Work<'a, ()> {
+    Box::pin(async move {
+        let are_left = start.are_left(probe, step);
+        let mut walk = Walk { probe, bounds, start, are_left, step };
+        let mut points = vec![start.position];
+        let (mut corners, mut is_closed) = ([None; 2], false);
+        for (way, corner) in [start.tangent, -start.tangent].into_iter().zip(&mut corners) {
+            match walk.run(creases, way, &mut points).await {
+                WalkEnd::Closed => {
+                    is_closed = true;
+                    break;
+                }
+                WalkEnd::Open => {}
+                WalkEnd::Corner(index) => *corner = Some(index),
+            }
+            points.reverse();
+        }
+        // At a corner two patches that have nothing else in common are met, too.
+        let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        if !is_closed && length <= ONE_CORNER * step {
+            return;
+        }
+        let [end, first] = corners;
+        let [a, b] = start.branches;
+        // The points follow the tangent of the start.
+        let sides = if are_left.is_some_and(|[is_left, _]| is_left) { [a, b] } else { [b, a] };
+        creases.curves.push(Crease {
+            patches: start.branches,
+            sides,
+            points,
+            corners: [first, end],
+            is_closed,
+        });
+    })
 }
 
 /// A walk along a crease, from one of its points.
@@ -69,12 +87,13 @@ struct Walk<'a, 'f> {
 
 impl Walk<'_, '_> {
     /// Walks on from the last of the `points`, and adds those on the way.
-    fn run(&mut self, creases: &mut Creases, direction: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
+    async fn run(&mut self, creases: &mut Creases, direction: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
         let origin = self.start.position;
         let (mut here, mut direction) = (self.start.position, direction);
         let is_forward = self.start.tangent.dot(direction) > 0.0;
         let mut left_start = false;
         while points.len() < MOST_STEPS {
+            pause().await;
             let Some((next, length)) = self.next(here, direction) else {
                 return WalkEnd::Corner(creases.corner_at(here, &self.start.branches, ONE_END * self.step));
             };

@@ -1,5 +1,4 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { START_SILENCE_MS } from '../../src/engine/sampling/protocol.js';
 import { Supervisor } from '../../src/engine/sampling/supervisor.js';
 
 class FakeWorker {
@@ -57,21 +56,6 @@ beforeEach(() => {
 afterEach(() => vi.useRealTimers());
 
 describe('the supervisor', () => {
-  test('gives a worker more time while the core looks the surface over', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
-    workers[0].say({ type: 'box', id: 1, answer: {} });
-    vi.advanceTimersByTime(START_SILENCE_MS - 100);
-    expect(workers).toHaveLength(1);
-    workers[0].say({ type: 'started', id: 1 });
-    vi.advanceTimersByTime(1900);
-    expect(workers).toHaveLength(1);
-    vi.advanceTimersByTime(400);
-    expect(messages).toEqual(['no word from the sampler for 2 s']);
-  });
-
   test('replaces a busy worker that is silent for 2 s', () => {
     const supervisor = supervised();
     supervisor.start();

@@ -22,7 +22,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * takes more than a third of a millisecond, so a Stop takes effect within 100 ms.
  */
 const FIRST_BUDGET = 256;
-/** First budget of a measurement or of the search for a box, in slices, which take up to a tenth of a millisecond. */
+/** First budget of a measurement or of what precedes a start, in slices, which take up to a tenth of a millisecond. */
 const FIRST_SLICES = 32;
 /** Shortest interval between column messages: about a frame at 60 Hz. */
 const PICTURE_MS = 15;
@@ -132,7 +132,8 @@ class JobRun {
   }
 
   /**
-   * Finds the box of a sampling, slice by slice, so that the next key is not kept waiting by a formula that takes long.
+   * Finds the box of a sampling and the creases in it, slice by slice, so that the next key is not kept waiting by a
+   * formula that takes long.
    * @param {{held: number}} memory
    * @returns false if the job has ended already
    */

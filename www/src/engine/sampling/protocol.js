@@ -14,8 +14,3 @@ export const PROGRESS_MS = 60;
 export const BEAT_MS = 250;
 /** Time without a message after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;
-/**
- * The same while the core looks a surface over, which is one call: 6 s for a gyroid that is thickened and closed, whose
- * creases are searched for, on a machine of 2024.
- */
-export const START_SILENCE_MS = 20_000;

@@ -7,7 +7,7 @@
  * @module
  */
 import { LOADING_MS } from '../bundle/load.js';
-import { SILENCE_MS, START_SILENCE_MS } from './protocol.js';
+import { SILENCE_MS } from './protocol.js';
 
 /**
  * @import { Timer } from '../bundle/types.js'
@@ -43,7 +43,6 @@ export class Supervisor {
 
   /** Time until which the worker may be silent. */
   #deadline;
-  #silenceMs;
 
   /** @type {Timer | undefined} */
   #timer;
@@ -63,7 +62,6 @@ export class Supervisor {
     this.#busy = false;
     this.#heard = false;
     this.#deadline = 0;
-    this.#silenceMs = SILENCE_MS;
     this.#timer = undefined;
     /** @type {number[]} */
     this.restarts = [];
@@ -116,9 +114,7 @@ export class Supervisor {
     // The wait for a script is longer than that for a word.
     if (!this.#heard) this.#rest();
     this.#heard = true;
-    // Once the box is known, the core starts.
-    this.#silenceMs = message.type === 'box' ? START_SILENCE_MS : SILENCE_MS;
-    this.#deadline = this.#clock.now() + this.#silenceMs;
+    this.#deadline = this.#clock.now() + SILENCE_MS;
     if (message.type === 'ready') this.state = 'up';
     if (message.type === 'failed') {
       this.#drop();
@@ -147,7 +143,7 @@ export class Supervisor {
     if (this.#clock.now() < this.#deadline) this.#watch();
     else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
     else if (!this.#heard) this.#fail(`its script has not come within ${LOADING_MS / 1000} s`);
-    else this.#replace('hang', `no word from the sampler for ${this.#silenceMs / 1000} s`, '');
+    else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
   /** Gives up a worker that was never heard. @param {string} message */

@@ -54,7 +54,7 @@ export class Core {
      */
     exact_positions(from: number): Float64Array<ArrayBuffer>;
     /**
-     * Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
+     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
      * it is known, nothing before. While a slider moves the box `only_grows`.
      */
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
