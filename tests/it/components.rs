@@ -341,6 +341,17 @@ fn discontinuous_gradients_hide_no_component() {
 }
 
 #[test]
+fn the_branches_of_a_solid_share_the_cells_of_the_search() {
+    let gyroid = gallery::find("gyroid").expect("the gallery has a gyroid");
+    // A seventh of the cells is not enough for the gyroid, and far too many for the six faces.
+    let solid = gyroid.field().closed_by(&gyroid.bounds);
+    let around = gyroid.bounds.enlarged(0.5);
+    let settings = settings!(radius_share: 0.02, bounds: Some(around); ..Settings::default());
+    let sample = marching_particles::sample(solid, &settings).expect("a sample");
+    assert_eq!(sample.report().proof.undecided_cells, Some(0));
+}
+
+#[test]
 fn search_ends_on_singular_surfaces_and_reports_undecided_cells() {
     for (formula, half) in [
         ("y^2 - x^3", 1.0),

@@ -53,6 +53,7 @@ use crate::sampler::discovery::cell::{
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{SAME, Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
+use std::collections::VecDeque;
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed. With 8, 6 of 43 random
 /// surfaces are no longer proven; with 32 no more are, in 1.2 times the cells.
@@ -139,11 +140,11 @@ pub(crate) struct Octree {
     state: SearchState,
     /// The region that is searched.
     pub(crate) region: Region,
-    /// Number of factors of the field, which are searched one after the other.
-    factors: usize,
     /// Largest number of cells that the searches of all factors together may visit.
     most: usize,
+    /// The search that is under way.
     search: FactorSearch,
+    turns: Turns,
     bounds: BoxBounds,
     batch: CellBatch,
     /// Points where f and its gradient vanish; of curves of them a selection.
@@ -165,7 +166,7 @@ struct FactorSearch {
     is_ending: bool,
     /// Cells of the level after it.
     halves: Vec<Cell>,
-    /// Number of cells visited.
+    /// Number of cells visited in this turn.
     cells: usize,
     /// Boxes left out of the search.
     isolated: Vec<Bounds>,
@@ -173,6 +174,20 @@ struct FactorSearch {
     searched: usize,
     /// Singular points that were found, so that each is treated once.
     met: Vec<DVec3>,
+}
+
+/// The searches of the factors take turns, so that those that need few cells leave theirs to the others: in each round every search that is
+/// not at its end may visit an equal share of the cells that are left.
+#[derive(Clone, Debug, Default)]
+struct Turns {
+    /// The searches that wait for a turn.
+    waiting: VecDeque<FactorSearch>,
+    /// Number of turns in this round, and how many of them are still to come.
+    in_round: usize,
+    left: usize,
+    /// Number of cells visited before this round, and until now.
+    before: usize,
+    visited: usize,
 }
 
 /// Boxes and the bounds of the field over them.
@@ -261,22 +276,39 @@ impl Octree {
         self.witnesses.clear();
         self.undecided.clear();
         self.singular.clear();
-        self.search.halves.clear();
         let margin = MARGIN * bounds.size().max_element();
         self.region = Region { bounds: bounds.enlarged(margin), margin };
         self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
     }
 
-    /// Begins the search of a factor of the field with the box, its faces and its edges.
-    fn begin_factor(&mut self, factor: usize) {
-        self.search.factor = factor;
-        (self.search.next, self.search.cells, self.search.is_ending) = (0, 0, false);
-        self.search.level.clear();
-        self.search.isolated.clear();
-        self.search.met.clear();
-        self.search.searched = 0;
-        self.search.level.push(Cell { bounds: self.region.bounds, level: 0 });
-        push_boundary(&mut self.search.level, &self.region.bounds);
+    /// The search of a factor of the field, which begins with the box, its faces and its edges.
+    fn search_of(&self, factor: usize) -> FactorSearch {
+        let mut level = vec![Cell { bounds: self.region.bounds, level: 0 }];
+        push_boundary(&mut level, &self.region.bounds);
+        FactorSearch { factor, level, ..FactorSearch::default() }
+    }
+
+    /// Gives the next search its turn. Those for which no cell is left end; the cells that are open then are undecided.
+    fn begin_turn(&mut self) {
+        while let Some(next) = self.turns.waiting.pop_front() {
+            if self.turns.left == 0 {
+                self.turns.in_round = self.turns.waiting.len() + 1;
+                self.turns.left = self.turns.in_round;
+                self.turns.before = self.turns.visited;
+            }
+            self.turns.left -= 1;
+            self.search = FactorSearch { cells: 0, ..next };
+            if self.allowed() > 0 {
+                return;
+            }
+            let open = self.search.level[self.search.next..].iter().chain(&self.search.halves);
+            let open = open.filter(|cell| !is_left_out(cell, &self.search.isolated));
+            self.undecided.extend(open.map(|cell| cell.bounds));
+        }
+        self.state = SearchState::Done;
+        self.search = FactorSearch::default();
+        // Turns bring those of a factor apart.
+        self.witnesses.sort_by_key(|witness| witness.factor);
     }
 
     /// Sets the expected number of particles, which limits the number of cells visited.
@@ -284,10 +316,10 @@ impl Octree {
         self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
     }
 
-    /// Largest number of cells of the factor that may be visited.
+    /// Number of cells that the search may visit in this turn.
     fn allowed(&self) -> usize {
         let most = if self.search.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
-        most / self.factors
+        most.saturating_sub(self.turns.before) / self.turns.in_round
     }
 
     /// Whether the field can be searched by bounds.
@@ -303,10 +335,11 @@ impl Octree {
     /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
     pub(crate) fn step(&mut self, field: &mut dyn Bounded, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
-            self.factors = field.factors();
             if bounds_say_something(field, &self.region.bounds) {
                 self.state = SearchState::Running;
-                self.begin_factor(0);
+                let waiting = (0..field.factors()).map(|factor| self.search_of(factor)).collect();
+                self.turns = Turns { waiting, ..Turns::default() };
+                self.begin_turn();
             } else {
                 self.state = SearchState::Unavailable;
             }
@@ -316,6 +349,7 @@ impl Octree {
             self.visit(field, self.search.next..self.search.next + count);
             self.search.next += count;
             self.search.cells += count;
+            self.turns.visited += count;
             budget = budget.saturating_sub(UNITS * BATCH as u32);
             if self.search.next == self.search.level.len() {
                 self.search.is_ending =
@@ -324,16 +358,11 @@ impl Octree {
                 core::mem::swap(&mut self.search.level, &mut self.search.halves);
                 self.search.next = 0;
             }
-            if self.search.level.is_empty() || self.search.cells >= self.allowed() {
-                let open = self.search.level[self.search.next..].iter().chain(&self.search.halves);
-                let open = open.filter(|cell| !is_left_out(cell, &self.search.isolated));
-                self.undecided.extend(open.map(|cell| cell.bounds));
-                self.search.halves.clear();
-                if self.search.factor + 1 < self.factors {
-                    self.begin_factor(self.search.factor + 1);
-                } else {
-                    self.state = SearchState::Done;
-                }
+            if self.search.level.is_empty() {
+                self.begin_turn();
+            } else if self.search.cells >= self.allowed() {
+                self.turns.waiting.push_back(core::mem::take(&mut self.search));
+                self.begin_turn();
             }
         }
         budget
@@ -581,9 +610,9 @@ mod tests {
             "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
         let mut field = Formula::as_written(text, &[]).expect("a formula");
         let begun = || {
-            let mut octree = Octree { factors: 1, most: MOST_CELLS, ..Octree::default() };
+            let mut octree = Octree { most: MOST_CELLS, ..Octree::default() };
             octree.begin(true, &Bounds::cube(1.0));
-            octree.begin_factor(0);
+            octree.search = octree.search_of(0);
             octree
         };
         // All that visiting the cells leads to, and the cells of the next level among it.
