@@ -62,7 +62,11 @@ export const lastSteps = (steps) => (steps === 1 ? 'the last step' : `the last $
 /** Formats the integers within a sentence. @param {string} text */
 export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
 
-/** Returns what the first and the last of so many colours stand for, which repeat. @param {number} length @returns {[string, string]} */
+/**
+ * Returns what the first and the last of so many colours stand for, which repeat.
+ * @param {number} length
+ * @returns {[string, string]}
+ */
 export const cycleEnds = (length) => [`0, ${length}, …`, `${length - 1}, ${2 * length - 1}, …`];
 
 /**

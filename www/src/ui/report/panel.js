@@ -73,7 +73,10 @@ export function mountReport(body, engine, description) {
   );
 }
 
-/** @param {ReadonlySignal<Report | null>} report @param {ReadonlySignal<number>} counted  of a run without a report yet, or 0 */
+/**
+ * @param {ReadonlySignal<Report | null>} report
+ * @param {ReadonlySignal<number>} counted  particles of a run without a report yet, or 0
+ */
 function createPlain(report, counted) {
   return h(
     'dl',

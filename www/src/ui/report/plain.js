@@ -1,4 +1,7 @@
-/** The four figures in plain words with which the report begins: how many particles, how even, how exact, and whether all parts have some. */
+/**
+ * The four figures in plain words with which the report begins: how many particles, how even, how exact, and whether
+ * every part of the surface has some.
+ */
 import { formatCount, formatSignificant, MISSING, plural } from '../format.js';
 import { valueAt, writeWord } from './rows.js';
 

@@ -54,8 +54,8 @@ function createTrack({ busy, reveal, progress, loading }) {
 }
 
 /**
- * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet, as
- * changes are sampled by themselves.
+ * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet,
+ * as changes are sampled by themselves.
  * @param {Engine} engine
  */
 export const isDue = ({ typing, partial, report, empty, busy, progress }) =>

@@ -145,7 +145,10 @@ class Mover {
     if (this.#before) this.#engine.setPlane(this.#before);
   };
 
-  /** @param {number} by  a length, or a share of the way through the box @param {{ ofBox?: boolean, live?: boolean }} [how] */
+  /**
+   * @param {number} by  a length, or a share of the way through the box
+   * @param {{ ofBox?: boolean, live?: boolean }} [how]
+   */
   #move(by, { ofBox = false, live = false } = {}) {
     const [plane, bounds] = [this.#engine.state.peek().plane, this.#box.peek()];
     if (!plane || !bounds) return;
