@@ -256,10 +256,10 @@ impl Session {
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
             Surface::declared,
         );
-        // What a parameter stands for is known in the surface's own formula alone.
+        // What a parameter stands for, and which values it can have, is known in the surface's own formula alone.
         if surface.is_some_and(|surface| surface.formula != text) {
             for parameter in &mut declared {
-                parameter.label.clone_from(&parameter.name);
+                *parameter = Parameter::automatic(&parameter.name);
             }
         }
         for parameter in &request.declare {

@@ -162,7 +162,23 @@ fn every_error_has_its_kind_span_and_suggestion() {
         ("Sin(x)", Kind::UnknownFunction, 0..3, Some("sin")),
         ("log(x)", Kind::UnknownFunction, 0..3, Some("ln")),
         ("x + lg(y)", Kind::UnknownFunction, 4..6, Some("log10")),
-        ("pow(x, 2)", Kind::UnknownFunction, 0..3, None),
+        ("pow(x, 2)", Kind::UnknownFunction, 0..9, Some("x^2")),
+        ("2 pow(x + y, 2)", Kind::UnknownFunction, 2..15, Some("((x + y)^2)")),
+        ("pow(x) + y", Kind::UnknownFunction, 0..3, None),
+        ("siin(x) + y", Kind::UnknownFunction, 0..4, Some("sin")),
+        ("length(x, y, z) = 1", Kind::UnknownFunction, 0..15, Some("hypot(x, y, z)")),
+        ("norm(x, y) = 1", Kind::UnknownFunction, 0..10, Some("hypot(x, y)")),
+        ("length(vec3(x, y, z)) - 1", Kind::UnknownFunction, 0..21, Some("hypot(vec3(x, y, z))")),
+        ("hypot(vec3(x, y, z)) - 1", Kind::UnknownFunction, 6..19, Some("x, y, z")),
+        ("clamp(x, 0, y + 1) = z", Kind::UnknownFunction, 0..18, Some("min(max(x, 0), (y + 1))")),
+        ("mix(x, y, z)", Kind::UnknownFunction, 0..12, Some("x*(1 - z) + y*z")),
+        ("y - mod(x, 2)", Kind::UnknownFunction, 4..13, Some("(x - 2*floor(x/2))")),
+        ("abs2(x) + y", Kind::UnknownFunction, 0..7, Some("x^2")),
+        ("length(x, y", Kind::UnknownFunction, 0..6, None),
+        ("dot(p, p) - 1", Kind::UnknownFunction, 0..3, None),
+        ("p.x^2 + y", Kind::UnexpectedSymbol, 0..3, Some("x")),
+        ("x^2 + (y^2 + z^2 = 1", Kind::UnexpectedSymbol, 16..16, Some(")")),
+        ("x^2 + (y^2 + z^2 = 1)", Kind::UnexpectedSymbol, 16..21, Some(") = 1")),
         ("log x", Kind::UnknownName, 0..3, Some("ln")),
         ("atan2(x)", Kind::WrongArity, 0..8, None),
         ("sin(x, y)", Kind::WrongArity, 0..9, None),
@@ -315,9 +331,16 @@ fn a_suggestion_in_place_of_the_span_corrects_the_formula() {
         "X + 1",
         "sn(x)",
         "log(x)",
+        "length(vec3(x, y, z)) = 1",
+        "2 pow(x, 2)^2 + length(p.x, p.y)",
+        "z - 2 mix(x, y, z + 1) mod(x + y, 2)",
+        "-clamp(x, -1, 1) + fract(y) round(z)",
+        "x^2 + (y^2 + z^2 = 1",
+        "x^2 + (y^2 + z^2 = 1)",
+        "hypot(x, y = 1",
     ] {
         let mut mended = text.to_owned();
-        for _ in 0..3 {
+        for _ in 0..4 {
             let Err(error) = Formula::as_written(&mended, &[]) else { break };
             mended.replace_range(error.span, &error.suggestion.unwrap());
         }
@@ -360,8 +383,8 @@ fn a_likely_misspelling_is_no_parameter_unless_it_is_declared() {
     assert!(Formula::as_written("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
     let near = Formula::as_written("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
     assert_eq!(near.suggestion.as_deref(), Some("radius"));
-    // Indexed names, single letters and Greek letters are not taken for misspellings.
-    for text in ["phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
+    // Indexed names, single letters and Greek letters are not taken for misspellings, and what is only called elsewhere is a name.
+    for text in ["length x + norm", "mod x", "phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
         parse(text);
     }
 }

@@ -165,6 +165,15 @@ fn a_parameter_has_the_label_of_its_surface_in_the_formula_of_that_surface_alone
 }
 
 #[test]
+fn a_parameter_of_a_formula_of_ones_own_begins_afresh() {
+    let mut session = Session::new();
+    let answer = session
+        .set_field(&request(r#"{"surface":"ellipsoid","formula":"x^2/a^2 + y^2/b^2 - z^2/c^2 = 1"}"#))
+        .expect("a field");
+    assert_eq!(answer.parameters, ["a", "b", "c"].map(Parameter::automatic));
+}
+
+#[test]
 fn a_parameter_that_is_no_longer_given_has_its_value_of_the_beginning_again() {
     let mut session = Session::new();
     let mut value = |field: &str| {

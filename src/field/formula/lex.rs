@@ -3,6 +3,7 @@
 //! Characters that look like ASCII operators or digits are mapped to them, and [`latex`](super::latex) says what a command
 //! such as `\frac` stands for. Any other character outside the language is an error that names its code point.
 
+use super::elsewhere::component_error;
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::latex::{self, LatexCommand};
 use super::token::{Bar, Spanned, Token};
@@ -316,6 +317,10 @@ impl Lexer<'_> {
         let second_point = self.get(i) == Some('.');
         let value = if written == "." || second_point { None } else { written.parse::<f64>().ok() };
         let Some(value) = value else {
+            let point = self.span(start, start).start;
+            if let Some(error) = component_error(self.text, self.tokens.last(), point) {
+                return Err(error);
+            }
             let span = self.span(start, (i + usize::from(second_point)).max(start + 1));
             let message = format!("`{}` is not a number", slice(self.text, &span));
             return Err(FormulaError::new(ErrorKind::BadNumber, span, message));

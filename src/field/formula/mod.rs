@@ -32,6 +32,7 @@ mod creases;
 mod derivative;
 mod display;
 mod double;
+mod elsewhere;
 mod error;
 mod eval;
 mod graph;
@@ -494,7 +495,7 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
             return Some((meant, message));
         }
     }
-    if let Some(meant) = parse::name_elsewhere(name) {
+    if let Some(meant) = elsewhere::name_elsewhere(name) {
         let message = format!("Unknown name `{name}`: did you mean `{meant}(…)`? Or add a slider `{name}`");
         return Some((meant.to_owned(), message));
     }

@@ -15,6 +15,7 @@
 //! brackets is applied to.
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::elsewhere::{call_error, is_elsewhere, name_elsewhere};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::lex::{slice, tokens};
 use super::token::{Bar, Spanned, Token, closing};
@@ -106,7 +107,7 @@ impl Parser<'_> {
             }
         }
         let Some(end) = end.filter(|&end| self.tokens[end].token == Token::Equals) else { return Ok(()) };
-        if Function::find(name).is_some() || COORDINATES.contains(&name.as_str()) {
+        if Function::find(name).is_some() || COORDINATES.contains(&name.as_str()) || is_elsewhere(name) {
             return Ok(());
         }
         let whole = span.start..self.tokens[end].span.end;
@@ -352,7 +353,7 @@ impl Parser<'_> {
                 let inner = self.within(true, Self::sum)?;
                 let end = self.peek().span.end;
                 if !(self.take(&Token::Bar(Bar::Either)) || self.take(&Token::Bar(Bar::Closing))) {
-                    return Err(self.unclosed(&span, "|"));
+                    return Err(self.unclosed(&span, '|'));
                 }
                 Ok(Expr { kind: ExprKind::Call(Function::Abs, vec![inner]), span: span.start..end })
             }
@@ -445,16 +446,29 @@ impl Parser<'_> {
         Err(self.unclosed(span, closing(open)))
     }
 
-    /// Error where the bracket at `open` should be closed.
-    fn unclosed(&self, open: &Range<usize>, closing: impl Into<String>) -> FormulaError {
-        if self.peek().token != Token::End {
-            return self.unexpected();
+    /// Error where the bracket at `open` should be closed by `closing`.
+    fn unclosed(&self, open: &Range<usize>, closing: char) -> FormulaError {
+        let place = slice(self.text, &(0..open.start)).chars().count() + 1;
+        let message = format!("The bracket opened at character {place} is not closed");
+        match self.peek().token {
+            Token::End => {
+                let end = self.text.len();
+                FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(closing)
+            }
+            Token::Equals => {
+                let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
+                // Editors close a bracket as soon as it is opened: that one stands too far to the right.
+                let late = self.tokens[self.next..].iter().find(|later| later.token == Token::Close(closing));
+                let (span, inside) = match late {
+                    Some(late) => (before..late.span.end, slice(self.text, &(before..late.span.start))),
+                    None => (before..before, ""),
+                };
+                let message = format!("{message} before `=`");
+                FormulaError::new(ErrorKind::UnexpectedSymbol, span, message)
+                    .suggest(format!("{closing}{inside}"))
+            }
+            _ => self.unexpected(),
         }
-        let end = self.text.len();
-        let message = format!("The bracket opened at character {} is not closed", {
-            slice(self.text, &(0..open.start)).chars().count() + 1
-        });
-        FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(closing)
     }
 
     /// Parses what begins with `name`, which has just been consumed.
@@ -470,12 +484,11 @@ impl Parser<'_> {
             return self.call(function, span);
         }
         if self.peek().token == Token::Open('(') && !self.declared.contains(&name.as_str()) {
+            if let Some(error) = call_error(self.text, &self.tokens, self.next - 1) {
+                return Err(error);
+            }
             let guess = self.similar(&name);
             let has_arguments = self.has_comma();
-            if name == "pow" {
-                let message = "A power is written `a^b`";
-                return Err(FormulaError::new(ErrorKind::UnknownFunction, span, message));
-            }
             let message = match guess {
                 Some(guess) => format!("There is no function `{name}`: did you mean `{guess}`?"),
                 None if has_arguments => {
@@ -536,21 +549,9 @@ fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> ExprKind) -
     Expr { kind: list(items), span: start..end }
 }
 
-/// Function that is called `name` in other languages and books.
-pub(super) fn name_elsewhere(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "log" => "ln",
-        "lg" => "log10",
-        "arcsin" => "asin",
-        "arccos" => "acos",
-        "arctan" => "atan",
-        "sgn" => "sign",
-        _ => return None,
-    })
-}
-
 /// Word of `known` that `name` is probably a misspelling of: one that differs in case only, or by one edit (two for a
-/// long name). Ties go to the word with the same first letter.
+/// long name). Ties go to the word with the same first letter, then to the one with the fewest letters that `name` has not:
+/// `siin` is rather `sin` than `sign`.
 pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     let allowed = if length > 5 { 2 } else { 1 };
@@ -560,10 +561,11 @@ pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> O
             let close = distance == 0 || (length >= 2 && word.len() >= 2 && distance <= allowed);
             // Misspellings rarely concern the first letter.
             let other_start = word.chars().next() != name.chars().next();
-            (close && word != name).then_some((distance, other_start, word))
+            let foreign = word.chars().filter(|&letter| !name.contains(letter)).count();
+            (close && word != name).then_some((distance, other_start, foreign, word))
         })
-        .min_by_key(|&(distance, other_start, _)| (distance, other_start))
-        .map(|(_, _, word)| word)
+        .min_by_key(|&(distance, other_start, foreign, _)| (distance, other_start, foreign))
+        .map(|(.., word)| word)
 }
 
 /// Edit distance (optimal string alignment): insertions, deletions, substitutions and swaps of adjacent characters.
