@@ -17,8 +17,8 @@ import { change, description } from './store.js';
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
 const REST_MS = 250;
 /**
- * Pause in typing after which a formula is sampled: one and a half times that between the keys of a slow typist, 30 words
- * a minute.
+ * Pause in typing after which a formula is sampled: one and a half times that between the keys of a slow typist, 30
+ * words a minute.
  */
 const TYPING_MS = 600;
 

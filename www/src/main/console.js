@@ -91,6 +91,16 @@ export function createConsole(engine) {
     act();
     return settled(engine);
   };
+  /**
+   * Does the same for what samples the formula: a mistake in it is no report of the surface before.
+   * @param {() => void} act
+   */
+  const sampled = async (act) => {
+    const report = await after(act);
+    const fault = engine.fieldError.peek();
+    if (fault) throw new Error(fault.message);
+    return report;
+  };
   const { debug } = engine;
   return {
     get version() {
@@ -101,11 +111,11 @@ export function createConsole(engine) {
       return structuredClone(engine.state.value);
     },
     set: (patch) =>
-      after(() => {
+      sampled(() => {
         const reset = engine.set({ ...patch });
         if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
       }),
-    run: () => after(() => engine.run()),
+    run: () => sampled(() => engine.run()),
     stop() {
       engine.stop();
       return once(engine, () => atRest(engine));

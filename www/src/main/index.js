@@ -11,11 +11,19 @@ import { keepAddress } from './address.js';
 import { createConsole } from './console.js';
 import { keepOffline } from './offline.js';
 
-const wanted = new URLSearchParams(location.search).get('backend');
+const query = new URLSearchParams(location.search);
+const wanted = query.get('backend');
 const backend = BACKENDS.find((kind) => kind === wanted) ?? null;
 const engine = createEngine({ host: byId('canvas-host'), link: location.hash, backend });
 keepAddress(engine);
-Object.assign(window, { marchingParticles: createConsole(engine) });
+const p = createConsole(engine);
+Object.assign(window, { marchingParticles: p });
+const parts = query.get('embed');
+if (parts !== null) {
+  // The panels do not flash before the rest is there.
+  byId('shell').dataset.hidden = 'all';
+  void import('./embed.js').then(({ embed }) => embed(p, parts));
+}
 
 let mounted = false;
 const mount = () => {

@@ -40,3 +40,9 @@ export type Particles = Measured &
   };
 /** The columns of the report, null before it has arrived. */
 export type Measured = { [K in keyof Figures]: Figures[K] | null };
+/** A message of a page that has this one in a frame. `id` comes back with the answer. */
+export interface Request {
+  call: 'set' | 'get' | 'report';
+  id?: unknown;
+  value?: unknown;
+}

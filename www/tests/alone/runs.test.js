@@ -112,6 +112,28 @@ test('a mistake in the formula keeps the last surface, dimmed; mending it brings
   expect((await picture(p)).drawn).not.toBe(clear.drawn);
 });
 
+test('a patch with a mistake in its formula, and a run of it, are no reports of the surface before', async () => {
+  const p = await open();
+  await expect(p.set({ formula: 'x^2 +' })).rejects.toThrow('Something is missing at the end');
+  await expect(p.run()).rejects.toThrow('Something is missing at the end');
+  expect((await p.set({ formula: 'x^2 + y^2 + z^2 = 0.5' }))?.quality?.euler).toBe(2);
+});
+
+test('an earlier state comes back with its camera, and a drag that rests is told as one', async () => {
+  const p = await open();
+  const { v: _, view, ...shape } = p.state;
+  const camera = { ...view.camera, yaw: 1.5, distance: 3, fit: false };
+  p.engine.setParameter('a', 1.1, { live: true });
+  await pause(400);
+  // The control has rested, and the full run with it, but it is still held.
+  expect(p.engine.dragging.value).toBe(true);
+  p.engine.setParameter('a', 1.2);
+  expect(p.engine.dragging.value).toBe(false);
+  p.engine.restore({ ...shape, camera });
+  await until(p.engine.report, (report) => report);
+  expect(p.state).toMatchObject({ ...shape, view: { camera } });
+});
+
 test('a formula without a surface leaves the last one, dimmed, says why, and takes nothing for its own', async () => {
   const p = await open();
   const isDimmed = () => p.debug.counts().dimmed;

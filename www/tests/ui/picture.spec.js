@@ -92,11 +92,22 @@ test('the picture and what moves in it', async ({ page }) => {
       const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
       // The page's policy allows no films in it: what the file holds is read without playing it.
       const { type } = new Blob([bytes], { type: 'video/webm' });
-      return { type, playable: video.canPlayType(type), head: [...bytes.subarray(0, 4)], size: bytes.length };
+      const at = bytes.findIndex((byte, k) => byte === 0x44 && bytes[k + 1] === 0x89 && bytes[k + 2] === 0x88);
+      const durationMs = new DataView(bytes.buffer).getFloat64(at + 3);
+      return {
+        type,
+        playable: video.canPlayType(type),
+        head: [...bytes.subarray(0, 4)],
+        size: bytes.length,
+        durationMs,
+      };
     }, bytes.toString('base64'));
     // The head of a Matroska file.
     expect(film).toMatchObject({ playable: 'maybe', head: [0x1a, 0x45, 0xdf, 0xa3] });
     expect(film.size).toBeGreaterThan(5000);
+    // Players know its length.
+    expect(film.durationMs).toBeGreaterThan(900);
+    expect(film.durationMs).toBeLessThan(60_000);
   });
 
   await test.step('a printed page has the picture, the formula and the figures, and nothing else', async () => {

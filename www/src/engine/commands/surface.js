@@ -71,7 +71,10 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
       if (text !== formula) {
         // A model has no formula. A formula typed in its place starts from the default surface.
         const fresh = fromPoints(store.description.value, surface);
-        change(store, fresh ? freshShape(description(store).default_surface, text) : { formula: text });
+        // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
+        const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
+        const next = isOwn ? { formula: text, parameters: {} } : { formula: text };
+        change(store, fresh ? freshShape(description(store).default_surface, text) : next);
         framing.written({ typed: true });
       } else if (!store.typing.value) return;
       if (typing) runs.chooseTyped();

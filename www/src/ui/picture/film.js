@@ -2,6 +2,7 @@
 import { effect } from '@preact/signals-core';
 import { CROSSING_S, placeAt, TURN_S, valueAt } from '../motion.js';
 import { compose } from './compose.js';
+import { withDuration } from './webm.js';
 
 /**
  * @import { Engine } from '../../engine/types.js'
@@ -116,10 +117,12 @@ export async function recordFilm(wish) {
       await drawOn(wish, context);
       await nextFrame();
     }
+    const shown = (performance.now() - begunMs) / 1000;
     recorder.stop();
     await ended;
     for (const track of recorder.stream.getTracks()) track.stop();
-    return new Blob(chunks, { type: kind.replace(/;.*/, '') });
+    const film = withDuration(new Uint8Array(await new Blob(chunks).arrayBuffer()), shown);
+    return new Blob([film], { type: kind.replace(/;.*/, '') });
   } finally {
     back();
   }

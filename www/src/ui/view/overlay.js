@@ -22,7 +22,6 @@ const ANNOUNCE_MS = 3000;
  * @param {OverlayParts} parts
  */
 export function mountOverlay(view, engine, { stage, poster, start, told }) {
-  const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
   const hint = h('p', { class: 'hint' }, 'Drag to turn');
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   // An error in the formula is shown beside the formula instead.
@@ -34,8 +33,6 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     void engine.revision.value;
     return emptyState(engine);
   });
-  view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
-
   const text = computed(() =>
     told.value
       ? told.value.title
@@ -51,6 +48,10 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   );
   // The field panel announces the loading.
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
+  const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
+  // The caption has one line, and its whole text is shown where the pointer rests on it.
+  const caption = h('p', { class: 'caption', 'aria-hidden': 'true', title: () => whole.value });
+  view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
   caption.append(
     h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),
     h('span', { class: 'detail' }, () => (engine.loading.value ? '' : told.value?.text)),
@@ -58,7 +59,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   );
   announce(
     spoken,
-    computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. ')),
+    whole,
     computed(() => engine.busy.value || engine.reveal.value !== null),
   );
 
