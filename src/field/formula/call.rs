@@ -7,9 +7,8 @@
 
 use super::ast::{Expr, ExprKind, Factor, Function};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::slice;
 use super::parse::{CallArguments, Parse, Parser, integer};
-use super::token::{Spanned, Token};
+use super::token::{Spanned, Token, slice};
 use core::ops::Range;
 
 impl Parser<'_> {

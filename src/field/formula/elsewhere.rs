@@ -1,8 +1,7 @@
 //! What is written otherwise in other languages and books, and how it is written here.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::slice;
-use super::token::{Spanned, Token};
+use super::token::{Spanned, Token, slice};
 
 /// The places of a call's arguments in [`call_elsewhere`]: the first, second and third, with their names in messages. No formula has
 /// these characters.

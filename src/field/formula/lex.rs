@@ -6,7 +6,7 @@
 use super::elsewhere::component_error;
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::latex::{self, LatexCommand};
-use super::token::{Bar, Spanned, Token};
+use super::token::{Bar, Spanned, Token, slice};
 use core::ops::Range;
 
 /// Character that `c` stands for in a formula.
@@ -350,11 +350,6 @@ impl Lexer<'_> {
         let value = i32::try_from(value).unwrap_or(i32::MAX);
         Ok(if negative { -value } else { value })
     }
-}
-
-/// Text at `span`, or nothing if `span` splits a character. It never panics, whatever the formula.
-pub(super) fn slice<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
-    text.get(span.clone()).unwrap_or_default()
 }
 
 /// Error for the sign `c` of an inequality.

@@ -17,8 +17,8 @@
 use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::elsewhere::{call_error, is_elsewhere, name_elsewhere};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::{slice, tokens};
-use super::token::{Bar, Spanned, Token, closing};
+use super::lex::tokens;
+use super::token::{Bar, Spanned, Token, closing, slice};
 use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
 

@@ -49,3 +49,8 @@ pub(super) struct Spanned {
     pub(super) token: Token,
     pub(super) span: Range<usize>,
 }
+
+/// Text at `span`, or nothing if `span` splits a character. It never panics, whatever the formula.
+pub(super) fn slice<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
+    text.get(span.clone()).unwrap_or_default()
+}
