@@ -248,6 +248,7 @@ const UNIFORM: Condition = when("sampling", "uniform");
 const ADAPTIVE: Condition = when("sampling", "adaptive");
 const BY_RADIUS: Condition = when("size_mode", "radius");
 const BY_COUNT: Condition = when("size_mode", "count");
+const BY_FRONT: Condition = when("method", "front");
 const BY_CHORD: Condition = when("radius_law", "chord_error");
 const BY_CURVATURE: Condition = Condition { equal: false, ..BY_CHORD };
 
@@ -400,6 +401,8 @@ pub fn settings() -> Vec<Setting> {
             max: 100.0,
             step: 1.0,
             unit: "steps",
+            // Refined particles are in order already.
+            when: &[BY_FRONT],
             ..number(
                 "relax_steps",
                 |settings| settings.relax_steps.into(),

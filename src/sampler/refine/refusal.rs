@@ -27,8 +27,7 @@ pub enum Refusal {
     Full,
     /// The surface bends too much for the wanted spacing.
     #[error(
-        "The front stands, and is not refined: near {at} the surface bends too much for particles of this size. With smaller ones it \
-         may be."
+        "The front stands, and is not refined: near {at} the surface bends too much for particles of this size."
     )]
     Bent {
         /// Position of such a place.

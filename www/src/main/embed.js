@@ -2,8 +2,9 @@
  * Shows the picture alone, for a page that has this one in a frame, and answers the messages of that page. See
  * www/CONSOLE.md.
  */
-import './embed.css';
 import { byId } from '../ui/dom.js';
+import { loadSheet } from '../ui/sheet.js';
+import sheet from './embed.css?url';
 
 /** @import { Console, Request } from './types.js' */
 
@@ -16,6 +17,8 @@ const TYPE = 'marching-particles';
  */
 export function embed(p, parts) {
   Object.assign(byId('shell').dataset, { hidden: 'all', embed: parts.split(',').join(' ') });
+  // Without the sheet the picture stands alone, which is the most of it.
+  loadSheet(sheet).catch(() => {});
   const { parent } = window;
   if (parent === window) return;
   /** @type {Record<string, (value: any) => unknown>} */

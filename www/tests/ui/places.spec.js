@@ -1,6 +1,6 @@
 /** A press on a figure of the spacing shows the place in the picture. */
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, openFigures, scan, state } from './helpers.js';
+import { afresh, atRest, open, openFigures, scan, settled, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -78,6 +78,18 @@ test('places that are pointed out', async ({ page }) => {
     await expect(hole).toBeFocused();
     await page.keyboard.press('Enter');
     await expect(page.locator('.marks .marked')).toHaveCount(1);
+    // While a run has no figures yet, those of the last one cannot be pressed: their particles are gone.
+    const disabled = await page.evaluate(async () => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const shows = [...document.querySelectorAll('.shows')];
+      const now = () => shows.map((button) => button.getAttribute('aria-disabled'));
+      const before = now();
+      engine.run();
+      while (engine.report.value) await new Promise((go) => setTimeout(go));
+      return { before: new Set(before).has('true'), during: new Set(now()).has('false') };
+    });
+    expect(disabled).toEqual({ before: false, during: false });
+    await settled(page);
     await page.getByRole('button', { name: 'Generate only' }).click();
     await expect(page.locator('.marks .marked')).toHaveCount(0);
     // Without a relaxation the places are those of the front.

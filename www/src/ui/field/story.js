@@ -26,7 +26,7 @@ export function storyOf(description, id, info) {
     return {
       name: 'Your own formula',
       facts: '',
-      text: 'The surface where the formula below is zero. Names other than x, y and z become sliders.',
+      text: 'The surface where the formula is zero. Names other than x, y and z become sliders.',
       credit: '',
     };
   const facts = [

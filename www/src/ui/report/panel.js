@@ -35,8 +35,9 @@ export function mountReport(body, engine, description) {
     return kept;
   });
   const counted = computed(() => (engine.busy.value || !engine.report.value ? engine.progress.value.particles : 0));
+  const stale = computed(() => engine.report.value === null);
   live(body, () => {
-    body.classList.toggle('stale', engine.report.value === null || counted.value > 0);
+    body.classList.toggle('stale', stale.value || counted.value > 0);
   });
 
   const told = computed(() => report.value?.warnings ?? []);
@@ -64,7 +65,7 @@ export function mountReport(body, engine, description) {
     warnings,
     createPlain(report, counted),
     createAll(
-      createTable(report, description.report, { counted, show: createShow(engine, said) }),
+      createTable(report, description.report, { counted, stale, show: createShow(engine, said) }),
       said,
       createTiming(engine, report),
       createHistogram(report, engine),
@@ -136,7 +137,6 @@ function createShow(engine, said) {
   let last = { list: null, next: 0 };
   return (/** @type {ReportRow} */ row) => {
     const list = listOf(engine.report.peek(), row.places);
-    // During a run the figures are those of earlier particles.
     if (list.length === 0) return;
     const index = last.list === list ? last.next : 0;
     const place = placeOf(list, index, engine.columns);

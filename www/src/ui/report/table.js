@@ -48,7 +48,7 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  * @param {ReportRow} row
  * @param {Parameters<typeof createTable>[2]} parts
  */
-function createRow(report, row, { counted, show }) {
+function createRow(report, row, { counted, show, stale }) {
   const help = () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) });
   const figures = computed(() => {
     const found = report.value && figuresOf(report.value, row.key);
@@ -72,7 +72,7 @@ function createRow(report, row, { counted, show }) {
     h(
       'td',
       { class: 'now', data: { change }, colspan: () => (!paired && wide() ? 2 : 1) },
-      figureOf(now, () => listOf(report.value, row.places).length > 0, { row, show }),
+      figureOf(now, () => listOf(report.value, row.places).length > 0, { row, show, stale }),
     ),
   );
 }
@@ -83,16 +83,27 @@ const unitOf = (unit) => h('span', { class: 'unit' }, `\u00a0${unit}`);
 /**
  * A figure, as a button if it has places in the picture. The button keeps the focus when a new report changes its text.
  * @param {() => string} text @param {() => boolean} isPlaced
- * @param {{ row: ReportRow, show: (row: ReportRow) => void }} parts
+ * @param {{ row: ReportRow } & Pick<TableOptions, 'show' | 'stale'>} parts
  */
-function figureOf(text, isPlaced, { row, show }) {
+function figureOf(text, isPlaced, { row, show, stale }) {
   const hasPlaces = computed(isPlaced);
   const label = () => `${row.label} ${text()}, show it in the picture`;
   const press = () => show(row);
   return () => {
     if (!hasPlaces.value) return text();
     return explain(
-      h('button', { type: 'button', class: 'shows', 'aria-label': label, on: { click: press } }, text),
+      h(
+        'button',
+        // During a run the figure is that of earlier particles, whose places are no longer there.
+        {
+          type: 'button',
+          class: 'shows',
+          'aria-label': label,
+          'aria-disabled': () => String(stale.value),
+          on: { click: press },
+        },
+        text,
+      ),
       () => ({ title: 'Show it in the picture', text: 'The worst place comes first; press again for the next one.' }),
       { side: 'left' },
     );
