@@ -276,8 +276,18 @@ async fn of_file(
     let mesh = reader.read(status.begin(&READING)).await?;
     info.points = mesh.position.len() as u32;
     let has_faces = !mesh.faces.is_empty();
-    let (cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
+    let on_faces = mesh.on_faces().await;
+    let (mut cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
     info.warnings = warnings;
+    if !(cloud.normal.is_empty() || on_faces.is_empty()) {
+        let count = on_faces.len();
+        info.points += count as u32;
+        info.warnings.push(format!(
+            "{count} points were put on faces that are large, so that the surface follows these."
+        ));
+        cloud.position.extend(on_faces.position);
+        cloud.normal.extend(on_faces.normal);
+    }
     let mut cloud = merge(cloud, status.begin(&MERGING)).await?;
     check_spread(&cloud.position)?;
     info.warnings.extend(bring_near(&mut cloud.position));
@@ -302,8 +312,10 @@ async fn of_cloud(
     info: ModelInfo,
     status: Rc<JobStatus>,
 ) -> Result<Fit, JobError> {
-    if wanted < cloud.len() {
-        cloud = cloud.only(&spread(&cloud.position, wanted, status.begin(&SPREADING)).await);
+    // Of points that all but coincide one is chosen, however few there are.
+    let chosen = spread(&cloud.position, wanted, status.begin(&SPREADING)).await;
+    if chosen.len() < cloud.len() {
+        cloud = cloud.only(&chosen);
     }
     status.centres.get_or_init(|| cloud.position.clone());
     // Those of a file are counted before equal ones are joined.

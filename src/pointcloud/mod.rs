@@ -21,7 +21,8 @@ use glam::DVec3;
 use job::{Job, JobError};
 
 /// Fits a surface to the points of a file: PLY, OBJ, STL or XYZ, as the `name` or the content says. It goes through `centres` of them,
-/// as far from each other as can be. Normals come from the file, else from its faces, else they are estimated.
+/// as far from each other as can be. Normals come from the file, else from its faces, else they are estimated. Large faces are given
+/// more points, so that the surface follows them.
 ///
 /// # Errors
 ///

@@ -290,3 +290,45 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_surface_follows_large_faces_between_few_corners() {
+    /// Corners of a washer, an inner and an outer ring at either end, as many as a circle needs.
+    const STEPS: u32 = 48;
+    let mut text = String::new();
+    for (radius, z) in [(1.0, -0.2), (1.0, 0.2), (0.4, 0.2), (0.4, -0.2)] {
+        for k in 0..STEPS {
+            let (sine, cosine) = (f64::from(k) * core::f64::consts::TAU / f64::from(STEPS)).sin_cos();
+            let _ = writeln!(text, "v {} {} {z}", radius * cosine, radius * sine);
+        }
+    }
+    // The last corner comes again, but for its last digit, as files have it.
+    let _ = writeln!(text, "v 1.0000000000000002 0 -0.2");
+    for ring in 0..4 {
+        for k in 0..STEPS {
+            let [a, b] = [k, (k + 1) % STEPS].map(|k| ring * STEPS + k + 1);
+            let [c, d] = [a, b].map(|corner| (corner + STEPS - 1) % (4 * STEPS) + 1);
+            let a = if (ring, k) == (0, 0) { 4 * STEPS + 1 } else { a };
+            let _ = writeln!(text, "f {a} {b} {d} {c}");
+        }
+    }
+    let fit = run(Job::file("washer.obj", text.into(), DEFAULT_CENTRES).expect("a good file"), 1000)
+        .expect("a field");
+    assert!(
+        fit.info.warnings.iter().any(|warning| warning.contains("put on faces")),
+        "{:?}",
+        fit.info.warnings
+    );
+    // The distance is measured on the faces, too: edges are rounded.
+    assert!(fit.info.residual_max > 1e-3 && fit.info.residual_max < 0.04, "{}", fit.info.residual_max);
+    let mut field = RbfField::new(fit.data).expect("a field");
+    for (p, is_inside) in [
+        ([0.0, 0.0, 0.0], false),
+        ([0.0, 0.2, 0.0], false),
+        ([0.7, 0.0, 0.0], true),
+        ([0.0, -0.7, 0.1], true),
+        ([0.7, 0.0, 0.3], false),
+    ] {
+        assert_eq!(field.value_and_gradient(p.into()).0 < 0.0, is_inside, "{p:?}");
+    }
+}

@@ -510,7 +510,7 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
             b"\x1f\x8b\x08",
             "this is a gzip archive, and what is read is PLY, OBJ, STL and XYZ; unpack it first",
         ),
-        (b"\x93NUMPY\x01\x00", "this is a NumPy array"),
+        (b"\x93NUMPY\x01\x00", "save one of points as text, a row a line, as XYZ; a volume cannot be read"),
         (b"glTF\x02\x00", "this is a binary glTF file"),
         (b"\xff\xfe1\x00 \x00", "this is text in UTF-16"),
         (b"\x00\x01\x02\x03", "this is a binary file of no known kind"),

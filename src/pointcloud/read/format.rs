@@ -62,7 +62,11 @@ const KNOWN: [(&[u8], &str, &str); 17] = [
     (b"LASF", "a LAS point cloud", CONVERT),
     (b"ASTM-E57", "an E57 point cloud", CONVERT),
     (b"Kaydara FBX", "an FBX file", CONVERT),
-    (b"\x93NUMPY", "a NumPy array", "save its rows as text, one point a line, as XYZ"),
+    (
+        b"\x93NUMPY",
+        "a NumPy array",
+        "save one of points as text, a row a line, as XYZ; a volume cannot be read",
+    ),
     (b"PK\x03\x04", "a ZIP archive (3MF and USDZ are such)", "unpack it, or export it as PLY"),
     (b"\x1f\x8b", "a gzip archive", "unpack it first"),
     (b"BZh", "a bzip2 archive", "unpack it first"),
