@@ -9,7 +9,7 @@ use crate::pointcloud::job;
 use crate::quality::Measurements;
 use crate::run::{MeshAnswer, Report, Start};
 use crate::sampler::Progress;
-use crate::session::{Description, Fault, FieldAnswer, FieldRequest};
+use crate::session::{Description, Fault, FieldAnswer, FieldRequest, FileRecord, FileRequest};
 use std::collections::BTreeMap;
 use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
@@ -76,6 +76,8 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Description>();
     declarations.add::<FieldRequest>();
     declarations.add::<FieldAnswer>();
+    declarations.add::<FileRequest>();
+    declarations.add::<FileRecord>();
     declarations.add::<Fault>();
     declarations.add::<Start>();
     declarations.add::<Progress>();

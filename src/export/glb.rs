@@ -2,6 +2,7 @@
 //!
 //! The specification is Khronos', <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
+use super::RecordText;
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use std::io::{self, Write};
@@ -31,10 +32,15 @@ struct BufferColumn {
 
 /// Writes the triangles with the normals of the particles, their generation levels as colours and, for programs, as the
 /// attribute `_LEVEL`. The z axis, which points up here, is turned to glTF's y. A mesh without triangles is an empty scene.
-pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(
+    particles: &Particles,
+    triangles: &[[u32; 3]],
+    record: &RecordText,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let columns = columns(particles, triangles);
     let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
-    let mut text = document(&columns, length, particles.origin).into_bytes();
+    let mut text = document(&columns, length, particles.origin, record).into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     // The header, then each part after its length and its kind.
     let whole = 12 + 8 + text.len() + if length > 0 { 8 + length } else { 0 };
@@ -94,8 +100,9 @@ fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<BufferColumn> {
 }
 
 /// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.
-fn document(columns: &[BufferColumn], length: usize, origin: DVec3) -> String {
-    let asset = r#""asset":{"version":"2.0","generator":"Marching Particles"},"scene":0"#;
+fn document(columns: &[BufferColumn], length: usize, origin: DVec3, record: &RecordText) -> String {
+    let extras = record.member();
+    let asset = format!(r#""asset":{{"version":"2.0","generator":"Marching Particles"{extras}}},"scene":0"#);
     if columns.is_empty() {
         return format!(r#"{{{asset},"scenes":[{{}}]}}"#);
     }
@@ -120,7 +127,7 @@ fn document(columns: &[BufferColumn], length: usize, origin: DVec3) -> String {
         format!(r#","translation":[{},{},{}]"#, origin.x, origin.z, -origin.y)
     };
     let members = [
-        asset.to_owned(),
+        asset,
         r#""scenes":[{"nodes":[0]}]"#.to_owned(),
         format!(r#""nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]{translation}}}]"#),
         format!(

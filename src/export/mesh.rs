@@ -1,6 +1,6 @@
-//! Triangle meshes of particles as files: GLB, OBJ, STL and PLY.
+//! Triangle meshes of particles as files, and the formats of text and STL among them.
 
-use super::glb;
+use super::{File, Placement, RecordText};
 use crate::particles::Particles;
 use crate::quality;
 use core::ops::Range;
@@ -17,12 +17,19 @@ pub enum MeshFormat {
     Stl,
     /// Binary little-endian PLY: the columns of the particles, and the triangles.
     Ply,
+    /// 3MF: triangles and their unit, for printers.
+    ThreeMf,
 }
 
 impl MeshFormat {
     /// Every format with its file name extension.
-    pub const ALL: [(&str, Self); 4] =
-        [("glb", Self::Glb), ("obj", Self::Obj), ("stl", Self::Stl), ("ply", Self::Ply)];
+    pub const ALL: [(&str, Self); 5] = [
+        ("glb", Self::Glb),
+        ("3mf", Self::ThreeMf),
+        ("stl", Self::Stl),
+        ("obj", Self::Obj),
+        ("ply", Self::Ply),
+    ];
 
     /// The format that a file name's extension stands for, in either case; none for any other.
     #[must_use]
@@ -33,8 +40,8 @@ impl MeshFormat {
 
 /// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
 /// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every row of a particle is a vertex, so that normals are
-/// split at creases, whether it is in a
-/// triangle or not, so that indices stay. `measured` is as for [`write`](super::write).
+/// split at creases, whether it is in a triangle or not, so that indices stay; but in 3MF, which has no normals, every particle is one.
+/// `measured` is as for [`write`](super::write). All formats but STL carry the `record`.
 ///
 /// # Errors
 ///
@@ -48,48 +55,24 @@ pub fn write_mesh(
     particles: &Particles,
     measured: &quality::Measurements,
     triangles: &[[u32; 3]],
+    placement: &Placement,
+    record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let all = rows(format, particles, triangles);
-    write_rows(format, particles, measured, triangles, 0..all, out)
+    let placed = placement.placed(format, particles, measured);
+    let (particles, measured) = placed.as_ref().map_or((particles, measured), |(p, m)| (p, m));
+    File { format, particles, measured, triangles, placement, record }.write(out)
 }
 
-/// Number of rows of a file: a row takes up to a microsecond to write, but for GLB, which is written as a whole.
-pub(crate) fn rows(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> usize {
-    match format {
-        MeshFormat::Glb => 1,
-        MeshFormat::Obj => 2 * particles.len() + triangles.len(),
-        MeshFormat::Stl => triangles.len(),
-        MeshFormat::Ply => particles.len() + triangles.len(),
-    }
-}
-
-/// Writes some of the rows of a file, those at the start with what comes before them. One part after the other they make the file
-/// of [`write_mesh`], with its errors.
-pub(crate) fn write_rows(
-    format: MeshFormat,
-    particles: &Particles,
-    measured: &quality::Measurements,
-    triangles: &[[u32; 3]],
-    rows: Range<usize>,
-    out: &mut dyn Write,
-) -> io::Result<()> {
-    match format {
-        MeshFormat::Glb => glb::write(particles, triangles, out),
-        MeshFormat::Obj => obj(particles, triangles, rows, out),
-        MeshFormat::Stl => stl(particles, triangles, rows, out),
-        MeshFormat::Ply => super::ply(particles, measured, Some(triangles), rows, out),
-    }
-}
-
-fn obj(
+pub(super) fn obj(
     particles: &Particles,
     triangles: &[[u32; 3]],
+    record: &RecordText,
     rows: Range<usize>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     if rows.start == 0 {
-        writeln!(out, "# Marching Particles")?;
+        write!(out, "# Marching Particles\n{}", record.comment("#"))?;
     }
     let n = particles.len();
     for row in rows {
@@ -111,7 +94,7 @@ fn obj(
     Ok(())
 }
 
-fn stl(
+pub(super) fn stl(
     particles: &Particles,
     triangles: &[[u32; 3]],
     rows: Range<usize>,

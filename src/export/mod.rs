@@ -1,11 +1,17 @@
-//! Export of particles to PLY, CSV, XYZ and NPY, and of triangle meshes over them to GLB, OBJ, STL and PLY.
+//! Export of particles to PLY, CSV, XYZ and NPY, and of triangle meshes over them to GLB, OBJ, STL, PLY and 3MF.
 
+mod file;
 mod glb;
 mod mesh;
+mod placement;
+mod record;
+mod three_mf;
 
 pub use mesh::{MeshFormat, write_mesh};
+pub use placement::{Placement, Unit, UpAxis};
+pub use record::RecordText;
 
-pub(crate) use mesh::{rows, write_rows};
+pub(crate) use file::File;
 
 use crate::particles::Particles;
 use crate::quality;
@@ -185,7 +191,7 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iter
 
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them: where it is empty, its columns are left
 /// out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the
-/// same bits.
+/// same bits. PLY and CSV carry the `record`, in a comment.
 ///
 /// # Errors
 ///
@@ -194,11 +200,12 @@ pub fn write(
     format: Format,
     particles: &Particles,
     measured: &quality::Measurements,
+    record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
-        Format::Ply => ply(particles, measured, None, 0..particles.len(), out),
-        Format::Csv => csv(particles, measured, out),
+        Format::Ply => ply(particles, measured, None, record, 0..particles.len(), out),
+        Format::Csv => csv(particles, measured, record, out),
         Format::Xyz => xyz(particles, out),
         Format::Npy => npy(particles, out),
     }
@@ -208,12 +215,13 @@ fn ply(
     particles: &Particles,
     measured: &quality::Measurements,
     triangles: Option<&[[u32; 3]]>,
+    record: &RecordText,
     rows: Range<usize>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let n = particles.len();
     if rows.start == 0 {
-        ply_header(particles, measured, triangles, out)?;
+        ply_header(particles, measured, triangles, record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         for column in columns(particles, measured) {
@@ -235,9 +243,11 @@ fn ply_header(
     particles: &Particles,
     measured: &quality::Measurements,
     triangles: Option<&[[u32; 3]]>,
+    record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
+    write!(out, "{}", record.comment("comment"))?;
     writeln!(out, "element vertex {}", particles.len())?;
     for column in columns(particles, measured) {
         let kind = match column.kind {
@@ -255,9 +265,14 @@ fn ply_header(
     writeln!(out, "end_header")
 }
 
-fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
+fn csv(
+    particles: &Particles,
+    measured: &quality::Measurements,
+    record: &RecordText,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let names: Vec<&str> = columns(particles, measured).map(|column| column.name).collect();
-    writeln!(out, "{}", names.join(","))?;
+    writeln!(out, "{}{}", record.comment("#"), names.join(","))?;
     for i in 0..particles.len() {
         for (k, column) in columns(particles, measured).enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;
@@ -331,7 +346,8 @@ mod tests {
             residual: vec![1e-7],
             ..quality::Measurements::default()
         };
-        write(format, &two(), &measured, &mut out).expect("writing to memory does not fail");
+        write(format, &two(), &measured, &RecordText::default(), &mut out)
+            .expect("writing to memory does not fail");
         out
     }
 
@@ -390,7 +406,7 @@ mod tests {
         particles.position[1] = particles.position[0];
         (particles.patch, particles.twins) = (vec![4, 9], vec![0, 0]);
         let mut out = Vec::new();
-        write(Format::Csv, &particles, &quality::Measurements::default(), &mut out)
+        write(Format::Csv, &particles, &quality::Measurements::default(), &RecordText::default(), &mut out)
             .expect("writing to memory does not fail");
         let text = String::from_utf8(out).expect("text");
         let lines: Vec<&str> = text.lines().collect();

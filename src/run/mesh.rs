@@ -1,11 +1,12 @@
 //! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when they change.
 
 use super::Run;
-use crate::export::{MeshFormat, rows, write_rows};
+use crate::export::{File, MeshFormat, Placement, RecordText};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::mesh::build::{self, MeshOptions, Triangulation};
 use crate::particles::Particles;
+use crate::quality::Measurements;
 use crate::slices::{self, Work};
 use crate::topology::Component;
 use serde::Serialize;
@@ -31,6 +32,10 @@ pub struct MeshAnswer {
     pub left_out: usize,
     /// [Volume](Triangulation::volume) that the mesh encloses; none where it is open.
     pub volume: Option<f64>,
+    /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles.
+    pub smallest_angle: Option<f64>,
+    /// Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest.
+    pub loops: Vec<Vec<u32>>,
 }
 
 /// A connected part of a mesh.
@@ -49,7 +54,7 @@ pub struct MeshComponent {
 #[derive(Default)]
 pub(super) struct Meshing {
     state: MeshState,
-    file: Option<File>,
+    file: Option<Begun>,
 }
 
 #[derive(Default)]
@@ -98,18 +103,25 @@ impl Meshing {
     }
 }
 
+/// A mesh file that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileWish {
+    /// Its format.
+    pub format: MeshFormat,
+    /// Size and orientation of the mesh in it.
+    pub placement: Placement,
+    /// What it can be made again from.
+    pub record: RecordText,
+}
+
 /// A mesh file that is being written.
-struct File {
-    format: MeshFormat,
+struct Begun {
+    wish: FileWish,
+    /// The particles as they are in the file, where that is not as they are in the run.
+    placed: Option<(Particles, Measurements)>,
     /// Number of rows that are written.
     next: usize,
     bytes: Vec<u8>,
-}
-
-impl File {
-    fn new(format: MeshFormat) -> Self {
-        Self { format, next: 0, bytes: Vec::new() }
-    }
 }
 
 impl MeshAnswer {
@@ -121,6 +133,8 @@ impl MeshAnswer {
             euler: component.euler(),
             open_edges: component.border_edges,
         };
+        let mut loops = mesh.topology.borders.clone();
+        loops.sort_by_key(|border| (!mesh.unfilled.contains(border), core::cmp::Reverse(border.len())));
         Self {
             triangles: mesh.triangles.len(),
             components: mesh.topology.components.iter().map(component).collect(),
@@ -128,6 +142,8 @@ impl MeshAnswer {
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
             volume: mesh.volume(particles),
+            smallest_angle: mesh.smallest_angle(particles),
+            loops,
         }
     }
 }
@@ -155,22 +171,32 @@ impl<F: Field> Run<F> {
     }
 
     /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of a thousand rows each; the
-    /// file, once it is complete. Another format, or a change of the particles, begins a file anew.
+    /// file, once it is complete. Another wish, or a change of the particles, begins a file anew.
     ///
     /// # Errors
     ///
     /// An error if the 32-bit counters of the format are too small.
-    pub fn mesh_file(&mut self, format: MeshFormat, budget: u32) -> io::Result<Option<Vec<u8>>> {
-        let begun = self.meshing.file.take().filter(|file| file.format == format);
-        let File { next, mut bytes, .. } = begun.unwrap_or(File::new(format));
-        let (particles, measured, triangles) = (self.particles(), self.measured(), self.triangles());
-        let all = rows(format, particles, triangles);
-        let end = all.min(next.saturating_add(ROWS.saturating_mul(budget as usize)));
-        write_rows(format, particles, measured, triangles, next..end, &mut bytes)?;
+    pub fn mesh_file(&mut self, wish: &FileWish, budget: u32) -> io::Result<Option<Vec<u8>>> {
+        let begun = self.meshing.file.take().filter(|begun| begun.wish == *wish);
+        let mut begun = begun.unwrap_or_else(|| Begun {
+            wish: wish.clone(),
+            placed: wish.placement.placed(wish.format, self.particles(), self.measured()),
+            next: 0,
+            bytes: Vec::new(),
+        });
+        let own = (self.particles(), self.measured());
+        let (particles, measured) = begun.placed.as_ref().map_or(own, |(p, m)| (p, m));
+        let FileWish { format, placement, record } = wish;
+        let file =
+            File { format: *format, particles, measured, triangles: self.triangles(), placement, record };
+        let all = file.rows();
+        let end = all.min(begun.next.saturating_add(ROWS.saturating_mul(budget as usize)));
+        file.write_rows(begun.next..end, &mut begun.bytes)?;
         if end == all {
-            return Ok(Some(bytes));
+            return Ok(Some(begun.bytes));
         }
-        self.meshing.file = Some(File { format, next: end, bytes });
+        begun.next = end;
+        self.meshing.file = Some(begun);
         Ok(None)
     }
 }

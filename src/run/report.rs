@@ -32,6 +32,8 @@ pub struct Report {
     pub measures: Measures,
     /// Volume that the mesh encloses; none where it is open, or the particles are not joined to one.
     pub volume: Option<f64>,
+    /// Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one.
+    pub smallest_angle: Option<f64>,
     /// Particles with a child that fell outside of the box.
     pub border: usize,
     /// Why particles lie at the border of the box.
@@ -231,6 +233,7 @@ impl<F: Field> Run<F> {
                 places,
             },
             volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
+            smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             border,
             cut: self.cut().filter(|_| border > 0),
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),

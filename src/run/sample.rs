@@ -2,7 +2,7 @@
 
 use super::mesh::Meshing;
 use super::{Error, Report, Run, Warning};
-use crate::export::{self, Format, MeshFormat};
+use crate::export::{self, Format, MeshFormat, Placement, RecordText};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
@@ -116,7 +116,7 @@ impl Sample {
     ///
     /// The errors of `out`.
     pub fn write(&self, format: Format, out: &mut dyn Write) -> io::Result<()> {
-        export::write(format, &self.particles, &self.measured, out)
+        export::write(format, &self.particles, &self.measured, &RecordText::default(), out)
     }
 
     /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered.
@@ -125,6 +125,8 @@ impl Sample {
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub fn write_mesh(&self, format: MeshFormat, out: &mut dyn Write) -> io::Result<()> {
-        export::write_mesh(format, &self.particles, &self.measured, &self.mesh().triangles, out)
+        let (placement, record) = (Placement::default(), RecordText::default());
+        let triangles = &self.mesh().triangles;
+        export::write_mesh(format, &self.particles, &self.measured, triangles, &placement, &record, out)
     }
 }

@@ -303,12 +303,22 @@ const REPORT: &[ReportRow] = &[
         ("60°", HIGHER),
         "Mean over the triangles of natural neighbours of their smallest angle.",
     ),
+    ReportRow {
+        unless: Some("smallest_angle"),
+        ..row(
+            "quality.ang_min",
+            "Smallest angle",
+            ("Triangles", "°", 1),
+            ("60°", HIGHER),
+            "Smallest angle of any triangle of natural neighbours.",
+        )
+    },
     row(
-        "quality.ang_min",
+        "smallest_angle",
         "Smallest angle",
-        ("Triangles", "°", 1),
+        ("Mesh", "°", 1),
         ("60°", HIGHER),
-        "Smallest angle of any triangle of natural neighbours.",
+        "Smallest angle of any triangle of the mesh, as it stands in its file: those at its border among them, which the other figures leave out.",
     ),
     row(
         "quality.lt30",

@@ -4,11 +4,13 @@
 mod describe;
 mod fault;
 mod fitting;
+mod record;
 mod setting;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
 pub use fitting::{BoxFaces, BoxMode, SolidSettings};
+pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
 };
@@ -148,6 +150,8 @@ pub struct Session {
     /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
+    /// What the particles are made from.
+    made: Option<FileRecord>,
 }
 
 impl Default for Session {
@@ -169,6 +173,7 @@ impl Session {
             clip: surface.bounds,
             reach: None,
             fitting: Fitting::default(),
+            made: None,
         }
     }
 
@@ -383,6 +388,7 @@ impl Session {
             self.fit(settings, false, u32::MAX);
         }
         self.fitting.is_settled = false;
+        self.made = Some(self.beginning(settings));
         self.run.begin(settings)
     }
 

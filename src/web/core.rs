@@ -1,11 +1,12 @@
 //! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
 use super::values::{answer, to_js};
-use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::sampler::Settings;
-use crate::session::{Fault, FaultKind, FieldRequest, Session, SolidSettings, describe};
+use crate::session::{
+    Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
+};
 use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
@@ -19,8 +20,10 @@ const TYPES: &str = r"import type {
   Fault,
   FieldAnswer,
   FieldRequest,
+  FileRequest,
   MeshAnswer,
   Progress,
+  FileRecord,
   Report,
   SolvedModel,
   Start,
@@ -246,16 +249,29 @@ impl Core {
         self.session.run.triangles().as_flattened().to_vec()
     }
 
-    /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
-    /// undefined before; null for another extension or if it is too large.
+    /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is
+    /// complete, undefined before; null for another extension or if it is too large.
     #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
-    pub fn mesh_file(&mut self, extension: &str, budget: u32) -> JsValue {
-        let Some(format) = MeshFormat::of_extension(extension) else { return JsValue::NULL };
-        match self.session.run.mesh_file(format, budget) {
-            Ok(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
-            Ok(None) => JsValue::UNDEFINED,
-            Err(_) => JsValue::NULL,
+    pub fn mesh_file(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FileRequest>")] request: JsValue,
+        budget: u32,
+    ) -> JsValue {
+        let Ok(request) = read::<FileRequest>(request, FaultKind::Request) else { return JsValue::NULL };
+        let json = |record: &FileRecord| {
+            js_sys::JSON::stringify(&to_js(record)).expect("a record is an object without cycles").into()
+        };
+        match self.session.mesh_file(&request, json, budget) {
+            Some(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
+            Some(None) => JsValue::NULL,
+            None => JsValue::UNDEFINED,
         }
+    }
+
+    /// The record of what the particles were made from, for their files: `FileRecord`; null before the first run.
+    #[wasm_bindgen(unchecked_return_type = "FileRecord | null")]
+    pub fn record(&self) -> JsValue {
+        to_js(&self.session.record(None))
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

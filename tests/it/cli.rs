@@ -128,13 +128,14 @@ fn files_hold_every_particle() {
     assert!((share - run["quality"]["six"].as_f64().expect("a share")).abs() < 1e-9);
 
     let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
-    assert_eq!((lines(&csv), lines(&xyz)), (count + 1, count));
+    // The record, the names of the columns, and a line for each particle.
+    assert_eq!((lines(&csv), lines(&xyz)), (count + 2, count));
     assert_eq!((npy.len() - 24 * count) % 64, 0);
 }
 
 #[test]
 fn mesh_files_hold_a_closed_mesh() {
-    let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY"].map(file);
+    let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY", "tube.3mf"].map(file);
     let mut arguments = vec!["--surface", "torus", "--radius", "1%"];
     for path in &files {
         arguments.extend(["--mesh", path.to_str().expect("a plain path")]);
@@ -146,9 +147,14 @@ fn mesh_files_hold_a_closed_mesh() {
     for (key, expected) in [("components", 1), ("euler", 0), ("borders", 0), ("holes", 0), ("left_out", 0)] {
         assert_eq!(mesh[key], expected, "{key}");
     }
-    assert_eq!(run["files"].as_array().map(Vec::len), Some(4));
-    let [glb, obj, stl, ply] = files.map(|path| std::fs::read(path).expect("the file was written"));
-    assert!(glb.starts_with(b"glTF") && obj.starts_with(b"# ") && ply.starts_with(b"ply\n"));
+    assert_eq!(run["files"].as_array().map(Vec::len), Some(5));
+    let [glb, obj, stl, ply, three_mf] = files.map(|path| std::fs::read(path).expect("the file was written"));
+    assert!(
+        three_mf.starts_with(b"PK")
+            && glb.starts_with(b"glTF")
+            && obj.starts_with(b"# ")
+            && ply.starts_with(b"ply\n")
+    );
     let triangles = mesh["triangles"].as_u64().expect("a count") as usize;
     assert_eq!(stl.len(), 84 + 50 * triangles);
     assert_eq!(String::from_utf8_lossy(&obj).matches("\nf ").count(), triangles);
@@ -160,7 +166,47 @@ fn mesh_files_hold_a_closed_mesh() {
     let text = run_text(&["--surface", "schwarz-p", "--count", "3000", "--mesh"], "cut.obj");
     assert!(text.contains("1 component, Euler number -32, 24 border loops"), "{text}");
     let message = fails(2, &["sample", "--surface", "torus", "--mesh", "torus.xyz"]);
-    assert!(message.contains("glb, obj, stl, ply"), "{message}");
+    assert!(message.contains("glb, 3mf, stl, obj, ply"), "{message}");
+}
+
+#[test]
+fn a_file_says_how_to_make_it_again() {
+    let path = |name: &str| file(name).to_str().expect("a plain path").to_owned();
+    let files = ["again.glb", "again.obj", "again.ply", "again.3mf"].map(path);
+    let points = ["again-points.csv", "again-points.ply"].map(path);
+    let mut arguments =
+        vec!["--formula", "x^2 + |y|^k + z^2 = 0.3", "--param", "k=2.5", "--closed", "--box", "0.4"];
+    arguments.extend(["--radius", "0.021", "--seed", "4"]);
+    files.iter().for_each(|path| arguments.extend(["--mesh", path]));
+    points.iter().for_each(|path| arguments.extend(["--out", path]));
+    let made = sample(&arguments);
+    for path in files.iter().chain(&points) {
+        let again = sample(&["--like", path]);
+        for key in ["digest", "formula", "parameters", "bounds", "settings"] {
+            assert_eq!(again[key], made[key], "{key} of {path}");
+        }
+    }
+    // What else is given takes the place of the file's.
+    let other = sample(&["--like", &files[0], "--param", "k=3", "--radius", "0.03"]);
+    assert_eq!((&other["parameters"]["k"], &other["settings"]["seed"]), (&3.0.into(), &4.into()));
+    assert_ne!(other["digest"], made["digest"]);
+    let settings = &sample(&["--like", &files[0], "--surface", "torus"]);
+    assert_eq!((&settings["surface"], &settings["settings"]["seed"]), (&"torus".into(), &4.into()));
+
+    // A fitted box and a surface of the gallery with its own box and values.
+    for (arguments, name) in [
+        (vec!["--formula", "x^4 + y^4 + z^4 = 1", "--count", "900"], "fitted.glb"),
+        (vec!["--surface", "gyroid", "--thickness", "0.6", "--radius", "2%"], "sheet.glb"),
+    ] {
+        let path = path(name);
+        let made = sample(&[&arguments[..], &["--mesh", &path]].concat());
+        assert_eq!(sample(&["--like", &path])["digest"], made["digest"], "{name}");
+    }
+
+    let plain = path("plain.stl");
+    sample(&["--surface", "sphere", "--mesh", &plain]);
+    let message = fails(2, &["sample", "--like", &plain]);
+    assert!(message.contains("holds no record"), "{message}");
 }
 
 /// Runs `sample` with a file as the last argument; the text that it prints.
@@ -199,7 +245,7 @@ fn existing_file_is_replaced() {
     std::fs::write(&path, "old ".repeat(1_000_000)).expect("the directory can be written");
     sample(&["--surface", "sphere", "--radius", "5%", "--out", path.to_str().expect("a plain path")]);
     let text = std::fs::read_to_string(&path).expect("the file is there");
-    assert!(text.starts_with("x,y,z,") && !text.contains("old"));
+    assert!(text.contains("\nx,y,z,") && !text.contains("old"));
 }
 
 #[test]
@@ -241,6 +287,8 @@ fn a_run_without_a_report_has_the_same_particles_and_says_what_is_missing() {
         (&measured["search"], &measured["level_counts"])
     );
     let text = std::fs::read_to_string(&path).expect("the file was written");
+    let (record, text) = text.split_once('\n').expect("lines");
+    assert!(record.starts_with("# marching_particles {"));
     assert_eq!(text.lines().next(), Some("x,y,z,nx,ny,nz,radius,level,parent,singular"));
     assert!(text.lines().all(|line| line.split(',').count() == 10));
     let summary = stdout(&run(&[&["sample", "--no-report"], &arguments[..]].concat()));

@@ -156,7 +156,8 @@ fn files_hold_far_places_in_double_precision() {
     let (particles, measured) = (session.run.particles(), session.run.measured());
     let file = |format: Format| {
         let mut bytes = Vec::new();
-        export::write(format, particles, measured, &mut bytes).expect("memory does not run out");
+        export::write(format, particles, measured, &export::RecordText::default(), &mut bytes)
+            .expect("memory does not run out");
         bytes
     };
     let on_sphere = |p: DVec3, what: &str| {
@@ -191,6 +192,8 @@ fn files_hold_far_places_in_double_precision() {
             particles,
             &quality::Measurements::default(),
             session.run.triangles(),
+            &export::Placement::default(),
+            &export::RecordText::default(),
             &mut bytes,
         )
         .expect("memory does not run out");

@@ -1,14 +1,14 @@
 //! Mesh files, read back. `cargo xtask test gltf` gives the GLB files that this writes to Khronos' validator.
 
 use glam::Vec3;
-use marching_particles::export::{MeshFormat, write_mesh};
+use marching_particles::export::{MeshFormat, Placement, RecordText, Unit, UpAxis, write_mesh};
 use marching_particles::field::gallery;
 use marching_particles::mesh::build::{MeshOptions, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::{Sampler, Settings};
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
@@ -26,9 +26,19 @@ fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
 }
 
 fn written(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> Vec<u8> {
+    placed(format, particles, triangles, &Placement::default())
+}
+
+fn placed(
+    format: MeshFormat,
+    particles: &Particles,
+    triangles: &[[u32; 3]],
+    placement: &Placement,
+) -> Vec<u8> {
     let mut out = Vec::new();
-    let measured = quality::Measurements::default();
-    write_mesh(format, particles, &measured, triangles, &mut out).expect("writing to memory does not fail");
+    let (measured, record) = (quality::Measurements::default(), RecordText::default());
+    write_mesh(format, particles, &measured, triangles, placement, &record, &mut out)
+        .expect("writing to memory does not fail");
     out
 }
 
@@ -171,6 +181,86 @@ fn ply_holds_the_columns_and_the_triangles() {
     let record = (bytes.len() - faces.len() - end) / particles.len();
     for (k, row) in bytes[end..bytes.len() - faces.len()].chunks_exact(record).enumerate() {
         assert_eq!(vectors(&row[..24]), [particles.position[k], particles.normal[k]]);
+    }
+}
+
+/// A 3MF file's documents by their names: the archive is read by its central directory, as readers do.
+fn entries(bytes: &[u8]) -> BTreeMap<String, &[u8]> {
+    let half = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+    let end = bytes.len() - 22;
+    assert_eq!(bytes[end..end + 4], *b"PK\x05\x06");
+    let mut at = word(bytes, end + 16) as usize;
+    let mut entries = BTreeMap::new();
+    for _ in 0..half(end + 10) {
+        assert_eq!(bytes[at..at + 4], *b"PK\x01\x02");
+        let (size, name_length, local) =
+            (word(bytes, at + 24) as usize, half(at + 28), word(bytes, at + 42) as usize);
+        let name = String::from_utf8(bytes[at + 46..at + 46 + name_length].to_vec()).expect("a name");
+        assert_eq!((&bytes[local..local + 4], half(local + 8)), (b"PK\x03\x04".as_slice(), 0));
+        let content = local + 30 + half(local + 26) + half(local + 28);
+        entries.insert(name, &bytes[content..content + size]);
+        at += 46 + name_length;
+    }
+    assert_eq!(at, end);
+    entries
+}
+
+/// The numbers in quotes of each element of this name.
+fn elements(model: &str, name: &str) -> Vec<Vec<f64>> {
+    let numbers =
+        |element: &str| element.split('"').skip(1).step_by(2).map(|n| n.parse().expect("a number")).collect();
+    model
+        .split(&format!("<{name} "))
+        .skip(1)
+        .map(|rest| numbers(rest.split("/>").next().expect("an end")))
+        .collect()
+}
+
+#[test]
+fn three_mf_holds_each_particle_of_a_triangle_once_with_its_unit() {
+    let (mut particles, triangles) = sampled("torus", 0.01);
+    // The last row is the same particle as the first one, as on a crease.
+    let n = particles.len();
+    particles.position[n - 1] = particles.position[0];
+    particles.twins = (0..n as u32 - 1).chain([0]).collect();
+    let placement = Placement { scale: 25.0, unit: Some(Unit::Inch), ..Placement::default() };
+    let bytes = placed(MeshFormat::ThreeMf, &particles, &triangles, &placement);
+    let entries = entries(&bytes);
+    assert!(["[Content_Types].xml", "_rels/.rels"].iter().all(|name| entries.contains_key(*name)));
+    let model = std::str::from_utf8(entries["3D/3dmodel.model"]).expect("text");
+    assert!(model.contains(r#"<model unit="inch""#));
+    let (vertices, faces) = (elements(model, "vertex"), elements(model, "triangle"));
+    assert_eq!((vertices.len(), faces.len()), (n - 1, triangles.len()));
+    for (face, triangle) in faces.iter().zip(&triangles) {
+        for (&v, &row) in face.iter().zip(triangle) {
+            let expected = particles.place(row as usize) * 25.0;
+            assert!((glam::DVec3::from_slice(&vertices[v as usize]) - expected).length() < 1e-5);
+        }
+    }
+    let none = placed(MeshFormat::ThreeMf, &particles, &[], &placement);
+    assert!(
+        std::str::from_utf8(self::entries(&none)["3D/3dmodel.model"]).expect("text").contains("<build/>")
+    );
+}
+
+#[test]
+fn meshes_are_written_in_the_size_and_orientation_asked_for() {
+    let (particles, triangles) = sampled("ellipsoid", 0.015);
+    let first = particles.position[triangles[0][0] as usize].to_array();
+    let corner = |placement: &Placement| {
+        vectors(&placed(MeshFormat::Stl, &particles, &triangles, placement)[96..108])[0]
+    };
+    for (up, [x, y, z]) in [(UpAxis::X, [1, 2, 0]), (UpAxis::Y, [2, 0, 1]), (UpAxis::Z, [0, 1, 2])] {
+        let placement = Placement { scale: 2.0, up, ..Placement::default() };
+        assert_eq!(corner(&placement), 2.0 * Vec3::new(first[x], first[y], first[z]), "{up:?}");
+    }
+    // Lengths in GLB are metres.
+    let placement = Placement { scale: 20.0, unit: Some(Unit::Millimetre), ..Placement::default() };
+    let bytes = placed(MeshFormat::Glb, &particles, &triangles, &placement);
+    let (document, buffer) = parts(&bytes);
+    let position = &document["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+    for (written, p) in vectors(column(&document, buffer, position)).iter().zip(&particles.position) {
+        assert!((*written - *p * 0.02).length() < 1e-6);
     }
 }
 

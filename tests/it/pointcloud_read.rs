@@ -296,7 +296,8 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
             continue;
         }
         let mut bytes = Vec::new();
-        export::write(format, &particles, &quality::Measurements::default(), &mut bytes)
+        let record = export::RecordText::new(r#"{"formula":"x"}"#);
+        export::write(format, &particles, &quality::Measurements::default(), &record, &mut bytes)
             .expect("writing to memory does not fail");
         let (_, mesh) = read(&format!("a.{ending}"), bytes);
         assert!(

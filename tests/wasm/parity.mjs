@@ -75,8 +75,9 @@ for (const { name, field, settings, files } of meshed) {
   while (core.measure(BUDGET) === undefined);
   while (core.join(BUDGET) === undefined);
   for (const [extension, expected] of Object.entries(files)) {
-    let file = core.mesh_file(extension, BUDGET);
-    while (file === undefined) file = core.mesh_file(extension, BUDGET);
+    const request = { format: extension, plain: true };
+    let file = core.mesh_file(request, BUDGET);
+    while (file === undefined) file = core.mesh_file(request, BUDGET);
     const found = digestOf(file);
     failures += found === expected ? 0 : 1;
     console.log(`${found === expected ? 'same' : 'DIFFERENT'}  mesh of ${name} as ${extension}: ${found}`);

@@ -1,10 +1,13 @@
 //! The command line's arguments, as clap reads and explains them.
 
 use crate::options::SamplingOptions;
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use marching_particles::export::{Placement, Unit, UpAxis};
+use marching_particles::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
-use marching_particles::session::{BoxFaces, SolidSettings};
+use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -58,6 +61,8 @@ Examples:
   marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
   marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
   marching-particles sample --surface gyroid --thickness 0.3 --closed --mesh part.stl
+  marching-particles sample --formula \"x^2 + y^2 + z^2 = 1\" --mesh ball.3mf --scale 25 --unit mm
+  marching-particles sample --like part.glb --radius 0.3% --mesh finer.glb
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
@@ -71,6 +76,11 @@ Exit codes:
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArguments {
+    /// Make again what a PLY, OBJ, CSV, GLB or 3MF file holds that this program or its page has written: its surface, box and settings. What
+    /// else is given takes the place of the file's; with another surface, its settings alone are taken
+    #[arg(long, value_name = "FILE", help_heading = "Surface")]
+    pub(crate) like: Option<PathBuf>,
+
     #[command(flatten)]
     pub(crate) surface: SurfaceArguments,
 
@@ -84,10 +94,23 @@ pub(crate) struct SampleArguments {
     pub(crate) out: Vec<PathBuf>,
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
-    /// colours), obj, stl or ply (with what --out writes). May be given again; replaces what is there. Unless --method or --relax is
+    /// colours), 3mf (with its unit), stl, obj or ply (with what --out writes). May be given again; replaces what is there. Unless --method or --relax is
     /// given, the method is refined, whose triangles are better
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
+
+    /// Length of a unit of the formula in the files of --mesh, in the unit of --unit [default: 1]
+    #[arg(long, value_name = "NUMBER", value_parser = scale, help_heading = "Output")]
+    pub(crate) scale: Option<f64>,
+
+    /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are converted. Without it numbers stay what they
+    /// are: metres in glb, millimetres in 3mf
+    #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
+    pub(crate) unit: Option<String>,
+
+    /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y [default: z]
+    #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), help_heading = "Output")]
+    pub(crate) up: Option<String>,
 
     /// Do not measure the particles: no figures of quality, no components and Euler number of the sample, no warnings that come
     /// from these, and no columns valence, nearest and residual in the files. Measuring can take longer than sampling on surfaces
@@ -145,9 +168,58 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, conflicts_with = "points", help_heading = "Surface")]
     pub(crate) closed: bool,
 
+    /// The box that closes the solid, where the solid and its box were read from a file.
+    #[arg(skip)]
+    pub(crate) faces: Option<Bounds>,
+
     /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For formulas
     #[arg(long, value_name = "T", conflicts_with = "points", value_parser = thickness, help_heading = "Surface")]
     pub(crate) thickness: Option<f64>,
+}
+
+impl SampleArguments {
+    /// Size and orientation of the mesh in its files.
+    pub(crate) fn placement(&self) -> Placement {
+        let mut placement = Placement { scale: self.scale.unwrap_or(1.0), ..Placement::default() };
+        placement.unit = self.unit.as_deref().and_then(|name| named(&Unit::ALL, name));
+        if let Some(up) = self.up.as_deref().and_then(|name| named(&UpAxis::ALL, name)) {
+            placement.up = up;
+        }
+        placement
+    }
+
+    /// Takes from the record of a file what is not given.
+    pub(crate) fn complete(&mut self, record: FileRecord) {
+        let surface = &mut self.surface;
+        if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
+            let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
+            if surface.bounds.is_none() && own != Some(record.bounds) {
+                surface.bounds = Some(BoxChoice::Given(record.bounds));
+                surface.faces = record.faces;
+            }
+            surface.surface = record.surface;
+            surface.formula = Some(record.formula);
+            for (name, value) in record.parameters {
+                if !surface.parameters.iter().any(|(given, _)| *given == name) {
+                    surface.parameters.push((name, value));
+                }
+            }
+            surface.closed |= record.solid.box_faces == BoxFaces::Closed;
+            surface.thickness =
+                surface.thickness.or((record.solid.thickness > 0.0).then_some(record.solid.thickness));
+        }
+        self.sampling.complete(&record.settings);
+    }
+}
+
+/// The value of a table with this name.
+fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    table.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
+}
+
+/// The names of a table, one of which is to be given.
+fn one_of<T>(table: &[(&'static str, T)]) -> PossibleValuesParser {
+    PossibleValuesParser::new(table.iter().map(|(name, _)| *name).collect::<Vec<_>>())
 }
 
 impl SurfaceArguments {
@@ -218,6 +290,14 @@ fn thickness(text: &str) -> Result<f64, String> {
     let thickness = number(text)?;
     SolidSettings { thickness, ..SolidSettings::default() }.validate().map_err(|error| error.to_string())?;
     Ok(thickness)
+}
+
+/// A positive factor.
+fn scale(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        scale if scale > 0.0 => Ok(scale),
+        _ => Err("it must be positive".to_owned()),
+    }
 }
 
 fn parameter(text: &str) -> Result<(String, f64), String> {

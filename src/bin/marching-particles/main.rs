@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Sample(arguments) => sample::run(&arguments),
+        Command::Sample(arguments) => sample::run(*arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
     };
     match result {

@@ -18,6 +18,8 @@ pub(crate) struct Mesh {
     pub(crate) left_out: usize,
     /// Volume that it encloses; none where it is open.
     pub(crate) volume: Option<f64>,
+    /// Smallest angle of any triangle in degrees, those at borders among them.
+    pub(crate) smallest_angle: Option<f64>,
 }
 
 impl Mesh {
@@ -30,6 +32,7 @@ impl Mesh {
             holes: mesh.unfilled,
             left_out: mesh.left_out,
             volume: mesh.volume,
+            smallest_angle: mesh.smallest_angle,
         }
     }
 }

@@ -17,6 +17,8 @@ const SAMPLING: &str = "sampling";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
+/// The option that asks for a radius.
+const RADIUS: &str = "radius_share";
 /// The method, and the steps that only one of them takes.
 const METHOD: &str = "method";
 const RELAX_STEPS: &str = "relax_steps";
@@ -49,6 +51,24 @@ impl SamplingOptions {
             settings.max_particles = settings.max_particles.max(room);
         }
         settings
+    }
+
+    /// Takes from settings what was not asked for.
+    pub(crate) fn complete(&mut self, settings: &Settings) {
+        // Who asks for a radius does not ask for a number of particles.
+        let has_radius = self.lengths.iter().any(|(given, _)| *given == RADIUS);
+        if has_radius && !self.values.contains_key(SIZE_MODE) {
+            self.values.insert(SIZE_MODE.to_owned(), "radius".into());
+        }
+        // There is room for what is asked for.
+        let is_counted = self.values.contains_key(COUNT);
+        let Ok(Json::Object(known)) = serde_json::to_value(settings) else { return };
+        for (name, value) in known {
+            let is_length = self.lengths.iter().any(|(given, _)| *given == name);
+            if !is_length && !(is_counted && name == MAX_PARTICLES) {
+                self.values.entry(name).or_insert(value);
+            }
+        }
     }
 
     /// Whether the options leave it open which method places the particles.

@@ -8,19 +8,20 @@ use crate::outcome::{Outcome, Seconds};
 use crate::output::Output;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
+use marching_particles::export;
 use marching_particles::extent;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{BoxFaces, SolidSettings};
+use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
     Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Method, Parameter, Phase,
     Reach, Run, Settings, StopReason, gallery,
 };
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -42,16 +43,46 @@ struct Chosen {
     bounds: Option<Bounds>,
     /// Whether that box was chosen for the surface, so that it may cut it.
     has_own_box: bool,
+    /// The box whose faces close the solid.
+    faces: Option<Bounds>,
 }
 
-pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
+/// The record of what a file was made from.
+fn read_record(path: &Path) -> Result<FileRecord, Failure> {
+    let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let no_record = || {
+        let name = path.display();
+        Failure::Usage(format!(
+            "{name} does not say what it was made from: it holds no record of this program"
+        ))
+    };
+    let json = export::RecordText::find(&bytes).ok_or_else(no_record)?;
+    let record: FileRecord = serde_json::from_str(json).map_err(|error| {
+        Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
+    })?;
+    match &record.model {
+        Some(model) => Err(Failure::Usage(format!(
+            "{} was made from points, {model}: name them with --surface or --points, beside --like",
+            path.display()
+        ))),
+        None => Ok(record),
+    }
+}
+
+pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
+    if let Some(path) = &arguments.like {
+        let record = read_record(path)?;
+        arguments.complete(record);
+    }
+    let arguments = &arguments;
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
     let mut outputs = Output::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
     let clock = Stopwatch::start();
-    let Chosen { field, name, formula, parameters, model, bounds, has_own_box } =
+    let Chosen { field, name, formula, parameters, model, bounds, has_own_box, faces } =
         choose(&arguments.surface, arguments.quiet)?;
     if model.is_some() {
         seconds.points = clock.seconds();
@@ -88,17 +119,37 @@ pub(crate) fn run(arguments: &SampleArguments) -> Result<ExitCode, Failure> {
         (!mesh_formats.is_empty()).then(|| Mesh::new(&MeshAnswer::new(sample.mesh(), sample.particles())));
     seconds.mesh = clock.seconds();
     let clock = Stopwatch::start();
+    let made = FileRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        digest: sample.report().digest.clone(),
+        link: None,
+        surface: name.clone(),
+        model: model.as_ref().map(|model| model.name.clone()),
+        formula: formula.clone(),
+        parameters: parameters.clone(),
+        bounds: sample.bounds(),
+        faces,
+        solid: arguments.surface.solid(),
+        settings,
+    };
+    let record = export::RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
+    let (particles, measured) = (sample.particles(), sample.measured());
     for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
-        output.write(|out| sample.write(format, out))?;
+        output.write(|out| export::write(format, particles, measured, &record, out))?;
     }
+    let placement = arguments.placement();
     for (format, output) in mesh_formats.into_iter().zip(outputs) {
-        output.write(|out| sample.write_mesh(format, out))?;
+        let triangles = &sample.mesh().triangles;
+        output.write(|out| {
+            export::write_mesh(format, particles, measured, triangles, &placement, &record, out)
+        })?;
     }
     seconds.writing = clock.seconds();
 
     let mut report = sample.report().clone();
     report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
     report.volume = mesh.as_ref().and_then(|mesh| mesh.volume);
+    report.smallest_angle = mesh.as_ref().and_then(|mesh| mesh.smallest_angle);
     if has_own_box {
         report.cut = None;
     }
@@ -208,6 +259,7 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
             bounds: given.or(Some(fit.bounds)),
             model: Some(fit.info),
             has_own_box: true,
+            faces: None,
         });
     }
     let named = match (&arguments.surface, &arguments.formula) {
@@ -228,7 +280,7 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
         }
         Some(BoxChoice::Fit) | None => own,
     };
-    let (formula, bounds) = solid(formula, arguments, bounds);
+    let (formula, bounds, faces) = solid(formula, arguments, bounds);
     Ok(Chosen {
         name: surface.map(|surface| surface.id.to_owned()),
         formula: text.to_owned(),
@@ -237,23 +289,27 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
         model: None,
         bounds,
         has_own_box: own.is_some() && given.is_none(),
+        faces,
     })
 }
 
-/// The formula with what the arguments make of its surface, and the box to sample it in. Around a solid that a box closes there has to be
-/// some room, so that its box is fitted.
+/// The formula with what the arguments make of its surface, the box to sample it in, and the box that closes it. Around a solid that a box
+/// closes there has to be some room, so that its own box is fitted.
 fn solid(
     formula: Formula,
     arguments: &SurfaceArguments,
     bounds: Option<Bounds>,
-) -> (Formula, Option<Bounds>) {
+) -> (Formula, Option<Bounds>, Option<Bounds>) {
     let solid = arguments.solid();
     let mut formula = solid.made_of(formula, None);
     if solid.box_faces == BoxFaces::Open {
-        return (formula, bounds);
+        return (formula, bounds, None);
+    }
+    if let Some(faces) = arguments.faces {
+        return (solid.made_of(formula, Some(&faces)), bounds, Some(faces));
     }
     let faces = bounds.unwrap_or_else(|| extent::find(&mut formula).bounds);
-    (solid.made_of(formula, Some(&faces)), None)
+    (solid.made_of(formula, Some(&faces)), None, Some(faces))
 }
 
 /// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.

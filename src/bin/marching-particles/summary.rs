@@ -162,7 +162,11 @@ fn mesh_line(mesh: &Mesh) -> String {
     let [triangles, components] = [(mesh.triangles, "triangle"), (mesh.components, "component")]
         .map(|(count, name)| counted(count, name));
     let volume = mesh.volume.map_or("–".to_owned(), significant);
-    format!("{triangles}, {components}, Euler number {}, {borders}, volume {volume}", mesh.euler)
+    let angle = mesh.smallest_angle.map_or("–".to_owned(), |angle| format!("{angle:.1}°"));
+    format!(
+        "{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}",
+        mesh.euler
+    )
 }
 
 /// Returns a sentence for each kind of defect of a mesh.

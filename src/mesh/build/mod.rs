@@ -31,7 +31,7 @@ use crate::slices::{self, pause, ranges};
 use crate::spatial::tree::Tree;
 use crate::topology::Topology;
 use creases::Sheet;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use holes::Borders;
 use patch::Patch;
 use rim::Rim;
@@ -98,6 +98,25 @@ impl Triangulation {
         let at = |i: u32| particles.position[i as usize].as_dvec3();
         let of = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c))) / 6.0;
         (!self.triangles.is_empty() && self.topology.is_closed()).then(|| self.triangles.iter().map(of).sum())
+    }
+
+    /// Smallest angle of the triangles over these particles, in degrees, those at borders among them; 0 for one without an area. `None`
+    /// without triangles.
+    #[must_use]
+    pub fn smallest_angle(&self, particles: &Particles) -> Option<f64> {
+        // In a triangle the smallest angle has the largest cosine.
+        let cosine = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|i| particles.position[i as usize].as_dvec3());
+            let at = |p: DVec3, q: DVec3, r: DVec3| {
+                let (u, v) = (q - p, r - p);
+                u.dot(v) / (u.length() * v.length())
+            };
+            let largest = at(a, b, c).max(at(b, c, a)).max(at(c, a, b));
+            // Two corners at one place.
+            if largest.is_finite() { largest } else { 1.0 }
+        };
+        let largest = self.triangles.iter().map(cosine).reduce(f64::max)?;
+        Some(libm::acos(largest.clamp(0.0, 1.0)).to_degrees())
     }
 }
 

@@ -8,7 +8,7 @@
 import { SLOT_BITS } from './core-numbers.js';
 import { vec } from './vector.js';
 
-/** @import { Bounds, ColumnRange, Figures, Mesh } from './types.js' */
+/** @import { Bounds, ColumnRange, Figures, FileRecord, Mesh } from './types.js' */
 
 /** Number of fates that a slot can have. */
 export const FATES = 1 << SLOT_BITS;
@@ -97,6 +97,8 @@ export class Columns {
     this.step = null;
     /** The mesh over the particles, while it is drawn. @type {Mesh | null} */
     this.mesh = null;
+    /** What the particles were made from; null before the end of the first run. @type {FileRecord | null} */
+    this.record = null;
   }
 
   /** Removes all particles, for a new run. @param {boolean} [adaptive] */

@@ -280,6 +280,44 @@ export type Figures = {
   a_gt90: number,
 };
 
+/** What a file was made from. Files carry it as JSON ([`export::RecordText`]), from which the same particles can be made again. */
+export type FileRecord = {
+  /** Version of the program. */
+  version: string,
+  /** Digest of the particles, 16 hexadecimal digits. */
+  digest: string,
+  /** Link to the page in this state, where the page has made the file. */
+  link: string | null,
+  /** Gallery surface whose formula it is. */
+  surface: string | null,
+  /** Model from points, in place of a formula. */
+  model: string | null,
+  /** Text of the formula; empty for a model. */
+  formula: string,
+  /** Values of its parameters. */
+  parameters: { [key in string]: number },
+  /** Box of the run. */
+  bounds: Bounds,
+  /** Box whose faces close the solid, where they do. */
+  faces: Bounds | null,
+  /** What is made of the surface before it is sampled. */
+  solid: Record<string, number | string>,
+  /** Settings of the run. */
+  settings: Record<string, number | string>,
+};
+
+/** Request for a mesh file. */
+export type FileRequest = {
+  /** Extension of the format. */
+  format: string,
+  /** Size and orientation of the mesh. */
+  placement: Placement,
+  /** Link for the record. */
+  link: string | null,
+  /** Whether the file is written without a record. */
+  plain: boolean,
+};
+
 /** The class of a [`FormulaError`]; its name in JSON is the snake-case form. */
 export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "not_finite" | "bad_parameter";
 
@@ -781,6 +819,10 @@ export type MeshAnswer = {
   left_out: number,
   /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
   volume: number | null,
+  /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles. */
+  smallest_angle: number | null,
+  /** Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest. */
+  loops: Array<Array<number>>,
 };
 
 /** A connected part of a mesh. */
@@ -863,6 +905,17 @@ export type Parameter = {
 /** Phase of a run. */
 export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
 
+/** Size and orientation of a mesh in a file. */
+export type Placement = {
+  /** Length of a unit of the formula, in the unit of the file; positive. */
+  scale: number,
+  /** Unit of the file. 3MF names it, and GLB is in metres, to which lengths are converted; other formats have no place for it. Without
+  * one, numbers stay what they are: metres in GLB, millimetres in 3MF. */
+  unit: Unit | null,
+  /** Axis of the formula that points up in the file: along z, but in GLB along y, as its specification has it. */
+  up: UpAxis,
+};
+
 /** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
 * closest pair and the largest hole. */
 export type Places = {
@@ -935,6 +988,8 @@ export type Report = {
   count: number,
   /** Volume that the mesh encloses; none where it is open, or the particles are not joined to one. */
   volume: number | null,
+  /** Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one. */
+  smallest_angle: number | null,
   /** Particles with a child that fell outside of the box. */
   border: number,
   /** Why particles lie at the border of the box. */
@@ -1132,6 +1187,9 @@ export type SurfaceEntry = {
   group: string,
 };
 
+/** Unit of length of a file. */
+export type Unit = "mm" | "cm" | "m" | "in";
+
 /** A witness on whose component no particle was found. */
 export type Unsampled = {
   /** The witness, a point of the surface. */
@@ -1141,3 +1199,6 @@ export type Unsampled = {
   /** Whether the component was followed no further than that, so that it may be larger. */
   goes_on: boolean,
 };
+
+/** Axis of the formula's coordinates. */
+export type UpAxis = "x" | "y" | "z";

@@ -67,8 +67,9 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     }),
     effect(() => {
       const now = look();
-      // The 2-D canvas draws only discs.
-      const isMesh = ['webgpu', 'webgl2'].includes(store.backend.value) && (now.draw === 'mesh' || now.ghost);
+      // The 2-D canvas draws only discs. Of a mesh the page tells what it adds up to all the same.
+      const isDrawn = ['webgpu', 'webgl2'].includes(store.backend.value);
+      const isMesh = now.draw === 'mesh' || (isDrawn && now.ghost);
       untracked(() => {
         store.theme.value = now.theme;
         viewer.set(now);

@@ -35,6 +35,9 @@ export type CoreProgress = import('./core-types.js').Progress;
 export type StopReason = CoreProgress['stop_reason'];
 /** The figures of a finished run. */
 export type CoreReport = import('./core-types.js').Report;
+/** Requests for a mesh file, and what is told of the particles in files. */
+export type FileRequest = import('./core-types.js').FileRequest;
+export type FileRecord = import('./core-types.js').FileRecord;
 /** The counts and the topology of a mesh. */
 export type MeshAnswer = import('./core-types.js').MeshAnswer;
 export type LessonEvent = import('./core-types.js').LessonEvent;
@@ -177,9 +180,9 @@ export interface Hover {
 export type Spot = { x: number; y: number; perPx: number };
 /**
  * A place to be pointed out: the positions that are marked by rings of this radius, the direction from which they are
- * seen, and what stands beside them.
+ * seen, and what stands beside them. An `outline` goes through the positions in the place of rings.
  */
-export type Place = { places: Vec3[]; radius: number; normal: Vec3; text: string };
+export type Place = { places: Vec3[]; radius: number; normal: Vec3; text: string; outline?: boolean };
 /** A ray from the eye; the direction has length 1. */
 export type Ray = { eye: Vec3; direction: Vec3 };
 /** colour is `#rrggbb` */
@@ -333,6 +336,8 @@ export interface EngineCommands {
   showFirst: (count: number | null) => void;
   /** turns the camera to a side of the surface, unless that side is seen already */
   turnTo: (normal: Vec3) => void;
+  /** turns the camera to a named view */
+  lookFrom: (name: 'front' | 'right' | 'top' | 'isometric') => void;
   /** no particle is chosen any more, even if it was pressed */
   dismissHover: () => void;
   /** > 1 zooms in */
@@ -351,9 +356,12 @@ export interface EngineCommands {
   /** without panels; the surface fills its shorter side as it fills that of the window */
   picture: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<ImageData>;
   savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
-  exportFile: (format: 'ply' | 'csv') => Promise<Blob>;
-  /** once no run is left */
-  exportMesh: (format: MeshFormat) => Promise<Blob>;
+  /** the particles, with the record of what they were made from */
+  exportFile: (format: 'ply' | 'csv', options?: { link?: string }) => Promise<Blob>;
+  /** draws the mesh of the refined method, which is sampled if the surface is not */
+  makeMesh: () => void;
+  /** once no run is left; with the record of what it was made from, unless `plain` */
+  exportMesh: (format: MeshFormat, options?: Partial<Omit<FileRequest, 'format'>>) => Promise<Blob>;
   dismissNotice: () => void;
   /** returns the index of the particle under a point of the canvas host */
   pick: (x: number, y: number) => number | null;
@@ -369,7 +377,7 @@ export interface EngineCommands {
   destroy: () => void;
 }
 /** File formats for a mesh. */
-export type MeshFormat = 'glb' | 'obj' | 'stl' | 'ply';
+export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 /** Commands and counts of an engine for tests. */
 export interface EngineDebug {
   /** traps the core in its worker, overflows the worker's stack, or sends it into an endless loop */

@@ -9,6 +9,7 @@ import { mountDrop } from './field/drop.js';
 import { mountField } from './field/panel.js';
 import { createHistory } from './history.js';
 import { mountLayout } from './layout.js';
+import { createMeshButton } from './mesh/button.js';
 import { createMotion } from './motion.js';
 import { mountReport } from './report/panel.js';
 import { isDue, mountSampling } from './sampling/panel.js';
@@ -99,10 +100,12 @@ export function mountInterface(engine) {
 
   void described.then((description) => {
     mountField(byId('field-body'), engine, description, motion);
-    mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
+    const mesh = createMeshButton(engine, toast);
+    mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] });
     mountReport(byId('report-body'), engine, description);
     const legend = createLegend(engine, description);
-    const tools = { hide: layout.hideMore, shortcuts: shortcuts.open, picture, motion, toast };
+    const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
+    const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };
     view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
     shell.dataset.ready = '';

@@ -2,14 +2,14 @@
 import { FILE_SURFACE } from '../engine/constants.js';
 
 /**
- * @import { Engine, MeshFormat } from '../engine/types.js'
+ * @import { Engine, FileRequest, MeshFormat } from '../engine/types.js'
  * @import { Toast } from './types.js'
  */
 
 /** @param {Engine} engine @param {Toast} toast */
 export async function copyLink(engine, toast) {
   try {
-    const url = location.origin + location.pathname + (await engine.link());
+    const url = await linkTo(engine);
     if (engine.state.peek().surface === FILE_SURFACE) {
       const held = `A link cannot hold the points of ${engine.model.peek()?.name ?? 'a file'}`;
       const text = `${held}: it shows the standard surface with these settings. Send the file along.`;
@@ -27,13 +27,20 @@ export async function copyLink(engine, toast) {
   }
 }
 
-/** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
-export const exportFile = (engine, toast, format) =>
-  exported(engine, toast, 'particles', () => engine.exportFile(format), `${stem(engine)}.${format}`);
+/** Returns the page's address with the whole state in it. @param {Engine} engine */
+const linkTo = async (engine) => location.origin + location.pathname + (await engine.link());
 
-/** @param {Engine} engine @param {Toast} toast @param {MeshFormat} format */
-export const exportMesh = (engine, toast, format) =>
-  exported(engine, toast, 'mesh', () => engine.exportMesh(format), `${stem(engine)}-mesh.${format}`);
+/** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
+export function exportFile(engine, toast, format) {
+  const make = async () => engine.exportFile(format, { link: await linkTo(engine) });
+  return exported(engine, toast, 'particles', make, `${stem(engine)}.${format}`);
+}
+
+/** @param {Engine} engine @param {Toast} toast @param {MeshFormat} format @param {FileRequest['placement']} placement */
+export function saveMesh(engine, toast, format, placement) {
+  const make = async () => engine.exportMesh(format, { placement, link: await linkTo(engine) });
+  return exported(engine, toast, 'mesh', make, `${stem(engine)}-mesh.${format}`);
+}
 
 /**
  * @param {Engine} engine @param {Toast} toast

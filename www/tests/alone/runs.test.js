@@ -165,13 +165,17 @@ test('PLY and CSV hold every particle', async () => {
   const header = ply.slice(0, ply.indexOf('end_header'));
   expect(header).toContain(`element vertex ${count}\n`);
   expect(header).toContain('property uchar valence');
-  const [names, first, ...rows] = (await (await p.engine.exportFile('csv')).text()).trimEnd().split('\n');
+  const [made, names, first, ...rows] = (await (await p.engine.exportFile('csv')).text()).trimEnd().split('\n');
+  // What they were made from, and the digest by which they are known when they are made again.
+  const record = JSON.parse(made.replace('# marching_particles ', ''));
+  expect(record).toMatchObject({ surface: p.engine.field.value?.surface, digest: p.report()?.digest });
+  expect(record.formula).toBe(p.engine.field.value?.formula);
   expect(names.split(',')).toEqual(columns);
   expect(first.split(',').filter((cell) => cell !== '' && Number.isFinite(Number(cell)))).toHaveLength(columns.length);
   expect(rows.length + 1).toBe(count);
   // A surface with creases has two more.
   p.engine.setFormula('max(abs(x), abs(y), abs(z)) = 1');
-  const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[0].split(',');
+  const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[1].split(',');
   await eventually(creased).toEqual(all);
 });
 
@@ -209,10 +213,42 @@ test('the mesh that is exported is byte for byte that of the command line', asyn
     await readFile(new URL('../../../tests/golden/meshes.json', import.meta.url), 'utf8'),
   ).runs;
   const p = await open(link({ surface: field.surface, settings }));
-  for (const format of /** @type {const} */ (['glb', 'obj', 'stl', 'ply'])) {
-    const bytes = new Uint8Array(await (await p.engine.exportMesh(format)).arrayBuffer());
+  for (const format of /** @type {const} */ (['glb', '3mf', 'stl', 'obj', 'ply'])) {
+    const bytes = new Uint8Array(await (await p.engine.exportMesh(format, { plain: true })).arrayBuffer());
     expect(digestOf(bytes), format).toBe(files[format]);
   }
+  // With what it was made from, and in another size.
+  const placement = { scale: 20, unit: /** @type {const} */ ('mm'), up: /** @type {const} */ ('y') };
+  const file = await p.engine.exportMesh('obj', { placement, link: 'https://a.example/#b' });
+  const [, made, first] = (await file.text()).split('\n');
+  const record = JSON.parse(made.replace('# marching_particles ', ''));
+  expect(record).toMatchObject({ link: 'https://a.example/#b', digest: p.report()?.digest, surface: field.surface });
+  const plain = await (await p.engine.exportMesh('obj', { plain: true })).text();
+  const [x, y, z] = (plain.split('\n')[1] ?? '').split(' ').slice(1).map(Number);
+  const placed = first.split(' ').slice(1).map(Number);
+  for (const [k, v] of [z, x, y].entries()) expect(placed[k]).toBeCloseTo(20 * v, 5);
+});
+
+test('a mesh is made by the refined method, once, and its figures are those of the report', async () => {
+  const p = await open();
+  const { particles } = p.engine.progress.value;
+  p.engine.makeMesh();
+  expect(p.engine.busy.value).toBe(true);
+  await until(p.engine.busy, (busy) => !busy);
+  const mesh = await until(p.engine.mesh, (made) => made);
+  const report = await until(p.engine.report, (told) => told && told.smallest_angle !== null && told);
+  expect(p.engine.state.value).toMatchObject({ settings: { method: 'refined' }, view: { draw: 'mesh' } });
+  expect(report).toMatchObject({ smallest_angle: mesh?.smallest_angle, refined_levels: expect.any(Number) });
+  expect(mesh?.loops).toEqual([]);
+  expect(mesh?.smallest_angle).toBeGreaterThan(30);
+  expect(particles).toBeGreaterThan(0);
+  // It is there already.
+  await until(p.engine.busy, (busy) => !busy);
+  const { run } = p.engine.progress.value;
+  p.engine.setView({ draw: 'discs' });
+  p.engine.makeMesh();
+  expect(p.engine.busy.value).toBe(false);
+  expect(p.engine.progress.value.run).toBe(run);
 });
 
 /** FNV-1a, 64 bits. @param {Uint8Array} bytes */

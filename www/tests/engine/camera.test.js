@@ -7,6 +7,7 @@ import {
   PITCH_LIMIT_RAD,
   projected,
   rayThrough,
+  STANDARD_VIEWS,
   viewOf,
 } from '../../src/engine/view/camera.js';
 
@@ -294,5 +295,71 @@ describe('the camera', () => {
     expect(camera.state.distance).toBeCloseTo(0.04, 9);
     camera.zoom(1e-9);
     expect(camera.state.distance).toBe(120);
+  });
+});
+
+describe('an orthographic view', () => {
+  const about = { target: /** @type {[number, number, number]} */ ([1, 2, 3]), distance: 5, fit: false };
+  /** @param {keyof typeof STANDARD_VIEWS} name */
+  const seen = (name) =>
+    viewOf({ ...about, ...STANDARD_VIEWS[name] }, 800, 600, { centre: [1, 2, 3], radius: 2 }, undefined, true);
+  /** @param {ReturnType<typeof viewOf>} view @param {number[]} place */
+  const at = (view, place) => {
+    const spot = projected(view, place);
+    if (!spot) throw new Error('behind the eye');
+    return spot;
+  };
+
+  test('keeps the size of what is farther away, and that of the target as in perspective', () => {
+    const view = seen('isometric');
+    const { x, y, perPx } = at(view, [1, 2, 3]);
+    expect([x, y]).toEqual([expect.closeTo(400), expect.closeTo(300)]);
+    const near = viewOf({ ...about, ...STANDARD_VIEWS.isometric }, 800, 600, { centre: [1, 2, 3], radius: 2 });
+    expect(perPx).toBeCloseTo(at(near, [1, 2, 3]).perPx, 6);
+    const axes = [at(view, [2, 2, 3]), at(view, [1, 3, 3]), at(view, [1, 2, 4])].map((p) =>
+      Math.hypot(p.x - x, p.y - y),
+    );
+    expect(axes).toEqual([0, 1, 2].map(() => expect.closeTo(axes[0], 3)));
+    const behind = view.forward.map((f, k) => about.target[k] + 1.5 * f);
+    expect(at(view, behind)).toMatchObject({ x: expect.closeTo(400, 2), y: expect.closeTo(300, 2), perPx });
+  });
+
+  test('is drawn between its near and far planes, and its rays meet what is under them', () => {
+    const view = seen('front');
+    const place = [1.7, 3.5, 2.1];
+    const m = view.clipFromWorld;
+    const row = (/** @type {number} */ k) => m[k] * place[0] + m[4 + k] * place[1] + m[8 + k] * place[2] + m[12 + k];
+    expect(row(3)).toBe(1);
+    expect(row(2)).toBeGreaterThan(0.5);
+    expect(row(2)).toBeLessThan(1);
+    const { x, y, perPx } = at(view, place);
+    const ray = rayThrough(view, x, y);
+    const way = place.map((c, k) => c - view.eye[k]);
+    const along = way.reduce((sum, c, k) => sum + c * ray[k], 0);
+    expect(Math.hypot(...way.map((c, k) => c - along * ray[k]))).toBeLessThan(0.5 * perPx);
+  });
+
+  test('from the front has x to the right and z up, from the right y, from the top y up', () => {
+    const from = (/** @type {keyof typeof STANDARD_VIEWS} */ name, /** @type {number[]} */ step) => {
+      const { x, y } = at(
+        seen(name),
+        step.map((d, k) => d + about.target[k]),
+      );
+      return [Math.sign(Math.round(x - 400)), Math.sign(Math.round(300 - y))];
+    };
+    expect([from('front', [1, 0, 0]), from('front', [0, 0, 1]), from('front', [0, 1, 0])]).toEqual([
+      [1, 0],
+      [0, 1],
+      [0, 0],
+    ]);
+    expect([from('right', [0, 1, 0]), from('right', [0, 0, 1])]).toEqual([
+      [1, 0],
+      [0, 1],
+    ]);
+    expect([from('top', [1, 0, 0]), from('top', [0, 1, 0]), from('top', [0, 0, 1])]).toEqual([
+      [1, 0],
+      [0, 1],
+      [0, 0],
+    ]);
   });
 });

@@ -20,6 +20,7 @@ const elaborate = () => ({
   view: {
     colour: 'valence',
     size: 0.8,
+    projection: 'orthographic',
     draw: 'mesh',
     creases: false,
     faces: 'flat',

@@ -246,9 +246,9 @@ describe('exports', () => {
       const rest = { radii: part(radii), levels: part(levels), parents: part(parents) };
       columns.write({ first, total, positions, normals, exact: places, ...rest });
     }
-    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n').slice(1);
+    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n').slice(1);
     expect(lines.flatMap((line) => line.split(',').slice(0, 3).map(Number))).toEqual([...exact]);
-    const file = Buffer.from(await ply(columns, description.columns, { comment: '' }).arrayBuffer());
+    const file = Buffer.from(await ply(columns, description.columns, null).arrayBuffer());
     const header = file.subarray(0, file.indexOf('end_header\n') + 'end_header\n'.length);
     expect(header.toString()).toContain('property double x\nproperty double y\nproperty double z\nproperty float nx');
     const stride = (file.length - header.length) / 20;
@@ -260,13 +260,17 @@ describe('exports', () => {
   });
 
   test('PLY: header and body agree, to the byte', async () => {
+    const evil = /** @type {any} */ ({ formula: 'x^2\nend_header\n<π> & ü', link: null });
     const columns = sphere(50);
     columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));
     columns.nearest = new Float32Array(50).fill(0.25);
     columns.residual = new Float32Array(50).fill(1e-6);
     columns.slots[17] |= SINGULAR;
-    const bytes = await ply(columns, description.columns, { comment: 'x^2\nend_header\nevil' }).arrayBuffer();
+    const bytes = await ply(columns, description.columns, evil).arrayBuffer();
     const text = Buffer.from(bytes).toString('latin1');
+    const record = text.match(/^comment marching_particles (.*)$/m)?.[1] ?? '';
+    expect(JSON.parse(record)).toEqual(evil);
+    expect(record).toMatch(/^[ -%'-;=?-~]*$/);
     const end = text.indexOf('end_header\n', text.indexOf('element vertex')) + 'end_header\n'.length;
     const header = text.slice(0, end).trimEnd().split('\n');
     expect(header.filter((line) => line === 'end_header')).toHaveLength(1);
@@ -310,7 +314,7 @@ describe('exports', () => {
     const columns = sphere(3);
     columns.patch = Uint32Array.of(4, 9, 9);
     columns.particle = Uint32Array.of(0, 0, 2);
-    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
+    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n');
     expect(lines[0]).toMatch(/,singular,patch,particle$/);
     expect(lines.slice(1).map((line) => line.split(',').slice(-2).map(Number))).toEqual([
       [4, 0],
@@ -320,14 +324,14 @@ describe('exports', () => {
   });
 
   test('PLY without a report has no column of it', async () => {
-    const text = await ply(sphere(3), description.columns, { comment: '' }).text();
+    const text = await ply(sphere(3), description.columns, null).text();
     expect(text).not.toMatch(/valence|nearest|residual/);
   });
 
   test('CSV: reading it gives the same single-precision values, on both sides of a block', async () => {
     const columns = sphere(9000);
     columns.slots[8191] |= SINGULAR;
-    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
+    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n');
     expect(lines).toHaveLength(9001);
     expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent,singular');
     for (const i of [0, 8191, 8192, 8999]) {

@@ -28,7 +28,15 @@ function columnsOf(n) {
 /** @param {Uint32Array} triangles @returns {Mesh} */
 const meshOf = (triangles) => ({
   triangles,
-  about: { triangles: triangles.length / 3, components: [], unfilled: 0, left_out: 0, volume: null },
+  about: {
+    triangles: triangles.length / 3,
+    components: [],
+    unfilled: 0,
+    left_out: 0,
+    volume: null,
+    smallest_angle: null,
+    loops: [],
+  },
 });
 
 function device(most = 1000) {

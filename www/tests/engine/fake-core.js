@@ -217,6 +217,8 @@ export function fakeCore({
         unfilled: 0,
         left_out: count - 3,
         volume: null,
+        smallest_angle: null,
+        loops: [],
       };
     },
     triangles: () => Uint32Array.of(0, 1, 2),
@@ -233,6 +235,7 @@ export function fakeCore({
     digest: () => 'd',
     limit_memory() {},
     mesh_file: () => null,
+    record: () => null,
     free() {},
     [Symbol.dispose]() {},
   };

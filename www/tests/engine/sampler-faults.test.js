@@ -352,13 +352,13 @@ describe('a worker that fails', () => {
     sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    const file = sampler.client.meshFile('ply');
+    const file = sampler.client.meshFile({ format: 'ply' });
     // Nothing else is under way that the silence would break off.
     vi.advanceTimersByTime(2500);
     await expect(file).rejects.toThrow('does not hold');
     expect(workers).toHaveLength(2);
     // A file that came is waited for no longer.
-    const next = sampler.client.meshFile('ply');
+    const next = sampler.client.meshFile({ format: 'ply' });
     say({ type: 'ready', description });
     say({ type: 'file', request: 2, bytes: Uint8Array.of(1) });
     expect(await next).toEqual(Uint8Array.of(1));

@@ -93,14 +93,14 @@ test('the mesh is asked for while it is drawn, of a new worker again, and shown 
 
 test('a mesh is exported by the worker that holds it, and not by a new one', async () => {
   const { sampler, say } = page();
-  const [glb, stl] = [sampler.client.meshFile('glb'), sampler.client.meshFile('stl')];
+  const [glb, stl] = ['glb', 'stl'].map((format) => sampler.client.meshFile({ format }));
   const [first, second] = workers.at(-1).posted.slice(-2);
-  expect([first.format, second.format]).toEqual(['glb', 'stl']);
+  expect([first.file.format, second.file.format]).toEqual(['glb', 'stl']);
   say({ type: 'file', request: second.request, bytes: Uint8Array.of(2) });
   say({ type: 'file', request: first.request, bytes: null });
   await expect(glb).rejects.toThrow();
   expect(await stl).toEqual(Uint8Array.of(2));
-  const lost = sampler.client.meshFile('obj');
+  const lost = sampler.client.meshFile({ format: 'obj' });
   say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
   await expect(lost).rejects.toThrow();
 });

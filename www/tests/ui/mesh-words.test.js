@@ -1,12 +1,12 @@
 import { beforeAll, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
-import { meshWords } from '../../src/ui/view/mesh-words.js';
+import { borderOf, verdictOf } from '../../src/ui/mesh/words.js';
 
 beforeAll(() => setLocale('en'));
 
 /**
  * @param {[number, number][]} components  Euler number and open edges
- * @param {{unfilled?: number, left_out?: number, volume?: number | null}} [more]
+ * @param {{unfilled?: number, left_out?: number, volume?: number | null, smallest_angle?: number}} [more]
  */
 const mesh = (components, more) => ({
   triangles: 0,
@@ -14,23 +14,27 @@ const mesh = (components, more) => ({
   unfilled: 0,
   left_out: 0,
   volume: null,
+  smallest_angle: null,
+  loops: [],
   ...more,
 });
 
 it('a mesh is told in a line: closed or where it is open, and its topology', () => {
-  expect(meshWords(mesh([[2, 0]]))).toBe('Closed mesh · Euler number 2');
-  expect(meshWords(mesh([[2, 0]], { volume: 4.18879 }))).toBe('Closed mesh · Euler number 2 · volume 4.189');
-  expect(meshWords(mesh([[-8, 1204]]))).toBe('Mesh · 1,204 open edges · Euler number −8');
+  expect(verdictOf(mesh([[2, 0]]))).toBe('Watertight · Euler number 2');
+  expect(verdictOf(mesh([[2, 0]], { volume: 4.18879, smallest_angle: 38.04 }))).toBe(
+    'Watertight · Euler number 2 · volume 4.189 · smallest angle 38.0°',
+  );
+  expect(verdictOf(mesh([[-8, 1204]]))).toBe('1,204 open edges · Euler number −8');
   expect(
-    meshWords(
+    verdictOf(
       mesh([
         [2, 0],
         [0, 0],
       ]),
     ),
-  ).toBe('Mesh of 2 components · closed · Euler numbers 2, 0');
+  ).toBe('Watertight · 2 components · Euler numbers 2, 0');
   expect(
-    meshWords(
+    verdictOf(
       mesh([
         [1, 30],
         [1, 30],
@@ -38,12 +42,27 @@ it('a mesh is told in a line: closed or where it is open, and its topology', () 
         [2, 0],
       ]),
     ),
-  ).toBe('Mesh of 4 components · 90 open edges · Euler numbers add up to 5');
+  ).toBe('90 open edges · 4 components · Euler numbers add up to 5');
 });
 
 it('what could not be joined is not passed over', () => {
-  expect(meshWords(mesh([[1, 6]], { unfilled: 2, left_out: 1 }))).toBe(
-    'Mesh · 6 open edges · Euler number 1 · 2 holes where sheets meet or particles are too sparse · 1 particle left out',
+  expect(verdictOf(mesh([[1, 6]], { unfilled: 2, left_out: 1 }))).toBe(
+    '6 open edges · Euler number 1 · 2 holes where sheets meet or particles are too sparse · 1 particle left out',
   );
-  expect(meshWords(mesh([]))).toBe('Nothing to join to a mesh');
+  expect(verdictOf(mesh([]))).toBe('Nothing to join to a mesh');
+});
+
+it('an open border is outlined and seen from the side to which its particles face', () => {
+  const columns = /** @type {any} */ ({
+    positions: Float32Array.of(9, 9, 9, 1, 0, 2, 0, 1, 2, -1, 0, 2, 0, -1, 2),
+    normals: Float32Array.of(1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1),
+  });
+  const place = borderOf({ ...mesh([[1, 5]]), loops: [[1, 2, 3, 4], [0]] }, 0, columns);
+  expect(place).toMatchObject({ outline: true, radius: 1, normal: [0, 0, 1], text: '4 open edges · border 1 of 2' });
+  expect(place.places).toEqual([
+    [1, 0, 2],
+    [0, 1, 2],
+    [-1, 0, 2],
+    [0, -1, 2],
+  ]);
 });

@@ -4,15 +4,33 @@ import { afresh, open, state } from './helpers.js';
 
 test('the mesh', async ({ page }) => {
   const { clean } = await open(page);
-  await test.step('every format of a mesh is downloaded under its name', async () => {
-    for (const format of ['glb', 'obj', 'stl', 'ply']) {
-      await page.getByRole('button', { name: 'Export', exact: true }).click();
+  await test.step('one press makes a mesh, tells whether it is closed, and every format is saved under its name', async () => {
+    await page.getByRole('button', { name: 'Make a mesh' }).click();
+    const panel = page.getByRole('region', { name: 'Mesh' });
+    await expect(panel.locator('.verdict')).toHaveText(/^Watertight · Euler number 2 · volume [\d.]+ · smallest angle/);
+    expect(await state(page)).toMatchObject({ settings: { method: 'refined' }, view: { draw: 'mesh' } });
+    await expect(panel.getByRole('button', { name: 'Save mesh' })).toBeFocused();
+    for (const format of ['glb', '3mf', 'stl', 'obj', 'ply']) {
+      await panel.getByLabel('Format').selectOption(format);
       const [file] = await Promise.all([
         page.waitForEvent('download'),
-        page.getByRole('button', { name: `Export mesh ${format.toUpperCase()}` }).click(),
+        panel.getByRole('button', { name: 'Save mesh' }).click(),
       ]);
       expect(file.suggestedFilename()).toMatch(new RegExp(`^ellipsoid-\\d+-mesh\\.${format}$`));
     }
+    await page.keyboard.press('Escape');
+    await expect(panel).toBeHidden();
+    await expect(page.getByRole('button', { name: 'Make a mesh' })).toBeFocused();
+  });
+
+  await test.step('what is open is shown in the picture', async () => {
+    await afresh(page, { hash: link({ surface: 'schwarz-p', settings: { radius_share: 0.02 } }) });
+    await page.getByRole('button', { name: 'Make a mesh' }).click();
+    const panel = page.getByRole('region', { name: 'Mesh' });
+    await expect(panel.locator('.verdict')).toHaveText(/^[\d,]+ open edges · /);
+    await panel.getByRole('button', { name: 'Show the next border' }).click();
+    await expect(page.locator('polygon.marked')).toBeVisible();
+    await page.keyboard.press('Escape');
   });
 
   await test.step('the way of drawing is chosen in the view options, and in words where there can be no mesh', async () => {
@@ -27,7 +45,7 @@ test('the mesh', async ({ page }) => {
     expect((await state(page)).view).toMatchObject({ draw: 'mesh', faces: 'flat', edges: false, marks: true });
     await page.keyboard.press('Escape');
     // The tests of the panels draw without a graphics device.
-    await expect(page.locator('.caption .joined')).toHaveText(/needs WebGPU or WebGL2/);
+    await expect(page.locator('.caption .joined')).toHaveText(/by WebGPU or WebGL2/);
     await page.locator('#stage').click({ position: { x: 5, y: 5 } });
     await page.keyboard.press('m');
     await expect(page.locator('.caption .joined')).toBeEmpty();

@@ -4,7 +4,7 @@
  * @module
  */
 import { completeSettings } from '../share/state.js';
-import { description, showAll } from '../store.js';
+import { change, changeView, description, showAll } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
@@ -14,14 +14,22 @@ import { description, showAll } from '../store.js';
 /** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
 
-/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */
+/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh'>} RunCommands */
 
 /** @param {Parts} parts @returns {RunCommands} */
-export function runCommands({ store, runs }) {
+export function runCommands({ store, columns, runs }) {
   return {
     run() {
       showAll(store);
       runs.resample({ grow: true });
+    },
+    makeMesh() {
+      const { settings } = store.state.value;
+      const isRefined = settings.method === 'refined' && columns.record?.settings.method === 'refined';
+      change(store, { settings: { ...settings, method: 'refined' } });
+      // Before the picture asks for a mesh, so that the present particles are not joined to one.
+      if (!isRefined || store.partial.value) runs.resample();
+      changeView(store, { draw: 'mesh', level: null, step: null });
     },
     stop: () => runs.stop(),
     generateOnly() {

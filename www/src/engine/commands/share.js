@@ -4,16 +4,19 @@
  * @module
  */
 import { decode, encode } from '../share/codec.js';
-import { mergeState, surfaceOf } from '../share/state.js';
+import { mergeState } from '../share/state.js';
 import { description } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { EngineCommands, FieldRequest, Settings } from '../types.js'
+ * @import { EngineCommands, MeshFormat } from '../types.js'
  */
 
 /** Largest width or height of a saved picture. */
 const LARGEST_PICTURE_PX = 8192;
+
+/** @type {Partial<Record<MeshFormat, string>>} */
+const MIME = { glb: 'model/gltf-binary', '3mf': 'model/3mf', stl: 'model/stl' };
 
 /** Fetches the code that writes files. The first picture does not need it, so it loads after the sampler. */
 export const fetchExports = () => import('../share/exports.js');
@@ -59,29 +62,15 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
       const { png } = await fetchExports();
       return png(await picture(options));
     },
-    async exportFile(format) {
-      const { shown } = runs.sampling;
-      if (!shown) throw new Error('There is no surface.');
-      const what = titleOf(shown.request);
+    async exportFile(format, { link } = {}) {
+      if (!runs.sampling.shown) throw new Error('There is no surface.');
       const { csv, ply } = await fetchExports();
-      const { columns: all } = description(store);
-      return format === 'csv' ? csv(columns, all) : ply(columns, all, { comment: `Marching Particles, ${what}` });
+      const record = columns.record && { ...columns.record, link: link ?? null };
+      return (format === 'csv' ? csv : ply)(columns, description(store).columns, record);
     },
-    async exportMesh(format) {
-      const bytes = await runs.sampling.client.meshFile(format);
-      return new Blob([bytes], { type: format === 'glb' ? 'model/gltf-binary' : 'application/octet-stream' });
+    async exportMesh(format, options) {
+      const bytes = await runs.sampling.client.meshFile({ ...options, format });
+      return new Blob([bytes], { type: MIME[format] ?? 'application/octet-stream' });
     },
   };
-
-  /**
-   * Returns a description of what was sampled for the header of a file.
-   * @param {{ field: FieldRequest, settings: Settings }} request
-   */
-  function titleOf({ field, settings }) {
-    const model = field.points && runs.loader.client.get(field.points)?.info.info;
-    if (model) return `${model.name}, interpolated from ${model.centres} of ${model.points} points`;
-    const formula = `f = ${field.formula ?? surfaceOf(description(store), field.surface ?? '')?.formula}`;
-    const thickness = Number(settings.thickness) > 0 ? `a sheet of thickness ${settings.thickness} around ` : '';
-    return `${thickness}${formula}${settings.box_faces === 'closed' ? ', closed by its box' : ''}`;
-  }
 }

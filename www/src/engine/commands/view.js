@@ -12,7 +12,7 @@ import { change } from '../store.js';
  */
 
 /**
- * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' |
+ * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' | 'orbit' |
  *   'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands
  */
 
@@ -37,6 +37,7 @@ export function viewCommands({ store, picture }) {
       if (viewer.look.upto !== count) viewer.set({ upto: count });
     },
     turnTo: (normal) => viewer.turnTo(normal),
+    lookFrom: (name) => viewer.lookFrom(name),
     zoom(factor) {
       viewer.camera.zoom(factor);
       viewer.moved();

@@ -7,7 +7,7 @@
 import { Supervisor } from './supervisor.js';
 
 /**
- * @import { MeshFormat } from '../types.js'
+ * @import { FileRequest } from '../types.js'
  * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
@@ -80,16 +80,16 @@ export class SamplingClient {
 
   /**
    * Returns the mesh of the particles that the worker holds, as a file.
-   * @param {MeshFormat} format
+   * @param {Partial<FileRequest>} file
    * @returns {Promise<Uint8Array<ArrayBuffer>>}
    * @throws if the worker does not hold the particles
    */
-  async meshFile(format) {
+  async meshFile(file) {
     this.#lastFile += 1;
     const request = this.#lastFile;
     const bytes = await new Promise((resolve) => {
       this.#files.set(request, resolve);
-      if (this.isThere) this.post({ type: 'export', request, format });
+      if (this.isThere) this.post({ type: 'export', request, file });
       else this.#handOver(request, null);
       this.#attend();
     });

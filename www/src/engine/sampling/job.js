@@ -128,7 +128,8 @@ class JobRun {
   done(outcome, message = '', reportFollows = false) {
     const { job, progress, predicted } = this;
     const seconds = { ...this.seconds };
-    this.env.post({ type: 'done', id: job.id, outcome, progress, seconds, predicted, message, reportFollows });
+    const record = this.core.record();
+    this.env.post({ type: 'done', id: job.id, outcome, progress, seconds, predicted, message, reportFollows, record });
   }
 
   /**

@@ -8,6 +8,7 @@ import { BEAT_MS } from './protocol.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
+ * @import { FileRequest } from '../types.js'
  * @import { Mesh, SliceEnv } from './types.js'
  */
 
@@ -55,13 +56,13 @@ export async function join(core, env) {
  * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces
  * the particles before it is.
  * @param {Pick<Core, 'mesh_file'>} core
- * @param {string} format
+ * @param {Partial<FileRequest>} request
  * @param {SliceEnv} env
  */
-export const write = (core, format, env) =>
+export const write = (core, request, env) =>
   inSlices(
     (budget) => {
-      const bytes = core.mesh_file(format, budget);
+      const bytes = core.mesh_file(request, budget);
       return bytes === undefined ? undefined : { bytes };
     },
     FIRST_ROWS,

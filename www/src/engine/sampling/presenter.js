@@ -11,9 +11,12 @@ import { timingOf, timingOfReport } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'
- * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Progress } from '../types.js'
+ * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Mesh, Progress } from '../types.js'
  * @import { ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, Run, RunRequest } from './types.js'
  */
+
+/** The figures of the report that are those of the mesh. @param {Mesh} mesh */
+const figuresOfMesh = ({ about: { volume, smallest_angle } }) => ({ volume, smallest_angle });
 
 export class Presenter {
   /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
@@ -112,7 +115,7 @@ export class Presenter {
     store.mesh.value = columns.mesh?.about ?? null;
     // The mesh may have been asked for after the report.
     if (store.report.value && columns.mesh)
-      store.report.value = { ...store.report.value, volume: columns.mesh.about.volume };
+      store.report.value = { ...store.report.value, ...figuresOfMesh(columns.mesh) };
     if (message.curvature.length > 0) {
       columns.writeCurvature(message.curvatureFrom, message.curvature);
       picture.recolour(message.curvatureFrom, columns.count);
@@ -142,8 +145,9 @@ export class Presenter {
    * @param {Run} run
    * @param {number} particles
    */
-  end({ outcome, progress, seconds, reportFollows }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows, record }, { id, request }, particles) {
     const { store, columns } = this;
+    if (particles > 0) columns.record = record;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.
       columns.stale = columns.count > 0;

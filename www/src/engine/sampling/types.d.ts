@@ -12,7 +12,8 @@ import type {
   FieldOk,
   FieldRequest,
   Figures,
-  MeshFormat,
+  FileRecord,
+  FileRequest,
   Report,
   Seconds,
   Settings,
@@ -53,7 +54,7 @@ export type ToWorker =
   | { type: 'job'; job: Job }
   | { type: 'curvature'; on: boolean }
   | { type: 'mesh'; on: boolean }
-  | { type: 'export'; request: number; format: MeshFormat }
+  | { type: 'export'; request: number; file: Partial<FileRequest> }
   | { type: 'stop' }
   | { type: 'drawn'; id: number }
   | { type: 'provoke'; fault: Fault };
@@ -90,6 +91,8 @@ export interface DoneMessage {
   /** words for `refused`, else empty */
   message: string;
   reportFollows: boolean;
+  /** what the particles that the core holds were made from */
+  record: FileRecord | null;
 }
 export type ReportMessage = { type: 'report'; id: number; report: Report } & Figures;
 export type LoadFault = import('../bundle/types.js').LoadFault;

@@ -141,7 +141,7 @@ async function serve(ours) {
   }
   const [wanted] = files;
   if (wanted) {
-    const file = made ? await write(ours, wanted.format, surroundings(ours)) : { bytes: null };
+    const file = made ? await write(ours, wanted.file, surroundings(ours)) : { bytes: null };
     if (!file) return true;
     files.shift();
     post({ type: 'file', request: wanted.request, bytes: file.bytes }, file.bytes ? [file.bytes.buffer] : []);

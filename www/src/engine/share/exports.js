@@ -6,7 +6,7 @@
  */
 import { NO_PARENT, SINGULAR } from '../core-numbers.js';
 
-/** @import { Columns, Description } from '../types.js' */
+/** @import { Columns, Description, FileRecord } from '../types.js' */
 
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
@@ -65,15 +65,16 @@ const BINARY = {
  * Returns a binary PLY file with one vertex per particle.
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
- * @param {{comment: string}} options  one line that describes the contents; line breaks are removed
+ * @param {FileRecord | null} record
  */
-export function ply(columns, all, { comment }) {
+export function ply(columns, all, record) {
   const { count } = columns;
   const some = known(columns, all);
   const header = [
     'ply',
     'format binary_little_endian 1.0',
-    `comment ${comment.replace(/[\r\n]+/g, ' ')}`,
+    'comment Marching Particles',
+    ...commentOf('comment', record),
     `element vertex ${count}`,
     ...some.map((column) => `property ${typeOf(columns, column)} ${column.name}`),
     'end_header',
@@ -95,10 +96,11 @@ export function ply(columns, all, { comment }) {
  * Returns the same data as CSV text, one line per particle. Reading a number back gives the same value.
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
+ * @param {FileRecord | null} record
  */
-export function csv(columns, all) {
+export function csv(columns, all, record) {
   const some = known(columns, all);
-  const parts = [`${some.map(({ name }) => name).join(',')}\n`];
+  const parts = [`${[...commentOf('#', record), some.map(({ name }) => name).join(',')].join('\n')}\n`];
   const readers = some.map((column) => {
     const read = READ[column.name];
     return typeOf(columns, column) === 'float'
@@ -120,6 +122,16 @@ export function csv(columns, all) {
 
 /** Rounds to nine significant digits, which identify any single-precision number. @param {number} v */
 const single = (v) => Number(v.toPrecision(9));
+
+/**
+ * The comment with what the particles were made from, as src/export/record.rs has it: JSON in printable ASCII.
+ * @param {string} begin @param {FileRecord | null} record
+ */
+function commentOf(begin, record) {
+  if (!record) return [];
+  const escaped = (/** @type {string} */ c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`;
+  return [`${begin} marching_particles ${JSON.stringify(record).replace(/[^ -%'-;=?-~]/g, escaped)}`];
+}
 
 /** Encodes a picture as PNG. @param {ImageData} image */
 export async function png(image) {

@@ -70,6 +70,8 @@ export const VIEW = {
     valid: (raw) => within(raw, DISC_SIZE.min, DISC_SIZE.max),
     exact: true,
   },
+  /** Whether what is farther away looks smaller. */
+  projection: choice('projection', ['perspective', 'orthographic']),
   /** The way of drawing the particles. */
   draw: choice('way of drawing', ['discs', 'mesh']),
   /** The lighting and colours of the faces of a mesh. */

@@ -16,8 +16,21 @@ import { clamp, dot, vec } from '../vector.js';
 
 /** Angle of view across the shorter side of the free part of the picture. A narrow angle keeps the distortion small. */
 export const FIELD_OF_VIEW_RAD = (30 * Math.PI) / 180;
-/** Largest pitch. At the poles the up direction would flip. */
-export const PITCH_LIMIT_RAD = (89 * Math.PI) / 180;
+/** Largest pitch. Beyond the poles the up direction would flip. */
+export const PITCH_LIMIT_RAD = Math.PI / 2;
+/**
+ * Times the distance at which the eye of a parallel projection is. Its matrix is exactly parallel; rays and the size of
+ * pixels are those of this eye, which are off by less than half a pixel.
+ */
+const PARALLEL_DISTANCES = 1000;
+/** The directions of the named views, with z up. @type {Record<'front' | 'right' | 'top' | 'isometric', Angles>} */
+export const STANDARD_VIEWS = {
+  front: { yaw: -Math.PI / 2, pitch: 0 },
+  right: { yaw: 0, pitch: 0 },
+  top: { yaw: -Math.PI / 2, pitch: Math.PI / 2 },
+  // The three axes are equally long in the picture.
+  isometric: { yaw: -Math.PI / 4, pitch: Math.atan(Math.SQRT1_2) },
+};
 /** Time constant in which a released rotation loses 63 % of its speed and a fit covers 63 % of its distance. */
 const EASE_S = 0.11;
 /** Speed below which the rotation stops: 0.02 pixels per frame at 1,000 px. */
@@ -45,6 +58,8 @@ export function axes({ yaw, pitch }) {
   return { right: [-sy, cy, 0], up: [-cy * sp, -sy * sp, cp], forward: [-cy * cp, -sy * cp, -sp] };
 }
 
+const NO_INSETS = { left: 0, right: 0, top: 0, bottom: 0 };
+
 /**
  * Returns the matrices and vectors that the renderers and the picker need.
  * @param {CameraState} camera
@@ -52,29 +67,32 @@ export function axes({ yaw, pitch }) {
  * @param {number} heightPx
  * @param {Ball} scene  a ball around everything drawn, which determines the near and far planes
  * @param {Insets} [insets]  covered margins; the target is drawn in the middle of the free part
+ * @param {boolean} [parallel]  whether lines that are parallel stay so: an orthographic view
  * @returns {View}
  */
-export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, right: 0, top: 0, bottom: 0 }) {
+export function viewOf(camera, widthPx, heightPx, scene, insets = NO_INSETS, parallel = false) {
   const w = Math.max(1, widthPx);
   const h = Math.max(1, heightPx);
   const [left, rightPx] = fair(insets.left, insets.right, w);
   const [top, bottom] = fair(insets.top, insets.bottom, h);
   const freeW = w - left - rightPx;
   const freeH = h - top - bottom;
-  const worldPerPx = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(freeW, freeH);
+  const away = parallel ? PARALLEL_DISTANCES : 1;
+  const worldPerPx = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(freeW, freeH) / away;
   const tanX = (worldPerPx * w) / 2;
   const tanY = (worldPerPx * h) / 2;
   const shiftX = (left - rightPx) / w;
   const shiftY = (bottom - top) / h;
   const { right, up, forward } = axes(camera);
-  const { target, distance } = camera;
+  const { target } = camera;
+  const distance = camera.distance * away;
   /** @type {Vec3} */
   const eye = [target[0] - forward[0] * distance, target[1] - forward[1] * distance, target[2] - forward[2] * distance];
   const depth = dot(forward, [scene.centre[0] - eye[0], scene.centre[1] - eye[1], scene.centre[2] - eye[2]]);
   // The near plane is at least a thousandth of the far plane. Below that, a 24-bit depth buffer cannot separate
   // neighbouring discs.
   const far = Math.max(depth + scene.radius * 1.05, distance * 0.02, 1e-30);
-  const near = Math.max(depth - scene.radius * 1.05, far * 1e-3);
+  const near = Math.max(depth - scene.radius * 1.05, parallel ? 0 : far * 1e-3);
   const a = far / (near - far);
   const b = (far * near) / (near - far);
   // Rows of clipFromView (view looks along −z, depth 0 … 1) times the rows of viewFromWorld.
@@ -86,10 +104,12 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
     const r = k < 3 ? right[k] : tr;
     const u = k < 3 ? up[k] : tu;
     const z = k < 3 ? -forward[k] : tb;
-    clipFromWorld[4 * k] = r / tanX - shiftX * z;
-    clipFromWorld[4 * k + 1] = u / tanY - shiftY * z;
-    clipFromWorld[4 * k + 2] = a * z + (k === 3 ? b : 0);
-    clipFromWorld[4 * k + 3] = -z;
+    const last = k < 3 ? 0 : 1;
+    // The divisor is the depth; in a parallel projection it is 1, and the depth counts from the near plane.
+    clipFromWorld[4 * k] = parallel ? r / (tanX * distance) + last * shiftX : r / tanX - shiftX * z;
+    clipFromWorld[4 * k + 1] = parallel ? u / (tanY * distance) + last * shiftY : u / tanY - shiftY * z;
+    clipFromWorld[4 * k + 2] = parallel ? (z + last * near) / (near - far) : a * z + last * b;
+    clipFromWorld[4 * k + 3] = parallel ? last : -z;
   }
   const packed = new Float32Array(23);
   packed.set(clipFromWorld);
@@ -109,6 +129,8 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
     shiftX,
     shiftY,
     worldPerPx,
+    span: distance,
+    parallel,
     packed,
   };
 }
@@ -146,12 +168,12 @@ export function rayThrough(view, xPx, yPx) {
  * @param {View} view @param {ArrayLike<number>} place
  * @returns {Spot | null}
  */
-export function projected({ clipFromWorld: m, worldPerPx, widthPx, heightPx }, place) {
+export function projected({ clipFromWorld: m, worldPerPx, widthPx, heightPx, span, parallel }, place) {
   const row = (/** @type {number} */ k) => m[k] * place[0] + m[4 + k] * place[1] + m[8 + k] * place[2] + m[12 + k];
   const w = row(3);
   if (!(w > 0)) return null;
   const [x, y] = [(0.5 + (0.5 * row(0)) / w) * widthPx, (0.5 - (0.5 * row(1)) / w) * heightPx];
-  return { x, y, perPx: worldPerPx * w };
+  return { x, y, perPx: worldPerPx * (parallel ? span : w) };
 }
 
 /**
@@ -268,7 +290,7 @@ export class Camera {
     if (at) {
       const ray = rayThrough(at.view, at.xPx, at.yPx);
       // The fixed point is the intersection of the ray with the plane through the target that faces the eye.
-      const along = distance / dot(ray, at.view.forward);
+      const along = at.view.span / dot(ray, at.view.forward);
       const share = 1 - next / distance;
       moved = vec((k) => target[k] + share * (at.view.eye[k] + ray[k] * along - target[k]));
     }
@@ -279,7 +301,7 @@ export class Camera {
 
   /** Moves the target by a drag in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
   pan(dxPx, dyPx, view) {
-    const scale = view.worldPerPx * this.state.distance;
+    const scale = view.worldPerPx * view.span;
     this.state = {
       ...this.state,
       target: vec((k) => this.state.target[k] + scale * (-dxPx * view.right[k] + dyPx * view.up[k])),

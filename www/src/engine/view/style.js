@@ -17,6 +17,8 @@ export const FADE_S = 0.12;
 const EDGE_PX = 1;
 /** Share by which what is seen from behind is drawn as an inside: darker and greyer. */
 const DIM_BACKFACES = 1;
+/** The same of the faces of a mesh: enough to tell its sides apart. */
+const DIM_BEHIND_FACES = 0.25;
 
 /** Returns what the picture shows of the view. @param {ViewState} view */
 export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {
@@ -66,7 +68,8 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
     dim,
     fade_s: calm ? 0 : FADE_S,
     level: shownLevel(look, lastLevel),
-    dim_backfaces: DIM_BACKFACES,
+    // A mesh is looked into where the box cuts it, so that its inside is to be seen as well.
+    dim_backfaces: look.draw === 'mesh' ? DIM_BEHIND_FACES : DIM_BACKFACES,
     outline: look.highlight,
     box: look.box && { ...look.box, colour: [...rgbFromPacked(palette.box), 0.9] },
     plane: look.plane,

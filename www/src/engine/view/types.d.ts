@@ -38,7 +38,11 @@ export type View = {
   tanY: number;
   shiftX: number;
   shiftY: number;
+  /** length across a pixel at distance 1 from the eye */
   worldPerPx: number;
+  /** distance of the target from the eye */
+  span: number;
+  parallel: boolean;
   packed: Float32Array;
 };
 /** A way to colour the particles. A colour is packed as `0xAABBGGRR`. */

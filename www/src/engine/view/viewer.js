@@ -4,7 +4,7 @@
  * @module
  */
 import { vec } from '../vector.js';
-import { ballOf, Camera, projected, rayThrough, viewOf } from './camera.js';
+import { ballOf, Camera, projected, rayThrough, STANDARD_VIEWS, viewOf } from './camera.js';
 import { legendOf } from './colouring.js';
 import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
@@ -230,6 +230,12 @@ export class Viewer {
     this.moved();
   }
 
+  /** Turns the camera to a named view. @param {keyof typeof STANDARD_VIEWS} name */
+  lookFrom(name) {
+    this.camera.turnTo(STANDARD_VIEWS[name]);
+    this.moved();
+  }
+
   /** Frames the part of the front that is drawn, unless the hand has taken the camera. */
   #frameFront() {
     const { camera, columns } = this;
@@ -264,7 +270,9 @@ export class Viewer {
   /** @returns {View} */
   currentView() {
     const { cssWidth, cssHeight } = this.screen;
-    return viewOf(this.camera.state, cssWidth, cssHeight, this.#scene.ball(), this.look.insets);
+    const { insets, projection } = this.look;
+    const isParallel = projection === 'orthographic';
+    return viewOf(this.camera.state, cssWidth, cssHeight, this.#scene.ball(), insets, isParallel);
   }
 
   /**
@@ -418,7 +426,9 @@ export class Viewer {
     this.#tell(device, now);
     const [width, height] = renderer.picture_size(widthPx, heightPx);
     const { cssWidth, cssHeight } = this.screen;
-    const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.#scene.ball());
+    const isParallel = this.look.projection === 'orthographic';
+    const size = /** @type {const} */ ([cssWidth || width, cssHeight || height]);
+    const view = viewOf(this.camera.state, ...size, this.#scene.ball(), undefined, isParallel);
     fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
     this.#tellView(renderer, view, this.columns.count);
     renderer.set_style(JSON.stringify({ ...this.#style(now), dim: 0, outline: -1 }));

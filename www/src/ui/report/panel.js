@@ -5,7 +5,7 @@
 import { computed } from '@preact/signals-core';
 import { term } from '../button.js';
 import { fill, h, live } from '../dom.js';
-import { withCounts } from '../format.js';
+import { plural, withCounts } from '../format.js';
 import { remembered } from '../remembered.js';
 import { createHistogram } from './histogram.js';
 import { listOf, placeOf } from './places.js';
@@ -46,6 +46,14 @@ export function mountReport(body, engine, description) {
   );
   const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
   const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
+  // The mesh's own figures, and the line under the picture, count the border.
+  const excluded = computed(() => report.value?.quality?.boundary_excluded ?? 0);
+  const border = h(
+    'p',
+    { class: 'quiet', hidden: () => excluded.value === 0 },
+    () =>
+      `Order, triangles and spacing leave out ${plural(excluded.value, 'particle')} at the border; the figures of the mesh do not.`,
+  );
   const waiting = h('p', { class: 'quiet waiting', hidden: () => report.value !== null }, () =>
     engine.empty.value
       ? 'Nothing to measure: there is no surface inside the box.'
@@ -65,6 +73,7 @@ export function mountReport(body, engine, description) {
     warnings,
     createPlain(report, counted),
     createAll(
+      border,
       createTable(report, description.report, { counted, stale, show: createShow(engine, said) }),
       said,
       createTiming(engine, report),

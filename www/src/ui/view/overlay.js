@@ -4,8 +4,8 @@ import { computed } from '@preact/signals-core';
 import { enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
+import { NO_MESH, verdictOf } from '../mesh/words.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
-import { meshWords, NO_MESH } from './mesh-words.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../engine/types.js'
@@ -76,9 +76,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
 /** Returns what is said of the mesh while it is drawn. @param {Engine} engine */
 function meshOf(engine) {
   if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
-  if (engine.backend.value === 'canvas2d') return NO_MESH;
   const mesh = engine.mesh.value;
-  return mesh && !engine.busy.value && !engine.reveal.value ? meshWords(mesh) : '';
+  const told = mesh && !engine.busy.value && !engine.reveal.value ? verdictOf(mesh) : '';
+  return engine.backend.value === 'canvas2d' ? [told, NO_MESH].filter(Boolean).join(' · ') : told;
 }
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */

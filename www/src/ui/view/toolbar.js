@@ -7,11 +7,11 @@ import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { attachMenu } from '../menu.js';
-import { copyLink, exportFile, exportMesh } from '../share.js';
+import { copyLink, exportFile } from '../share.js';
 import { createSlider } from '../slider.js';
 
 /**
- * @import { Engine, MeshFormat, ViewState } from '../../engine/types.js'
+ * @import { Engine, ViewState } from '../../engine/types.js'
  * @import { IconName } from '../icons.js'
  * @import { ButtonProps, Motion } from '../types.js'
  * @import { ToolbarOptions } from './types.js'
@@ -19,19 +19,11 @@ import { createSlider } from '../slider.js';
 
 const ZOOM = 1.25;
 const TURN_RAD = Math.PI / 12;
-/** File formats for the mesh, with a note. @type {[MeshFormat, string][]} */
-const MESH_FORMATS = [
-  ['glb', 'triangles, normals, levels as colours'],
-  ['obj', 'triangles and normals, as text'],
-  ['stl', 'triangles alone'],
-  ['ply', 'all columns, and triangles'],
-];
-
 /**
  * @param {Engine} engine
  * @param {ToolbarOptions} page
  */
-export function createToolbar(engine, { hide, shortcuts, picture, motion, toast }) {
+export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, motion, toast }) {
   const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');
   const save = tool('save', 'Export', 'The particles, or the mesh over them, as a file.');
   const bar = h(
@@ -53,6 +45,11 @@ export function createToolbar(engine, { hide, shortcuts, picture, motion, toast 
     view,
     [
       turning(engine, motion),
+      standing(engine),
+      choices(engine, 'Projection', 'projection', [
+        ['perspective', 'Perspective'],
+        ['orthographic', 'Orthographic'],
+      ]),
       ...drawing(engine),
       scale(engine),
       theme(engine),
@@ -70,9 +67,7 @@ export function createToolbar(engine, { hide, shortcuts, picture, motion, toast 
       choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
       choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
       heading('Mesh'),
-      ...MESH_FORMATS.map(([format, note]) =>
-        choice(`Export mesh ${format.toUpperCase()}`, () => exportMesh(engine, toast, format), note),
-      ),
+      choice('Make a mesh', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
     ],
     { label: 'Export' },
   );
@@ -139,6 +134,15 @@ function turning(engine, motion) {
   ]);
 }
 
+/** Creates the buttons of the named views. @param {Engine} engine */
+const standing = (engine) =>
+  line(
+    'View',
+    /** @type {const} */ (['front', 'right', 'top', 'isometric']).map((name) =>
+      button({ class: 'small', press: () => engine.lookFrom(name) }, name[0].toUpperCase() + name.slice(1)),
+    ),
+  );
+
 /** @param {Engine} engine */
 function discSize(engine) {
   return createSlider({
@@ -154,7 +158,7 @@ function discSize(engine) {
 
 /**
  * Creates a line of buttons of which one is pressed: the value of a part of the view.
- * @template {'draw' | 'faces' | 'theme'} K
+ * @template {'draw' | 'faces' | 'projection' | 'theme'} K
  * @param {Engine} engine
  * @param {string} name
  * @param {K} key

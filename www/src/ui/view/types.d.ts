@@ -81,6 +81,8 @@ export interface ToolbarOptions {
   shortcuts: () => void;
   /** opens the dialog that takes the picture away */
   picture: () => void;
+  /** makes a mesh and opens its panel */
+  makeMesh: () => void;
   motion: Motion;
   toast: Toast;
 }

@@ -6,8 +6,10 @@ import type {
     Fault,
     FieldAnswer,
     FieldRequest,
+    FileRequest,
     MeshAnswer,
     Progress,
+    FileRecord,
     Report,
     SolvedModel,
     Start,
@@ -75,10 +77,10 @@ export class Core {
      */
     measure(budget: number): Report | undefined;
     /**
-     * The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
-     * undefined before; null for another extension or if it is too large.
+     * The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is
+     * complete, undefined before; null for another extension or if it is too large.
      */
-    mesh_file(extension: string, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
+    mesh_file(request: Partial<FileRequest>, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
     /**
      * Distance to the nearest particle, as of the last report.
      */
@@ -111,6 +113,10 @@ export class Core {
      * Repulsion radii from particle `from` on.
      */
     radii(from: number): Float32Array<ArrayBuffer>;
+    /**
+     * The record of what the particles were made from, for their files: `FileRecord`; null before the first run.
+     */
+    record(): FileRecord | null;
     /**
      * Queues relaxation steps on the present particles.
      */

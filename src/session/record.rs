@@ -1,0 +1,111 @@
+//! What a file can be made again from, and the request for a mesh file.
+
+use super::{BoxFaces, Session, SolidSettings, Source};
+use crate::export::{self, MeshFormat, Placement};
+use crate::math::Bounds;
+use crate::run::FileWish;
+use crate::sampler::{Method, Settings};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a file was made from. Files carry it as JSON ([`export::RecordText`]), from which the same particles can be made again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct FileRecord {
+    /// Version of the program.
+    pub version: String,
+    /// Digest of the particles, 16 hexadecimal digits.
+    pub digest: String,
+    /// Link to the page in this state, where the page has made the file.
+    #[serde(default)]
+    pub link: Option<String>,
+    /// Gallery surface whose formula it is.
+    #[serde(default)]
+    pub surface: Option<String>,
+    /// Model from points, in place of a formula.
+    #[serde(default)]
+    pub model: Option<String>,
+    /// Text of the formula; empty for a model.
+    pub formula: String,
+    /// Values of its parameters.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, f64>,
+    /// Box of the run.
+    pub bounds: Bounds,
+    /// Box whose faces close the solid, where they do.
+    #[serde(default)]
+    pub faces: Option<Bounds>,
+    /// What is made of the surface before it is sampled.
+    #[serde(default)]
+    #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
+    pub solid: SolidSettings,
+    /// Settings of the run.
+    #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
+    pub settings: Settings,
+}
+
+/// Request for a mesh file.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(default)]
+pub struct FileRequest {
+    /// Extension of the format.
+    pub format: String,
+    /// Size and orientation of the mesh.
+    pub placement: Placement,
+    /// Link for the record.
+    pub link: Option<String>,
+    /// Whether the file is written without a record.
+    pub plain: bool,
+}
+
+impl Session {
+    /// What the particles were made from, from the start of their run; nothing before the first one.
+    pub fn record(&self, link: Option<String>) -> Option<FileRecord> {
+        let mut record = self.made.clone()?;
+        record.digest = format!("{:016x}", self.run.particles().digest());
+        record.link = link;
+        // Steps that were made after the run belong to it: ten and one are eleven.
+        if let (Method::Front, Some(progress)) = (record.settings.method, self.run.progress()) {
+            record.settings.relax_steps = progress.relax_step;
+        }
+        Some(record)
+    }
+
+    /// The record of a run that starts now.
+    pub(super) fn beginning(&self, settings: &Settings) -> FileRecord {
+        let (formula, parameters, model) = match self.source() {
+            Source::Formula(field) => (field.text().to_owned(), field.parameters(), None),
+            Source::Points { info, .. } => (String::new(), [].as_slice(), Some(info.name.clone())),
+        };
+        FileRecord {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            digest: String::new(),
+            link: None,
+            surface: self.surface.map(|surface| surface.id.to_owned()),
+            model,
+            formula,
+            parameters: parameters.iter().map(|p| (p.name.clone(), p.value)).collect(),
+            bounds: self.run.bounds(),
+            faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
+            solid: self.fitting.choice,
+            settings: *settings,
+        }
+    }
+
+    /// The mesh as a file, up to `budget` slices of the work: its bytes once it is complete, nothing before. `json` gives the JSON of the
+    /// record. Nothing inside for an unknown extension, or where the file would be too large.
+    pub fn mesh_file(
+        &mut self,
+        request: &FileRequest,
+        json: impl FnOnce(&FileRecord) -> String,
+        budget: u32,
+    ) -> Option<Option<Vec<u8>>> {
+        let Some(format) = MeshFormat::of_extension(&request.format) else { return Some(None) };
+        let record = if request.plain { None } else { self.record(request.link.clone()) };
+        let record =
+            record.map_or_else(export::RecordText::default, |made| export::RecordText::new(&json(&made)));
+        let wish = FileWish { format, placement: request.placement, record };
+        self.run.mesh_file(&wish, budget).map_or(Some(None), |bytes| bytes.map(Some))
+    }
+}

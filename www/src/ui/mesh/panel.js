@@ -1,0 +1,122 @@
+/** The panel of a mesh: the verdict on it, where it is open, and how it is saved. */
+import { computed } from '@preact/signals-core';
+import { button } from '../button.js';
+import { h, uniqueId } from '../dom.js';
+import { saveMesh } from '../share.js';
+import { borderOf, verdictOf } from './words.js';
+
+/**
+ * @import { Engine, MeshAnswer, MeshFormat } from '../../engine/types.js'
+ * @import { Toast } from '../types.js'
+ */
+
+/** File formats, with what is in them. @type {[MeshFormat, string][]} */
+const FORMATS = [
+  ['glb', 'for viewers: normals, levels as colours, in metres'],
+  ['3mf', 'for printers: triangles with their unit'],
+  ['stl', 'triangles alone, and no record of what they were made from'],
+  ['obj', 'triangles and normals, as text'],
+  ['ply', 'all columns of the particles, and triangles'],
+];
+/** Units by their symbols; without one numbers stay what they are. */
+const UNITS = ['', 'mm', 'cm', 'm', 'in'];
+const AXES = ['z', 'y', 'x'];
+
+/**
+ * @param {Engine} engine
+ * @param {{ toast: Toast, close: () => void }} page
+ */
+export function createMeshPanel(engine, { toast, close }) {
+  const made = computed(() => (engine.busy.value || engine.empty.value ? null : engine.mesh.value));
+  const verdict = () => {
+    if (made.value) return verdictOf(made.value);
+    return engine.busy.value || !engine.empty.value ? 'Making the mesh …' : 'There is no surface to make a mesh of.';
+  };
+  const note = h('p', { class: 'quiet' });
+  const format = select(
+    FORMATS.map(([id]) => [id, id.toUpperCase()]),
+    () => {
+      note.textContent = FORMATS[format.selectedIndex][1];
+    },
+  );
+  note.textContent = FORMATS[0][1];
+  const scale = h('input', {
+    type: 'number',
+    class: 'field',
+    min: '0',
+    step: 'any',
+    value: '1',
+    'aria-label': 'Length of a unit of the formula',
+  });
+  const unit = select(UNITS.map((id) => [id, id || 'no unit']));
+  unit.setAttribute('aria-label', 'Unit');
+  const up = select(AXES.map((id) => [id, id]));
+  const save = () => {
+    const factor = scale.valueAsNumber;
+    if (!(factor > 0 && factor < Infinity)) {
+      scale.focus();
+      toast({ id: 'save', kind: 'warn', text: 'The length of a unit must be a positive number.' });
+      return;
+    }
+    const chosen = FORMATS[format.selectedIndex][0];
+    const placement = {
+      scale: factor,
+      unit: /** @type {'mm' | 'cm' | 'm' | 'in' | null} */ (unit.value || null),
+      up: /** @type {'x' | 'y' | 'z'} */ (up.value),
+    };
+    void saveMesh(engine, toast, chosen, placement);
+  };
+  const id = uniqueId('mesh');
+  return h(
+    'section',
+    { class: 'mesh-panel', 'aria-labelledby': id },
+    h(
+      'div',
+      { class: 'dialog-head' },
+      h('h2', { id }, 'Mesh'),
+      button({ icon: 'close', 'aria-label': 'Close', press: close }),
+    ),
+    h('p', { class: 'verdict', role: 'status' }, verdict),
+    showing(engine, made),
+    line('One unit is', scale, unit),
+    line('Points up', up),
+    line('Format', format),
+    note,
+    button({ class: 'save', off: () => !made.value, press: save }, 'Save mesh'),
+  );
+}
+
+/**
+ * Creates the button that shows the open borders, one after the other.
+ * @param {Engine} engine
+ * @param {{ readonly value: MeshAnswer | null }} made
+ */
+function showing(engine, made) {
+  /** @type {{ mesh: MeshAnswer | null, next: number }} */
+  let last = { mesh: null, next: 0 };
+  const press = () => {
+    const mesh = made.value;
+    if (!mesh?.loops.length) return;
+    const index = last.mesh === mesh ? last.next : 0;
+    engine.pointOut(borderOf(mesh, index, engine.columns));
+    last = { mesh, next: (index + 1) % mesh.loops.length };
+  };
+  return button({ hidden: () => !made.value?.loops.length, press }, () =>
+    (made.value?.loops.length ?? 0) > 1 ? 'Show the next border' : 'Show them',
+  );
+}
+
+/** @param {string[][]} options  values and texts @param {() => void} [change] */
+const select = (options, change) =>
+  h(
+    'select',
+    { class: 'select', on: { change } },
+    options.map(([value, text]) => h('option', { value }, text)),
+  );
+
+/** @param {string} label @param {...HTMLElement} inputs */
+function line(label, ...inputs) {
+  const [first] = inputs;
+  first.id = uniqueId('mesh');
+  return h('div', { class: 'mesh-line' }, h('label', { for: first.id }, label), h('span', { class: 'pad' }, inputs));
+}

@@ -1,0 +1,60 @@
+/** Says what a mesh adds up to: whether it is closed, its topology, volume and worst angle, and the places where it is open. */
+
+import { triple } from '../../engine/vector.js';
+import { formatCount, formatFixed, formatSignificant, plural } from '../format.js';
+
+/** @import { Columns, MeshAnswer, Place, Vec3 } from '../../engine/types.js' */
+
+/** Most components whose Euler numbers are told one by one. */
+const MOST_TOLD = 3;
+
+/**
+ * Returns the verdict on a mesh in one line. All of it is counted on the triangles themselves, those at borders among
+ * them, which are those of the file.
+ * @param {MeshAnswer} mesh
+ */
+export function verdictOf({ components, unfilled, left_out, volume, smallest_angle }) {
+  if (components.length === 0) return 'Nothing to join to a mesh';
+  const open = components.reduce((sum, component) => sum + component.open_edges, 0);
+  const euler = components.map((component) => formatCount(component.euler));
+  const sum = components.reduce((total, component) => total + component.euler, 0);
+  return [
+    open === 0 ? 'Watertight' : plural(open, 'open edge'),
+    components.length > 1 ? plural(components.length, 'component') : '',
+    components.length > MOST_TOLD
+      ? `Euler numbers add up to ${formatCount(sum)}`
+      : `Euler number${euler.length > 1 ? 's' : ''} ${euler.join(', ')}`,
+    volume === null ? '' : `volume ${formatSignificant(volume, 4)}`,
+    smallest_angle === null ? '' : `smallest angle ${formatFixed(smallest_angle, 1)}°`,
+    unfilled > 0 ? `${plural(unfilled, 'hole')} where sheets meet or particles are too sparse` : '',
+    left_out > 0 ? `${plural(left_out, 'particle')} left out` : '',
+  ]
+    .filter(Boolean)
+    .join(' · ');
+}
+
+/**
+ * Returns how the picture shows an open border of a mesh: outlined, from the side to which its particles face.
+ * @param {MeshAnswer} mesh
+ * @param {number} index
+ * @param {Columns} columns
+ * @returns {Place}
+ */
+export function borderOf({ loops }, index, { positions, normals }) {
+  const rows = loops[index];
+  const places = rows.map((i) => triple(positions, i));
+  const mean = (/** @type {Vec3[]} */ of) =>
+    /** @type {Vec3} */ ([0, 1, 2].map((k) => of.reduce((sum, v) => sum + v[k], 0) / of.length));
+  const centre = mean(places);
+  const count = loops.length > 1 ? ` · border ${formatCount(index + 1)} of ${formatCount(loops.length)}` : '';
+  return {
+    places,
+    outline: true,
+    radius: Math.max(...places.map((p) => Math.hypot(...p.map((v, k) => v - centre[k])))),
+    normal: mean(rows.map((i) => triple(normals, i))),
+    text: `${plural(rows.length, 'open edge')}${count}`,
+  };
+}
+
+/** The message where no mesh can be drawn. */
+export const NO_MESH = 'A mesh is drawn by WebGPU or WebGL2; the picture shows discs';
