@@ -88,11 +88,12 @@ export class History {
   /**
    * @param {Moment} moment
    * @param {number} nowMs
-   * @param {boolean} [faulty] whether the previous entry has an invalid formula, which is not worth restoring
+   * @param {{ faulty?: boolean, guided?: boolean }} [how] whether the previous entry has an invalid formula, which is
+   *   not worth restoring; whether the camera follows a particle and turns by itself
    */
-  record(moment, nowMs, faulty = false) {
+  record(moment, nowMs, { faulty = false, guided = false } = {}) {
     const present = this.entries[this.#at];
-    const found = present && differences(present, moment);
+    const found = present && differences(present, moment).filter((what) => what !== 'camera' || !guided);
     if (found?.length === 0) {
       // The camera has followed the surface.
       this.entries[this.#at] = moment;
@@ -138,7 +139,11 @@ export function createHistory(engine, moves) {
   const record = (/** @type {State} */ state) => {
     // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
-    history.record(momentOf(state), performance.now(), engine.fieldError.peek() !== null);
+    const { grain, follow } = state.view;
+    history.record(momentOf(state), performance.now(), {
+      faulty: engine.fieldError.peek() !== null,
+      guided: grain !== 'level' && follow !== null,
+    });
   };
   const tell = () => {
     canUndo.value = history.canUndo;

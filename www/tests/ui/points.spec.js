@@ -173,7 +173,7 @@ test('a model is sampled, tells of its points, and one press leads back to the f
     await page.emulateMedia({ colorScheme });
     await expect(page.locator('.story')).toContainText(model.credit);
     await expect(page.locator('.story')).toContainText(`${model.points} points`);
-    const facts = page.locator('.facts');
+    const facts = page.locator('.model .facts');
     for (const word of ['Normals', 'Condition number', 'Mean distance', '95 % are nearer', 'Largest distance'])
       await expect(facts).toContainText(word);
     await expect(page.locator('.model')).toContainText(`f interpolates all ${model.points} points`);
@@ -202,7 +202,7 @@ test('a file and the number of its points', async ({ page }) => {
     await settled(page);
     const { quality } = await report(page);
     expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
-    await expect(page.locator('.facts')).toContainText('given');
+    await expect(page.locator('.model .facts')).toContainText('given');
     await page.getByRole('button', { name: 'Closed', exact: true }).click();
     await page.locator('.tile[data-surface="torus"]').click();
     await settled(page);
