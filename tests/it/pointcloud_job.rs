@@ -298,7 +298,7 @@ fn a_surface_follows_large_faces_between_few_corners() {
     let mut text = String::new();
     for (radius, z) in [(1.0, -0.2), (1.0, 0.2), (0.4, 0.2), (0.4, -0.2)] {
         for k in 0..STEPS {
-            let (sine, cosine) = (f64::from(k) * core::f64::consts::TAU / f64::from(STEPS)).sin_cos();
+            let (sine, cosine) = libm::sincos(f64::from(k) * core::f64::consts::TAU / f64::from(STEPS));
             let _ = writeln!(text, "v {} {} {z}", radius * cosine, radius * sine);
         }
     }
