@@ -65,7 +65,7 @@ impl SamplingOptions {
         let Ok(Json::Object(known)) = serde_json::to_value(settings) else { return };
         for (name, value) in known {
             let is_length = self.lengths.iter().any(|(given, _)| *given == name);
-            if !is_length && !(is_counted && name == MAX_PARTICLES) {
+            if !(is_length || is_counted && name == MAX_PARTICLES) {
                 self.values.entry(name).or_insert(value);
             }
         }

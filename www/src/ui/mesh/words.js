@@ -1,9 +1,8 @@
-/** Says what a mesh adds up to: whether it is closed, its topology, volume and worst angle, and the places where it is open. */
+/** Says what a mesh adds up to: whether it is closed, its topology, volume and worst angle. */
 
-import { triple } from '../../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../format.js';
 
-/** @import { Columns, MeshAnswer, Place, Vec3 } from '../../engine/types.js' */
+/** @import { MeshAnswer } from '../../engine/types.js' */
 
 /** Most components whose Euler numbers are told one by one. */
 const MOST_TOLD = 3;
@@ -31,29 +30,6 @@ export function verdictOf({ components, unfilled, left_out, volume, smallest_ang
   ]
     .filter(Boolean)
     .join(' · ');
-}
-
-/**
- * Returns how the picture shows an open border of a mesh: outlined, from the side to which its particles face.
- * @param {MeshAnswer} mesh
- * @param {number} index
- * @param {Columns} columns
- * @returns {Place}
- */
-export function borderOf({ loops }, index, { positions, normals }) {
-  const rows = loops[index];
-  const places = rows.map((i) => triple(positions, i));
-  const mean = (/** @type {Vec3[]} */ of) =>
-    /** @type {Vec3} */ ([0, 1, 2].map((k) => of.reduce((sum, v) => sum + v[k], 0) / of.length));
-  const centre = mean(places);
-  const count = loops.length > 1 ? ` · border ${formatCount(index + 1)} of ${formatCount(loops.length)}` : '';
-  return {
-    places,
-    outline: true,
-    radius: Math.max(...places.map((p) => Math.hypot(...p.map((v, k) => v - centre[k])))),
-    normal: mean(rows.map((i) => triple(normals, i))),
-    text: `${plural(rows.length, 'open edge')}${count}`,
-  };
 }
 
 /** The message where no mesh can be drawn. */
