@@ -165,19 +165,18 @@ impl Particles {
         self.twins.get(i).map_or(i, |&first| first as usize)
     }
 
-    /// For each of the first rows, the first row of the same vertex: of the same particle, but for the rows of a tip, at which sheets of
-    /// one patch meet. Each of them is a vertex of its own.
-    pub(crate) fn joints(patch: &[u32], twins: &[u32]) -> Vec<u32> {
-        let is_own = |i: u32| patch[i as usize] == patch[twins[i as usize] as usize];
-        (0..).zip(twins).map(|(i, &first)| if is_own(i) { i } else { first }).collect()
+    /// For each of the first rows, the first row of the same vertex: of the same particle, but for the rows of a [tip](Self::tips), each of
+    /// which is a vertex of its own.
+    pub(crate) fn joints(twins: &[u32], segments: &[[u32; 2]]) -> Vec<u32> {
+        let mut joints = twins.to_vec();
+        Self::tips(twins, segments).into_iter().for_each(|tip| joints[tip as usize] = tip);
+        joints
     }
 
-    /// The rows of tips, in ascending order.
-    pub(crate) fn tips(patch: &[u32], twins: &[u32]) -> Vec<u32> {
+    /// The rows of tips, in ascending order: particles with rows of their own through which no crease runs.
+    pub(crate) fn tips(twins: &[u32], segments: &[[u32; 2]]) -> Vec<u32> {
         let mut is_tip = vec![true; twins.len()];
-        for (i, &first) in twins.iter().enumerate() {
-            is_tip[first as usize] &= patch[i] == patch[first as usize];
-        }
+        segments.as_flattened().iter().for_each(|&first| is_tip[first as usize] = false);
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 

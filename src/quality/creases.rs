@@ -29,7 +29,7 @@ impl Creases {
             return Self::default();
         }
         let particle = |row: u32| patches.twins.get(row as usize).copied().unwrap_or(row);
-        let joints = Particles::joints(patches.patch, patches.twins);
+        let joints = Particles::joints(patches.twins, patches.segments);
         let vertex = |row: u32| joints.get(row as usize).copied().unwrap_or(row);
         let mut place = vec![u32::MAX; patches.patch.len()];
         for (k, &row) in (0..).zip(&tree.origin) {
@@ -42,7 +42,7 @@ impl Creases {
         let mut on_creases: Vec<(u32, u32)> =
             patches.twins.iter().copied().zip(patches.patch.iter().copied()).collect();
         on_creases.sort_unstable();
-        let tips = Particles::tips(patches.patch, patches.twins);
+        let tips = Particles::tips(patches.twins, patches.segments);
         Self {
             is_tip: tree.origin.iter().map(|row| tips.binary_search(row).is_ok()).collect(),
             patch: tree.origin.iter().map(|&row| patches.patch[row as usize]).collect(),

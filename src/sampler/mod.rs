@@ -44,7 +44,7 @@ use attempt::Attempt;
 pub(crate) use constraint::Creases;
 use constraint::tips::Tip;
 use discovery::search::ComponentSearch;
-use discovery::singular::{Bend, Singular};
+use discovery::singular::{NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, spacing, survey};
 use discovery::{precision, singular};
 use front::Front;
@@ -56,6 +56,7 @@ use refine::CoarseFronts;
 use relaxation::Relaxation;
 use run::RunInput;
 use sizing::Sizing;
+use std::collections::BTreeMap;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a front, and most of what its
 /// relaxation adds; of a refined run the columns and the last two levels of its mesh, with the wanted sizes where these differ.
@@ -326,7 +327,12 @@ impl Sampler {
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.scale);
-            let curvature = refine::largest_curvatures(field, &self.survey.position);
+            let mut curvature = refine::largest_curvatures(field, &self.survey.position);
+            for (curvature, &p) in curvature.iter_mut().zip(&self.survey.position) {
+                if self.tips.iter().any(|tip| tip.explains(p, *curvature)) {
+                    *curvature = 0.0;
+                }
+            }
             let has_one_radius = settings.sampling == Sampling::Uniform;
             let crease = if has_one_radius { self.creases.at_box() } else { self.creases.first() };
             self.counts.refusal = match crease {
@@ -370,16 +376,7 @@ impl Sampler {
             // Where f touches zero only, all of the surface is singular.
             if !is_dense && !self.survey.touches {
                 let scaled = &mut Scaled::new(field, scale);
-                let spacing = spacing(&self.bounds);
-                let near = singular::near_survey(scaled, &self.survey.position, spacing, &self.bounds);
-                self.singular = near.points;
-                if !self.creases.may_be {
-                    self.find_tips(
-                        &mut Probe::new(scaled, &mut ProbeMemory::default()),
-                        &near.bends,
-                        spacing,
-                    );
-                }
+                self.find_singular_points(&mut Probe::new(scaled, &mut ProbeMemory::default()));
             }
         } else {
             field.use_double(self.survey.double);
@@ -396,22 +393,47 @@ impl Sampler {
         }
     }
 
-    /// Finds the tips among the singular points, and those near `bends` at which f has no second derivative.
-    fn find_tips(&mut self, probe: &mut Probe, bends: &[Bend], spacing: f64) {
+    /// Finds the singular points near those of the survey, on each patch by itself.
+    fn find_singular_points(&mut self, probe: &mut Probe) {
+        let spacing = spacing(&self.bounds);
+        let mut patches: BTreeMap<Option<u32>, Vec<Vec3>> = BTreeMap::new();
+        for &p in &self.survey.position {
+            let patch = self.creases.are_there().then(|| probe.field.branch_at(p.as_dvec3()));
+            patches.entry(patch).or_default().push(p);
+        }
+        for (patch, points) in patches {
+            probe.select(patch);
+            let mut near = singular::near_survey(probe.field, &points, spacing, &self.bounds);
+            near.points.retain(|point| probe.is_on_patch(point.position.as_vec3(), patch));
+            self.singular.extend_from_slice(&near.points);
+            self.find_tips(probe, patch, &near, spacing);
+        }
+        probe.select(None);
+    }
+
+    /// Finds the tips among the singular points of a patch, and those near bends at which f has no second derivative.
+    fn find_tips(&mut self, probe: &mut Probe, patch: Option<u32>, near: &NearSurvey, spacing: f64) {
         /// Bends that are looked at. Most surfaces have none; around a tip where f has a gradient they are the sharpest.
         const MOST: usize = 16;
-        for place in singular::places(&self.singular) {
+        for place in singular::places(&near.points) {
             if place.kind == SingularKind::Point {
-                self.tips.extend(Tip::at(probe, place.position, spacing));
+                self.tips.extend(Tip::at(probe, patch, place.position, spacing));
             }
         }
-        for bend in bends.iter().take(MOST) {
-            let is_new =
-                |tip: &Tip| self.tips.iter().all(|known| known.position.distance(tip.position) > spacing);
-            let tip = Tip::near(probe, bend.position, spacing)
-                .filter(|tip| self.bounds.holds(tip.position) && is_new(tip));
-            self.singular.extend(tip.iter().map(|tip| Singular::tip(tip.position, spacing)));
-            self.tips.extend(tip);
+        for bend in near.bends.iter().take(MOST) {
+            let Some(tip) = Tip::near(probe, patch, bend.position, spacing) else { continue };
+            let known: Vec<u32> = (self.tips.iter())
+                .filter(|known| known.position.distance(tip.position) <= spacing)
+                .map(|known| known.patch)
+                .collect();
+            if !self.bounds.holds(tip.position) || known.contains(&tip.patch) {
+                continue;
+            }
+            // Several patches may have their tips at one point.
+            if known.is_empty() {
+                self.singular.push(Singular::tip(tip.position, spacing));
+            }
+            self.tips.push(tip);
         }
     }
 

@@ -1,12 +1,12 @@
 //! The state machine of a run: the work of every phase, and the transitions between them.
 
-use super::Sampler;
+use super::{Output, Sampler};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips;
 use crate::sampler::discovery::audit::holds_any;
-use crate::sampler::discovery::singular;
+use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
@@ -15,7 +15,7 @@ use crate::sampler::refine::{self, Components, Next, Refusal};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 
 /// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
@@ -24,6 +24,8 @@ const SEARCH_SLICE: u32 = 8_192;
 /// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a
 /// factor of ten. In the mean a unit takes 0.04 to 0.2 µs natively, so many 1 to 3 ms.
 const RELAXATION_SLICE: u32 = 16_384;
+/// Distance within which a singular point is a tip, as a share of the one within which it was searched for: far above rounding.
+const SAME_TIP: f64 = 1e-3;
 /// Seeds that may be taken back in an attempt, and one more for every particle. Half and double give the same particles on 34
 /// random surfaces.
 const MOST_LONE_SEEDS: usize = 256;
@@ -146,11 +148,7 @@ impl Sampler {
         }
         if !cursor.has_creases {
             cursor.has_creases = true;
-            if self.creases.are_there() {
-                self.begin_at_creases(probe);
-                return PhaseState::Generation(Some(cursor));
-            }
-            if self.begin_at_tips(probe) {
+            if self.begin_at_creases(probe) {
                 return PhaseState::Generation(Some(cursor));
             }
         }
@@ -181,41 +179,34 @@ impl Sampler {
         has_patches.then(|| probe.field.branch_at(point.as_dvec3()))
     }
 
-    /// Places particles on the creases and starts fronts from them.
-    fn begin_at_creases(&mut self, probe: &mut Probe) {
+    /// Places particles on the creases, on the tips and around these, and starts fronts from them. Says whether there are any.
+    fn begin_at_creases(&mut self, probe: &mut Probe) -> bool {
         let before = probe.evaluations();
         let uniform = self.attempt.front_radius() as f32;
         let sizing = self.attempt.sizing.as_ref();
         let halvings = self.attempt.refining.as_ref().map_or(0, |refining| refining.halvings);
-        let filled = self.creases.fill(probe, halvings, |probe, place| {
+        let mut radius = |probe: &mut Probe, place| {
             sizing.map_or(uniform, |sizing| {
                 let mut curvature = [Curvature::default()];
                 curvatures(probe.field, &[place], &mut curvature);
                 sizing.radius(place, &curvature[0])
             })
-        });
-        let along = filled.add_rows(probe, &mut self.output.particles);
-        if let Some(refining) = &mut self.attempt.refining {
-            refining.ladder = Some(filled.into_ladder(&self.output.particles));
-        }
-        self.counts.seeds += self.creases.pieces();
-        self.counts.seeding_evaluations += probe.evaluations() - before;
-        self.with_front(probe, |front, context| front.add_creases(context, &along));
-    }
-
-    /// Places particles on the tips and around them, and starts fronts from there. Says whether there are any.
-    fn begin_at_tips(&mut self, probe: &mut Probe) -> bool {
-        if self.attempt.refining.is_some() || self.settings.sampling == Sampling::Adaptive {
+        };
+        let filled = self.creases.fill(probe, halvings, &mut radius);
+        let particles = &mut self.output.particles;
+        let along = filled.add_rows(probe, particles);
+        let match_share = 2.0 * self.settings.match_tolerance as f32;
+        tips::add(probe, &self.tips, radius, match_share, &self.bounds, particles);
+        if particles.is_empty() {
             return false;
         }
-        let before = probe.evaluations();
-        let radius = self.attempt.front_radius() as f32;
-        let match_radius = 2.0 * radius * self.settings.match_tolerance as f32;
-        tips::add(probe, &self.tips, radius, match_radius, &self.bounds, &mut self.output.particles);
+        if let Some(refining) = &mut self.attempt.refining {
+            refining.ladder = Some(filled.into_ladder(particles));
+        }
+        self.counts.seeds += self.creases.pieces() + (particles.twins.len() - along.len()) as u32;
         self.counts.seeding_evaluations += probe.evaluations() - before;
-        self.counts.seeds += self.output.particles.twins.len() as u32;
-        self.with_front(probe, |front, context| front.add_creases(context, &[]));
-        !self.output.particles.is_empty()
+        self.with_front(probe, |front, context| front.add_creases(context, &along));
+        true
     }
 
     /// Starts a front, after which the seeding goes on from the cursor. Where the limit on particles is reached the search is
@@ -408,10 +399,11 @@ impl Sampler {
     /// where the front stands.
     fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
         let target = self.attempt.target(&self.settings)?;
+        let unpinned = self.unpinned();
         let refining = self.attempt.refining.as_mut()?;
         let before = probe.evaluations();
-        let next = if let Some(point) = self.components.singular().first() {
-            Err(Refusal::Singular { at: point.position.as_vec3().into() })
+        let next = if let Some(refusal) = unpinned {
+            Err(refusal)
         } else if self.tools.front.is_capped() {
             Err(Refusal::Full)
         } else {
@@ -435,6 +427,19 @@ impl Sampler {
             }
             Err(refusal) => self.refuse(refusal),
         })
+    }
+
+    /// Why the front is not refined, if there is a singular point without a particle: no tip, or one without room for it.
+    fn unpinned(&self) -> Option<Refusal> {
+        let Output { particles, .. } = &self.output;
+        let is_near = |point: &Singular, p: DVec3| point.position.distance(p) <= SAME_TIP * point.reach;
+        let is_pinned = |point: &&Singular| {
+            (0..particles.twins.len()).any(|row| is_near(point, particles.position[row].as_dvec3()))
+        };
+        let point = self.components.singular().iter().find(|point| !is_pinned(point))?;
+        let at = point.position.as_vec3().into();
+        let is_tip = self.tips.iter().any(|tip| is_near(point, tip.position));
+        Some(if is_tip { Refusal::Doubtful { at } } else { Refusal::Singular { at } })
     }
 
     /// Tries a front of half the radius, or goes back to one of the wanted radius. Patches between creases are refined once at least, and

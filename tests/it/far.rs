@@ -129,11 +129,12 @@ fn a_field_with_an_origin_is_the_same_field_there() {
 #[test]
 fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
     let settings = settings!(radius_share: 0.01, method: Method::Refined; ..Settings::default());
-    let (_, cone) = run(FAR, "X^2 + Y^2 - Z^2", 1.0, &settings);
+    let (_, touch) =
+        run(FAR, "(X^2 + Y^2 + (Z - 0.9)^2 - 0.81) (X^2 + Y^2 + (Z + 0.9)^2 - 0.81)", 1.0, &settings);
     let named = "near (100.000, -200.000, 300.000) the gradient vanishes";
-    assert!(cone.warnings.iter().any(|warning| warning.to_string().contains(named)), "{:?}", cone.warnings);
-    assert!(!cone.measures.places.holes.is_empty(), "the largest hole is told");
-    for hole in &cone.measures.places.holes {
+    assert!(touch.warnings.iter().any(|warning| warning.to_string().contains(named)), "{:?}", touch.warnings);
+    assert!(!touch.measures.places.holes.is_empty(), "the largest hole is told");
+    for hole in &touch.measures.places.holes {
         let away = Vec3::from_array(hole.position).as_dvec3() - FAR;
         assert!(away.abs().max_element() <= 1.001, "{hole:?}");
     }

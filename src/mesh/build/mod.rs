@@ -202,7 +202,7 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         return in_slices(&particles.position, &particles.normal, options).await;
     }
     let mut whole = Joined::default();
-    let tips = Particles::tips(&particles.patch, &particles.twins);
+    let tips = Particles::tips(&particles.twins, &particles.segments);
     for Sheet { rows, border } in Sheet::all(particles) {
         pause().await;
         let [position, normal] = [&particles.position, &particles.normal]
@@ -216,7 +216,7 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         whole.agreed += joined.agreed;
         whole.rounds = whole.rounds.max(joined.rounds);
     }
-    whole.counted(particles.len(), &Particles::joints(&particles.patch, &particles.twins)).await
+    whole.counted(particles.len(), &Particles::joints(&particles.twins, &particles.segments)).await
 }
 
 async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> Joined {

@@ -1,9 +1,10 @@
-//! Particles on creases, level by level: at each level of a refinement another one halves the way between two that follow each other.
+//! Particles on creases and tips, level by level: at each level of a refinement another one halves the way between two that follow each
+//! other along a crease.
 
 use crate::particles::Particles;
 use glam::Vec3;
 
-/// The particles on creases at every level of a refinement. All are known before it begins, so that the patches that meet at a crease
+/// The particles on creases and tips at every level of a refinement. All are known before it begins, so that the patches that meet at a crease
 /// have them at the same places.
 ///
 /// Those of the coarse front have the numbers of their first rows, and the others the numbers after these.

@@ -58,8 +58,6 @@ pub(super) struct Corner {
 pub(crate) struct Creases {
     curves: Vec<Crease>,
     corners: Vec<Corner>,
-    /// Whether there may be some: branches of f may meet on the surface.
-    pub(super) may_be: bool,
     /// Number of evaluations that the search took.
     pub(super) evaluations: u64,
 }
@@ -72,7 +70,7 @@ impl Creases {
 
     /// Finds the creases of a field in `bounds`, which lie in these cells, in slices.
     pub(super) async fn find(probe: &mut Probe<'_>, bounds: &Bounds, cells: &[Bounds]) -> Self {
-        let mut creases = Self { may_be: !cells.is_empty(), ..Self::default() };
+        let mut creases = Self::default();
         let start = probe.evaluations();
         let step = 0.5 * Self::width(bounds);
         for cell in cells {
@@ -155,9 +153,9 @@ impl Creases {
         index
     }
 
-    /// Whether patches of the surface meet.
+    /// Whether patches of the surface meet, along a crease or in a point.
     pub(super) fn are_there(&self) -> bool {
-        !self.curves.is_empty()
+        !(self.curves.is_empty() && self.corners.is_empty())
     }
 
     /// Number of sets of creases that hang together at corners.

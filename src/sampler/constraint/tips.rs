@@ -8,7 +8,7 @@
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 /// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the narrowest nappe is three of them wide.
 const DIVISIONS: i32 = 8;
@@ -30,6 +30,8 @@ const LEAST_COSINE: f64 = 0.1;
 const ONE_NAPPE: f64 = 0.7;
 /// Least number of particles around a tip: three on a narrow cone would face away from each other.
 const LEAST_RING: f64 = 4.0;
+/// Distance, in radii of a particle, within which a corner is a tip: far above rounding.
+const ONE_PLACE: f32 = 1e-3;
 /// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is nearer.
 const FARTHEST: f64 = 1.4;
 
@@ -43,17 +45,35 @@ struct LinkPoint {
 /// A closed curve in which a sphere cuts the surface.
 type Loop = Vec<LinkPoint>;
 
-/// A tip, with the unit vectors towards the middle of each nappe.
+/// A tip.
 #[derive(Clone, Debug)]
 pub(in super::super) struct Tip {
     pub(in super::super) position: DVec3,
+    /// The patch around it.
+    pub(in super::super) patch: u32,
+    /// Unit vectors towards the middle of each nappe.
     nappes: Vec<DVec3>,
+    /// Largest curvature of the nappes, times the distance from the tip.
+    bend: f64,
 }
 
 impl Tip {
-    /// The tip at a singular point; none if the surface there is smooth, or its sheets are no cones that face different ways.
-    pub(in super::super) fn at(probe: &mut Probe, position: DVec3, spacing: f64) -> Option<Self> {
-        let link = link(probe, position, SMALL * spacing)?;
+    /// The tip at a singular point of a patch, which is selected; none if the patch is smooth there or elsewhere, or its sheets are no cones
+    /// that face different ways.
+    pub(in super::super) fn at(
+        probe: &mut Probe,
+        patch: Option<u32>,
+        position: DVec3,
+        spacing: f64,
+    ) -> Option<Self> {
+        let radius = SMALL * spacing;
+        let link = link(probe, position, radius)?;
+        let patch = patch.unwrap_or_else(|| probe.field.branch_at(position));
+        let mut is_own =
+            |point: &LinkPoint| probe.field.branch_at(position + point.direction * radius) == patch;
+        if !link.iter().flatten().all(&mut is_own) {
+            return None;
+        }
         let faces_out = |curve: &Loop| {
             let normal = mean(curve, |point| point.normal);
             curve.iter().all(|point| point.normal.dot(normal) > LEAST_COSINE)
@@ -66,11 +86,23 @@ impl Tip {
             && link.iter().all(faces_out)
             && spread(&link).determinant() > SMOOTH;
         let nappes = link.iter().map(|curve| mean(curve, |point| point.direction)).collect();
-        is_cone.then_some(Self { position, nappes })
+        is_cone.then(|| Self { position, patch, nappes, bend: link.iter().map(bend).fold(0.0, f64::max) })
     }
 
-    /// The tip near `start`, within two spacings: the point in which the tangent planes around it meet.
-    pub(in super::super) fn near(probe: &mut Probe, start: DVec3, spacing: f64) -> Option<Self> {
+    /// Whether a curvature at a point is no larger than a cone with this tip would have there.
+    pub(in super::super) fn explains(&self, point: Vec3, curvature: f64) -> bool {
+        /// The sheets bend by themselves as well.
+        const MORE: f64 = 1.5;
+        curvature * self.position.distance(point.as_dvec3()) <= MORE * self.bend
+    }
+
+    /// The tip of a patch, which is selected, near `start`, within two spacings: the point in which the tangent planes around it meet.
+    pub(in super::super) fn near(
+        probe: &mut Probe,
+        patch: Option<u32>,
+        start: DVec3,
+        spacing: f64,
+    ) -> Option<Self> {
         let (mut position, mut radius) = (start, 2.0 * spacing);
         for _ in 0..ROUNDS {
             let link = link(probe, position, radius)?;
@@ -86,7 +118,7 @@ impl Tip {
             position += step;
             radius *= 0.25;
         }
-        Self::at(probe, position, spacing)
+        Self::at(probe, patch, position, spacing)
     }
 
     /// The nappes at a distance from the tip, in their order; none if the sphere of that radius shows others.
@@ -102,7 +134,7 @@ impl Tip {
         self.nappes.iter().map(own).collect()
     }
 
-    /// A ring around each nappe. The distances along and around the nappe are a spacing in the mean.
+    /// A ring around each nappe, on the patch of the tip. The distances along and around the nappe are a spacing in the mean.
     fn rings(&self, probe: &mut Probe, spacing: f64) -> Option<Vec<Ring>> {
         let nappes = self.nappes(probe, spacing)?;
         let ring = |curve: &Loop| {
@@ -110,7 +142,10 @@ impl Tip {
             let distance = spacing * 2.0 / (1.0 + length(curve) / parts);
             let point = |k| landed(probe, self.position, distance, along(curve, f64::from(k) / parts));
             let points = (0..parts as u32).map(point).collect::<Option<Loop>>()?;
-            (distance <= FARTHEST * spacing).then_some(Ring { tip: 0, distance, points })
+            let place = |point: &LinkPoint| (self.position + point.direction * distance).as_vec3();
+            let has_room = distance <= FARTHEST * spacing
+                && points.iter().all(|point| probe.is_on_patch(place(point), Some(self.patch)));
+            has_room.then_some(Ring { tip: 0, distance, points })
         };
         nappes.iter().map(ring).collect()
     }
@@ -125,43 +160,58 @@ struct Ring {
     points: Vec<LinkPoint>,
 }
 
-/// Adds a particle for each tip to columns that are empty, and then a ring of particles around each nappe. A tip that has no room for its
-/// rings gets none.
+/// Adds a particle for each tip to columns that hold nothing but particles on creases, and then a ring of particles around each nappe. A
+/// tip that has no room for its rings gets none; one in which patches meet has a particle already.
 pub(in super::super) fn add(
     probe: &mut Probe,
     tips: &[Tip],
-    radius: f32,
-    match_radius: f32,
+    mut radius: impl FnMut(&mut Probe, Vec3) -> f32,
+    match_share: f32,
     bounds: &Bounds,
     particles: &mut Particles,
 ) {
-    let spacing = 2.0 * f64::from(radius);
     let mut rings: Vec<Ring> = Vec::new();
     for tip in tips {
-        let Some(around) = tip.rings(probe, spacing) else { continue };
-        let first = particles.len() as u32;
+        probe.select(Some(tip.patch));
+        let place = tip.position.as_vec3();
+        let radius = radius(probe, place);
+        let Some(around) = tip.rings(probe, 2.0 * f64::from(radius)) else { continue };
+        let is_there = |&row: &usize| particles.position[row].distance(place) <= ONE_PLACE * radius;
+        let rows: Vec<usize> = (0..particles.len()).filter(is_there).collect();
+        let first = rows.first().map_or(particles.len() as u32, |&row| particles.twins[row]);
+        let position = rows.first().map_or(place, |&row| particles.position[row]);
+        let mut known =
+            rows.into_iter().filter(|&row| particles.is_on(row, Some(tip.patch))).collect::<Vec<_>>();
         for mut ring in around {
-            ring.tip = particles.len() as u32;
             let normal = mean(&ring.points, |point| point.normal).as_vec3();
-            particles.push_seed(tip.position.as_vec3(), normal, radius, Some(0));
-            particles.twins.push(first);
+            let row = known.pop().unwrap_or(particles.len());
+            if row == particles.len() {
+                particles.push_seed(position, normal, radius, Some(tip.patch));
+                particles.twins.push(first);
+            }
+            ring.tip = row as u32;
+            particles.normal[row] = normal;
             // Its neighbours are known.
-            let slots = &mut particles.slots[ring.tip as usize];
+            let slots = &mut particles.slots[row];
             (0..Slots::COUNT).for_each(|k| slots.set(k, SlotFate::Matched));
             rings.push(ring);
         }
     }
     for Ring { tip, distance, points } in rings {
         let (others, apex) = (particles.len(), particles.position[tip as usize].as_dvec3());
-        for LinkPoint { direction, normal } in points {
+        let radius = particles.radius[tip as usize];
+        for (k, LinkPoint { direction, normal }) in points.into_iter().enumerate() {
             let (position, normal) = ((apex + direction * distance).as_vec3(), normal.as_vec3());
             let is_free = (0..others).all(|i| {
-                particles.position[i].distance(position) > match_radius
+                particles.position[i].distance(position) > match_share * radius
                     || particles.normal[i].dot(normal) <= 0.0
             });
             if is_free && bounds.contains(position) {
                 let mut slots = Slots::default();
                 slots.set(0, SlotFate::Parent);
+                if k < Slots::COUNT {
+                    particles.slots[tip as usize].set(k, SlotFate::Added);
+                }
                 particles.push(position, normal, radius, tip, 1, slots);
             }
         }
@@ -175,6 +225,15 @@ fn mean(curve: &Loop, of: impl Fn(&LinkPoint) -> DVec3) -> DVec3 {
         (of(a) + of(b)) * a.direction.distance(b.direction)
     });
     sides.sum::<DVec3>().normalize_or_zero()
+}
+
+/// Largest curvature of a nappe across its rays, times the distance from the tip: how fast the normal turns along the link.
+fn bend(curve: &Loop) -> f64 {
+    let turns = (0..curve.len()).map(|k| {
+        let (a, b) = (&curve[k], &curve[(k + 1) % curve.len()]);
+        a.normal.distance(b.normal) / a.direction.distance(b.direction)
+    });
+    turns.fold(0.0, f64::max)
 }
 
 /// The mean of nnᵀ over the normals n of a link.

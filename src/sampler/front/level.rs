@@ -93,6 +93,12 @@ impl FrontLevel {
         (self.stage, self.next) = (LevelStage::Place, 0);
         self.first_child = self.settled;
     }
+
+    /// Counts the slots of particles that were placed before the front: those of tips are taken.
+    pub(crate) fn count_known(&mut self, known: &[Slots]) {
+        let fates = known.iter().flat_map(|slots| (0..Slots::COUNT).map(|k| slots.get(k)));
+        fates.for_each(|fate| self.fates.count(fate));
+    }
 }
 
 /// The children of a level between their prediction and their fate: a child `C` poses a problem `P`, whose solution is an `L`.

@@ -363,7 +363,9 @@ impl Components {
 
     /// The mesh of the last level, by the particles at the corners of its faces.
     pub(crate) fn into_corners(mut self) -> Vec<u32> {
-        if let [lone] = &mut self.components[..] {
+        if let [lone] = &mut self.components[..]
+            && lone.particles.is_empty()
+        {
             return mem::take(&mut lone.refinement.corners);
         }
         let places = RowPlaces::of(&self.components);
@@ -393,7 +395,9 @@ impl Components {
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
-        if let [lone] = &mut self.components[..] {
+        if let [lone] = &mut self.components[..]
+            && surface.ladder.is_none()
+        {
             return lone.refinement.step(probe, surface, particles, budget);
         }
         let (mut done, mut has_changed) = (0, false);

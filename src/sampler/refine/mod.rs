@@ -106,6 +106,8 @@ struct Refinement {
 struct Shape {
     euler: i64,
     has_border: bool,
+    /// Whether creases are part of the border.
+    is_creased: bool,
     /// Wanted number of particles of the last level, once the surface has been measured.
     wanted: f64,
 }
@@ -195,7 +197,8 @@ impl Refinement {
     }
 
     fn of_layer(net: Net, block: MovedBlock, target: Target, patch: Option<u32>) -> Self {
-        let shape = Shape { euler: net.mesh.euler(), has_border: net.has_border(), wanted: 0.0 };
+        let (has_border, is_creased) = (net.has_border(), net.is_creased());
+        let shape = Shape { euler: net.mesh.euler(), has_border, is_creased, wanted: 0.0 };
         let mut refinement = Self {
             target,
             patch,
@@ -302,7 +305,7 @@ impl Refinement {
         }
         let share = f64::from(1_u32 << (2 * self.level.to_come));
         // Half of the faces at a crease are those of the other patch, so that a patch has two for each of its particles.
-        let euler = if self.net.is_creased() { 0.0 } else { self.shape.euler as f64 };
+        let euler = if self.shape.is_creased { 0.0 } else { self.shape.euler as f64 };
         let is_graded = self.net.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
         let closed = 2.0 * (self.shape.wanted - euler) / share;
@@ -416,7 +419,7 @@ impl Refinement {
             }
             Pass::Find => {
                 // Where the box cuts the surface, the springs leave fives alone better: Lloyd's method there costs 0.5° of the mean angle.
-                let is_cut = self.shape.has_border && !net.is_creased();
+                let is_cut = self.shape.has_border && !self.shape.is_creased;
                 let is_defect = |&v: &u32| {
                     net.mesh.has_vertex(v)
                         && net.excess(v) != 0

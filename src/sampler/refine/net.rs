@@ -20,6 +20,9 @@ const MAX_CORRECTION: f32 = 0.5;
 /// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
 const FLIP_SLACK: f32 = 1e-5;
 
+/// Least number of neighbours of a tip, which its ring has from the start.
+const LEAST_AROUND_TIP: usize = 4;
+
 /// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method. On 45 random surfaces the closest pair is
 /// 0.014 farther apart with it and the smallest angle 0.2° larger, in the mean; with 0.84 0.011 and 0.1°.
 const SHORT: f32 = 0.86;
@@ -91,7 +94,7 @@ pub(super) struct Net {
     pub(super) size: Vec<f32>,
     /// The box, and the planes of it on which the particles lie.
     pub(super) walls: Walls,
-    /// The number of each particle on a crease: see [`CreaseLadder`]. [`NONE`] for the others; empty where the surface has no creases.
+    /// The number of each particle on a crease or a tip: see [`CreaseLadder`]. [`NONE`] for the others; empty where the surface has neither.
     pub(super) on_crease: Vec<u32>,
 }
 
@@ -242,7 +245,7 @@ impl Net {
     ) {
         ground.block.clear();
         for v in particles {
-            if !self.mesh.has_vertex(v) {
+            if !self.mesh.has_vertex(v) || self.is_pinned(v) {
                 continue;
             }
             let p = self.position[v as usize];
@@ -272,7 +275,7 @@ impl Net {
     /// Brings particles that were put near the surface onto it.
     pub(super) fn land(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
         ground.block.clear();
-        for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
+        for v in particles.filter(|&v| self.mesh.has_vertex(v) && !self.is_pinned(v)) {
             let p = self.position[v as usize];
             ground.block.add(v, p, p);
         }
@@ -338,7 +341,11 @@ impl Net {
             return false;
         }
         let [v, w, x, y] = [h, t, previous(h), previous(t)].map(|h| self.mesh.origin(h));
-        if self.walls.is_near() && (self.is_along_border([v, x, y]) || self.is_along_border([w, x, y])) {
+        if self.walls.is_near()
+            && (self.is_along_border([v, x, y])
+                || self.is_along_border([w, x, y])
+                || [v, w].into_iter().any(|v| self.is_narrow_tip(v)))
+        {
             return false;
         }
         // Both new faces must look outward.
@@ -380,14 +387,21 @@ impl Net {
 
     /// Outward unit normal between two particles.
     fn normal_between(&self, a: u32, b: u32) -> Vec3 {
-        let [n, m] = [a, b].map(|v| self.normal[v as usize]);
+        let [n, m] = self.normals(a, b);
         (n + m).normalize_or(n)
+    }
+
+    /// The normals at two neighbours. At a tip there is none: along a ray of a cone it is everywhere that of the other end.
+    fn normals(&self, a: u32, b: u32) -> [Vec3; 2] {
+        let own = |v: u32, other: u32| self.normal[if self.is_tip(v) { other } else { v } as usize];
+        [own(a, b), own(b, a)]
     }
 
     /// The middle of the edge between two particles, lifted to the circle through them with their normals.
     pub(super) fn middle(&self, a: u32, b: u32) -> Vec3 {
         let [p, q] = [a, b].map(|v| self.position[v as usize]);
-        let turn = self.normal[b as usize] - self.normal[a as usize];
+        let [n, m] = self.normals(a, b);
+        let turn = m - n;
         (p + q) * 0.5 + self.normal_between(a, b) * (0.125 * (q - p).dot(turn))
     }
 
@@ -400,11 +414,28 @@ impl Net {
         }
     }
 
+    /// Whether a particle stays where it is, with the normal that it has: creases end there, or it is a tip, where f has no gradient.
+    #[inline]
+    fn is_pinned(&self, v: u32) -> bool {
+        self.walls.planes(v) == Planes::CREASE_END
+    }
+
+    /// Whether a particle is a tip, where the surface has no normal.
+    #[inline]
+    pub(super) fn is_tip(&self, v: u32) -> bool {
+        self.is_pinned(v) && !self.mesh.is_border(v)
+    }
+
+    /// Whether a particle is a tip that can spare no neighbour: three faces around it would face away from each other.
+    fn is_narrow_tip(&self, v: u32) -> bool {
+        self.is_tip(v) && self.mesh.valence(v) <= LEAST_AROUND_TIP
+    }
+
     /// Difference between a particle's valence and that of a particle without a defect: six, and four on the border, where three
-    /// triangles of 60° fill the half-plane. At a corner of creases every valence is as good.
+    /// triangles of 60° fill the half-plane. Where creases end and at tips every valence is as good.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
-        if self.walls.planes(v) == Planes::CREASE_END {
+        if self.is_pinned(v) {
             return 0;
         }
         let wanted = if self.walls.is_near() && self.mesh.is_border(v) { 4 } else { 6 };
@@ -426,7 +457,7 @@ impl Net {
             if self.is_graded() {
                 self.size.push(1.0);
             }
-            if self.is_creased() {
+            if !self.on_crease.is_empty() {
                 self.on_crease.push(NONE);
             }
         }
@@ -446,9 +477,9 @@ impl Net {
         self.on_crease = numbers;
     }
 
-    /// Whether the surface has creases.
+    /// Whether the patch ends at creases.
     pub(super) fn is_creased(&self) -> bool {
-        !self.on_crease.is_empty()
+        self.on_crease.iter().zip(0..).any(|(&number, v)| number != NONE && self.mesh.is_border(v))
     }
 
     /// The number and the position of the particle that halves an edge along a crease; none for other edges.
@@ -487,6 +518,11 @@ impl Net {
     /// border is merged along the border only. One on a crease stays.
     pub(super) fn can_merge(&self, h: u32) -> bool {
         if !self.mesh.can_collapse(h) || self.walls.planes(self.mesh.origin(h)).is_crease() {
+            return false;
+        }
+        // The corners across from the edge lose a neighbour.
+        let across = [h, self.mesh.twin(h)].into_iter().filter(|&h| h != NONE);
+        if across.map(|h| self.mesh.origin(previous(h))).any(|v| self.is_narrow_tip(v)) {
             return false;
         }
         let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));

@@ -33,7 +33,7 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
-    /// The gradient vanishes on the surface.
+    /// The gradient vanishes on the surface, and not at the tip of a cone.
     #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
         /// Position of such a place.

@@ -367,6 +367,7 @@ impl LevelFront for AdaptiveFront {
             self.parents.add(i as u32, LocalShape { curvature: spot.curvature, slope: Vec3::ZERO });
         }
         self.level.settled = context.particles.len();
+        self.level.count_known(&context.particles.slots);
         self.level.begin();
     }
 

@@ -414,6 +414,7 @@ impl LevelFront for UniformFront {
         }
         self.level.settled = context.particles.len();
         self.parents = 0..self.level.settled;
+        self.level.count_known(&context.particles.slots);
         self.level.begin();
     }
 

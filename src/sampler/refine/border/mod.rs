@@ -98,7 +98,7 @@ impl Net {
     /// lie beyond the box.
     pub(super) fn fates(&self, v: u32) -> Slots {
         let mut fates = self.slots[v as usize];
-        if !self.walls.planes(v).is_inner() {
+        if self.walls.is_near() && self.mesh.is_border(v) {
             [4, 5].into_iter().for_each(|slot| fates.set(slot, SlotFate::Outside));
         }
         fates
