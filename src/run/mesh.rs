@@ -3,7 +3,7 @@
 use super::Run;
 use crate::export::{File, MeshFormat, Placement, RecordText};
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_few};
 use crate::mesh::build::{self, MeshOptions, Triangulation};
 use crate::particles::Particles;
 use crate::quality::Measurements;
@@ -133,8 +133,10 @@ impl MeshAnswer {
             euler: component.euler(),
             open_edges: component.border_edges,
         };
-        let mut loops = mesh.topology.borders.clone();
-        loops.sort_by_key(|border| (!mesh.unfilled.contains(border), core::cmp::Reverse(border.len())));
+        let mut loops: Vec<((bool, usize), &Vec<u32>)> = (mesh.topology.borders.iter())
+            .map(|border| ((mesh.unfilled.contains(border), border.len()), border))
+            .collect();
+        sort_few(&mut loops, |(a, _), (b, _)| a > b);
         Self {
             triangles: mesh.triangles.len(),
             components: mesh.topology.components.iter().map(component).collect(),
@@ -143,7 +145,7 @@ impl MeshAnswer {
             left_out: mesh.left_out.len(),
             volume: mesh.volume(particles),
             smallest_angle: mesh.smallest_angle(particles),
-            loops,
+            loops: loops.into_iter().map(|(_, border)| border.clone()).collect(),
         }
     }
 }

@@ -83,6 +83,7 @@ const MAY_USE = {
   'ui/field': ['ui/*', ...ENGINE_FACE],
   'ui/follow': ['ui/*', 'figures', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
+  'ui/mesh': ['ui/*', ...ENGINE_FACE],
   'ui/picture': ['ui/*', ...ENGINE_FACE],
   'ui/report': ['ui/*', ...ENGINE_FACE],
   'ui/sampling': ['ui/*', ...ENGINE_FACE],

@@ -46,7 +46,7 @@
 //! the surface may end, and nothing is concluded from slopes.
 
 use crate::field::{Bounded, Enclosure};
-use crate::math::{Bounds, Interval, Sym3};
+use crate::math::{Bounds, Interval, Sym3, sort_by_key};
 use crate::sampler::discovery::cell::{
     Axes, CUT, Cell, is_discarded, is_inside, is_left_out, push_boundary, rise,
 };
@@ -308,7 +308,7 @@ impl Octree {
         self.state = SearchState::Done;
         self.search = FactorSearch::default();
         // Turns bring those of a factor apart.
-        self.witnesses.sort_by_key(|witness| witness.factor);
+        sort_by_key(&mut self.witnesses, |witness| witness.factor as u64);
     }
 
     /// Sets the expected number of particles, which limits the number of cells visited.

@@ -36,7 +36,10 @@ export function exportFile(engine, toast, format) {
   return exported(engine, toast, 'particles', make, `${stem(engine)}.${format}`);
 }
 
-/** @param {Engine} engine @param {Toast} toast @param {MeshFormat} format @param {FileRequest['placement']} placement */
+/**
+ * @param {Engine} engine @param {Toast} toast
+ * @param {MeshFormat} format @param {FileRequest['placement']} placement
+ */
 export function saveMesh(engine, toast, format, placement) {
   const make = async () => engine.exportMesh(format, { placement, link: await linkTo(engine) });
   return exported(engine, toast, 'mesh', make, `${stem(engine)}-mesh.${format}`);

@@ -1,7 +1,7 @@
 import { beforeAll, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { borderOf } from '../../src/ui/mesh/borders.js';
-import { verdictOf } from '../../src/ui/mesh/words.js';
+import { verdictOf } from '../../src/ui/mesh-words.js';
 
 beforeAll(() => setLocale('en'));
 

@@ -12,8 +12,8 @@ import { change } from '../store.js';
  */
 
 /**
- * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' | 'orbit' |
- *   'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands
+ * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' |
+ *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands
  */
 
 /** @param {Parts} parts @returns {ViewCommands} */

@@ -1,4 +1,4 @@
-/** The button that makes a mesh, and opens the panel with the verdict on it. The panel is loaded with the first press. */
+/** The button that makes a mesh, and opens the panel with the verdict on it. The panel comes with the first press. */
 import { button } from '../button.js';
 import { h, query } from '../dom.js';
 import { explain, place } from '../explain.js';

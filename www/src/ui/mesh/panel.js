@@ -2,9 +2,9 @@
 import { computed } from '@preact/signals-core';
 import { button } from '../button.js';
 import { h, uniqueId } from '../dom.js';
+import { verdictOf } from '../mesh-words.js';
 import { saveMesh } from '../share.js';
 import { borderOf } from './borders.js';
-import { verdictOf } from './words.js';
 
 /**
  * @import { Engine, MeshAnswer, MeshFormat } from '../../engine/types.js'

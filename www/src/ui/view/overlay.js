@@ -4,7 +4,7 @@ import { computed } from '@preact/signals-core';
 import { enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
-import { NO_MESH, verdictOf } from '../mesh/words.js';
+import { NO_MESH, verdictOf } from '../mesh-words.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 
 /**

@@ -1,8 +1,8 @@
 /** Says what a mesh adds up to: whether it is closed, its topology, volume and worst angle. */
 
-import { formatCount, formatFixed, formatSignificant, plural } from '../format.js';
+import { formatCount, formatFixed, formatSignificant, plural } from './format.js';
 
-/** @import { MeshAnswer } from '../../engine/types.js' */
+/** @import { MeshAnswer } from '../engine/types.js' */
 
 /** Most components whose Euler numbers are told one by one. */
 const MOST_TOLD = 3;
