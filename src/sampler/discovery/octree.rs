@@ -427,12 +427,16 @@ impl Octree {
         if is_left_out(cell, &self.search.isolated) {
             return true;
         }
+        if known.gradient.iter().any(|slope| slope.excludes_zero()) {
+            // f need not be differentiable at the tip of a cone.
+            let tip = self.singular.iter().map(|point| point.position).find(|&at| cell.bounds.holds(at));
+            return tip.is_some_and(|at| self.isolate(field, cell, at));
+        }
         let Axes { sides, .. } = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
             && self.search.searched < MOST_TRIED
-            && sides.iter().all(Option::is_some)
-            && !known.gradient.iter().any(|slope| slope.excludes_zero());
+            && sides.iter().all(Option::is_some);
         if !is_tried {
             return false;
         }
@@ -449,9 +453,11 @@ impl Octree {
             self.singular.push(point);
         }
         // A curve of such points passes through the faces of the box.
-        if !point.is_alone {
-            return false;
-        }
+        point.is_alone && self.isolate(field, cell, at)
+    }
+
+    /// Leaves out a box around a singular point, if it can; whether the cell lies in it.
+    fn isolate(&mut self, field: &mut dyn Bounded, cell: &Cell, at: DVec3) -> bool {
         let isolated = &self.search.isolated;
         let Some(around) = isolating_box(field, self.search.factor, at, &self.region.bounds, isolated) else {
             return false;
