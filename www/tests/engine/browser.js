@@ -113,6 +113,8 @@ export async function expectInside(page, draw) {
       );
       pictures.push(await pixels(page, 160, 120));
     }
-    expect(isInsideTold(pictures), `${draw} on ${theme}`).toEqual(INSIDE_TOLD);
+    // The inside of a mesh is lit: one looks into it where the box cuts it.
+    const lightest = draw === 'mesh' ? 0.97 : undefined;
+    expect(isInsideTold(pictures, lightest), `${draw} on ${theme}`).toEqual(INSIDE_TOLD);
   }
 }

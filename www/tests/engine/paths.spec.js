@@ -201,7 +201,7 @@ test('a visit: what the page forbids itself, input, links, files, and a lost con
     expect(await page.evaluate(() => document.querySelectorAll('img[src="x"]').length + Number('hit' in window))).toBe(
       0,
     );
-    await on(page, 'p.set({ surface: "ellipsoid", formula: "" })');
+    await on(page, 'p.set({ surface: "ellipsoid" })');
   });
 
   await test.step('a canvas of no size and back again draws', async () => {

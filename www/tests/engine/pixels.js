@@ -129,11 +129,12 @@ export const SIDES = ['x+y+z=0', '0=x+y+z'].map((formula) => ({
 /**
  * What tells an inside from an outside: it is darker and greyer, and stands out from the ground.
  * @param {Pixels[]} pictures  of the {@link SIDES}
+ * @param {number} lightest  most light of an inside, as a share of that of the outside
  */
-export function isInsideTold(pictures) {
+export function isInsideTold(pictures, lightest = 0.75) {
   const [front, behind] = pictures.map(shadeOf);
   return {
-    isDarker: behind.light < 0.75 * front.light,
+    isDarker: behind.light < lightest * front.light,
     isGreyer: behind.spread < front.spread,
     isSeen: Math.abs(behind.light - behind.ground) > 20,
   };
