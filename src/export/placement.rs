@@ -1,4 +1,4 @@
-//! What one unit of the formula becomes in a mesh file, and which of its axes points up there.
+//! The placement of a mesh in a file: its scale, its unit of length and the axis that points up.
 
 use super::MeshFormat;
 use crate::particles::Particles;

@@ -110,7 +110,7 @@ pub struct FileWish {
     pub format: MeshFormat,
     /// Size and orientation of the mesh in it.
     pub placement: Placement,
-    /// What it can be made again from.
+    /// The record that the file carries.
     pub record: RecordText,
 }
 

@@ -120,7 +120,7 @@ impl PhaseState {
 /// The order in which the survey's points are tried as seeds: one chosen at random, then the others in grid order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurveyCursor {
-    /// Whether the particles on creases have been placed, which come before all seeds.
+    /// Whether the particles on creases and tips have been placed, which come before all seeds.
     pub(super) has_creases: bool,
     first: usize,
     tried: usize,

@@ -150,7 +150,7 @@ pub struct Session {
     /// Whether the surface, closed by no box, is bounded, if the clip box was fitted to it.
     reach: Option<Reach>,
     fitting: Fitting,
-    /// What the particles are made from.
+    /// The record of the present run.
     made: Option<FileRecord>,
 }
 

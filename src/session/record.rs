@@ -1,4 +1,4 @@
-//! What a file can be made again from, and the request for a mesh file.
+//! The record that a file carries, from which it can be made again, and the request for a mesh file.
 
 use super::{BoxFaces, Session, SolidSettings, Source};
 use crate::export::{self, MeshFormat, Placement};
@@ -8,7 +8,7 @@ use crate::sampler::{Method, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a file was made from. Files carry it as JSON ([`export::RecordText`]), from which the same particles can be made again.
+/// The record of a file, from which the same particles can be made again. Files carry it as JSON ([`export::RecordText`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FileRecord {
@@ -35,7 +35,7 @@ pub struct FileRecord {
     /// Box whose faces close the solid, where they do.
     #[serde(default)]
     pub faces: Option<Bounds>,
-    /// What is made of the surface before it is sampled.
+    /// Settings of the solid that is made of the surface before it is sampled.
     #[serde(default)]
     #[cfg_attr(test, ts(type = "Record<string, number | string>"))]
     pub solid: SolidSettings,
@@ -60,7 +60,7 @@ pub struct FileRequest {
 }
 
 impl Session {
-    /// What the particles were made from, from the start of their run; nothing before the first one.
+    /// The record of the present particles, which begins with their run; none before the first run.
     pub fn record(&self, link: Option<String>) -> Option<FileRecord> {
         let mut record = self.made.clone()?;
         record.digest = format!("{:016x}", self.run.particles().digest());

@@ -1,4 +1,4 @@
-//! What is written otherwise in other languages and books, and how it is written here.
+//! Names of functions in other languages and books, each with the way to write it here.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::token::{Spanned, Token, slice};

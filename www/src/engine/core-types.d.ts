@@ -280,7 +280,7 @@ export type Figures = {
   a_gt90: number,
 };
 
-/** What a file was made from. Files carry it as JSON ([`export::RecordText`]), from which the same particles can be made again. */
+/** The record of a file, from which the same particles can be made again. Files carry it as JSON ([`export::RecordText`]). */
 export type FileRecord = {
   /** Version of the program. */
   version: string,
@@ -300,7 +300,7 @@ export type FileRecord = {
   bounds: Bounds,
   /** Box whose faces close the solid, where they do. */
   faces: Bounds | null,
-  /** What is made of the surface before it is sampled. */
+  /** Settings of the solid that is made of the surface before it is sampled. */
   solid: Record<string, number | string>,
   /** Settings of the run. */
   settings: Record<string, number | string>,
