@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => ("ball.xyz".to_owned(), ball()),
     };
     let fit = fit_points(&name, bytes, 200)?;
-    println!("a surface through {} of {} points", fit.info.centres, fit.info.points);
+    println!("a surface from {} centres near {} points", fit.info.centres, fit.info.points);
 
     let sample = sample(fit.field(), &Settings::with_count(3_000).in_box(fit.bounds))?;
     println!("{} particles, {} component", sample.particles().len(), sample.report().proof.components);

@@ -1,7 +1,7 @@
 //! Fields f(x, y, z) whose zero set is the surface.
 //!
 //! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and, if it is
-//! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
+//! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
 
 pub(crate) mod descent;
 pub mod formula;

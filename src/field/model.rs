@@ -38,7 +38,7 @@ pub struct ModelInfo {
     pub credit: String,
     /// Number of points read.
     pub points: u32,
-    /// Number of points that the function interpolates.
+    /// Number of centres of the function. If every point is one, the surface goes through all of them.
     pub centres: u32,
     /// Estimated condition number of the system.
     pub condition: f64,

@@ -1,6 +1,6 @@
 //! A job that takes a file or a built-in model to a field, in slices of bounded work.
 
-use super::fit::{Fit, FitError, interpolate};
+use super::fit::{Fit, FitError, approximate};
 use super::models;
 use super::normals::{Settled, settle};
 use super::read::{ReadError, Reader};
@@ -60,7 +60,7 @@ pub enum JobError {
     /// No surface can be fitted to the points.
     #[error(transparent)]
     Cloud(#[from] CloudError),
-    /// The points cannot be interpolated.
+    /// No function can be fitted to the points.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// There is no built-in model with this identifier.
@@ -185,7 +185,7 @@ enum JobState {
 }
 
 impl Job {
-    /// Job for a file. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated; `name` is for
+    /// Job for a file. A function with as many `centres` (see [`CENTRES`]) is fitted to all of its points; `name` is for
     /// reports.
     ///
     /// # Errors
@@ -200,8 +200,8 @@ impl Job {
         Ok(Self { state: JobState::Working(work), status })
     }
 
-    /// Job for a built-in model. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated, or all of them if
-    /// there are no more.
+    /// Job for a built-in model. A function with as many `centres` (see [`CENTRES`]), or as many as there are points, is fitted to
+    /// them.
     ///
     /// # Errors
     ///
@@ -255,7 +255,7 @@ impl Job {
         }
     }
 
-    /// Points that are interpolated, once they are chosen.
+    /// The centres, once they are chosen.
     #[must_use]
     pub fn centres(&self) -> &[DVec3] {
         self.status.centres.get().map_or(&[], Vec::as_slice)
@@ -306,21 +306,22 @@ async fn of_file(
 
 /// The work from points with normals to a field. The distances from the surface are measured at the points `given`.
 async fn of_cloud(
-    mut cloud: Cloud,
+    cloud: Cloud,
     given: Vec<DVec3>,
     wanted: usize,
     info: ModelInfo,
     status: Rc<JobStatus>,
 ) -> Result<Fit, JobError> {
     // Of points that all but coincide one is chosen, however few there are.
-    let chosen = spread(&cloud.position, wanted, status.begin(&SPREADING)).await;
-    if chosen.len() < cloud.len() {
-        cloud = cloud.only(&chosen);
+    let mut chosen = spread(&cloud.position, wanted, status.begin(&SPREADING)).await;
+    if chosen.len() == cloud.len() {
+        // The centres are all points, in the order of the file.
+        chosen = (0..cloud.len() as u32).collect();
     }
-    status.centres.get_or_init(|| cloud.position.clone());
+    status.centres.get_or_init(|| cloud.only(&chosen).position);
     // Those of a file are counted before equal ones are joined.
     let points = info.points;
-    let mut fit = interpolate(&cloud, &given, info, status.begin(&SOLVING)).await?;
+    let mut fit = approximate(&cloud, &chosen, &given, info, status.begin(&SOLVING)).await?;
     fit.info.points = fit.info.points.max(points);
     Ok(fit)
 }

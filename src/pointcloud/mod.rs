@@ -1,7 +1,7 @@
-//! Models from points: an interpolating function for a file of points or for a built-in model.
+//! Models from points: a function for a file of points or for a built-in model.
 //!
 //! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each other, become the centres
-//! of a radial basis function, whose coefficients solve a linear system. The result is an
+//! of a radial basis function, which is fitted to all of them by a linear system. The result is an
 //! [`RbfData`](crate::field::rbf::RbfData), which is all that the sampler's core takes: the page solves in a module and
 //! a worker of their own.
 
@@ -20,8 +20,8 @@ use fit::Fit;
 use glam::DVec3;
 use job::{Job, JobError};
 
-/// Fits a surface to the points of a file: PLY, OBJ, STL or XYZ, as the `name` or the content says. It goes through `centres` of them,
-/// as far from each other as can be. Normals come from the file, else from its faces, else they are estimated. Large faces are given
+/// Fits a surface to the points of a file: PLY, OBJ, STL or XYZ, as the `name` or the content says. A function with as many `centres`
+/// is fitted to all of them: noise is smoothed as cross-validation tells. Normals come from the file, else from its faces, else they are estimated. Large faces are given
 /// more points, so that the surface follows them.
 ///
 /// # Errors

@@ -4,7 +4,7 @@
 //! follow for each point: its position in the cube, and its normal in the octahedral encoding (Q. Meyer et al., "On
 //! Floating-Point Normal Vectors", 2010). `tests/it/models.rs` makes the files and states where the points come from.
 
-use super::fit::{Fit, interpolate};
+use super::fit::{Fit, approximate};
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
 use crate::slices::complete;
@@ -38,7 +38,8 @@ pub fn cloud(id: &str) -> Option<Cloud> {
 #[must_use]
 pub fn fit(model: &Model) -> Fit {
     let points = cloud(model.id).unwrap_or_default();
-    complete(interpolate(&points, &points.position, info(model), |_| {}))
+    let all: Vec<u32> = (0..points.len() as u32).collect();
+    complete(approximate(&points, &all, &points.position, info(model), |_| {}))
         .unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
 }
 

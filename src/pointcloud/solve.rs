@@ -1,4 +1,4 @@
-//! Solver of a large symmetric system: blocked LU decomposition with partial pivoting, in slices.
+//! Solver of a large system: blocked LU decomposition with partial pivoting, in slices.
 //!
 //! nalgebra factorises the panels and solves the triangular systems. The update of the columns to the right of a panel,
 //! which takes nearly all of the time, is written out here. Neither uses a fused multiply-add, so the solution has the
@@ -17,7 +17,7 @@ const ROWS: usize = 256;
 /// Maximum number of steps of Hager's estimator, which nearly always ends after two or three. LAPACK's DLACN2 has the same limit.
 const ESTIMATOR_STEPS: usize = 5;
 
-/// LU decomposition of a symmetric matrix.
+/// LU decomposition of a matrix.
 #[derive(Clone, Debug)]
 pub(super) struct Decomposition {
     /// The factors L and U, once they are complete; before that they replace the eliminated part of the matrix.
@@ -33,7 +33,7 @@ pub(super) struct Decomposition {
 pub(super) struct SingularMatrix;
 
 impl Decomposition {
-    /// Decomposes a symmetric matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either takes at most 32²
+    /// Decomposes a matrix. A slice factorises a panel or updates [`PANEL`] columns by it; either takes at most 32²
     /// multiplications per row. `tell` gets the fraction of the work done.
     pub(super) async fn new(matrix: DMatrix<f64>, tell: impl Fn(f64)) -> Result<Self, SingularMatrix> {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
@@ -110,7 +110,8 @@ impl Decomposition {
     /// Lower estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, seldom too small by more than a factor of three (Hager 1984;
     /// Higham, "Accuracy and Stability of Numerical Algorithms", algorithm 15.1).
     ///
-    /// The matrix is symmetric, so systems with its transpose need no solver of their own.
+    /// The method solves systems with the transposed matrix too. Those of a fit are symmetric, or nearly so where cells have several points,
+    /// and the matrix itself stands in: the estimate is a lower one all the same.
     pub(super) fn condition(&self) -> Result<f64, SingularMatrix> {
         let n = self.matrix.nrows();
         let mut x = DVector::from_element(n, 1.0 / n as f64);

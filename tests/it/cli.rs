@@ -456,7 +456,7 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
         text.lines().map(|line| line.split(' ').take(3).collect::<Vec<_>>().join(" ") + "\n").collect();
     std::fs::write(&cloud, bare).expect("a file can be written");
     let words = stdout(&run(&["sample", "--points", &path(&cloud), "--radius", "2%", "--relax", "0"]));
-    assert!(words.starts_with("points: cloud.xyz\na surface through 200 of "), "{words}");
+    assert!(words.starts_with("points: cloud.xyz\na surface from 200 centres near "), "{words}");
     assert!(
         words.contains("normals estimated, condition ")
             && words.contains("\nwarning: The file has no normals"),

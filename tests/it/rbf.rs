@@ -6,7 +6,7 @@ use marching_particles::field::Field;
 use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, RbfData, RbfField};
 use marching_particles::math::Sym3;
-use marching_particles::pointcloud::fit::{Fit, FitError, interpolate};
+use marching_particles::pointcloud::fit::{Fit, FitError, approximate};
 use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::sampler::{Settings, StopReason};
@@ -36,7 +36,8 @@ fn ellipsoid(count: usize) -> Cloud {
 }
 
 fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
-    complete(interpolate(cloud, &cloud.position, ModelInfo::default(), |_| {}))
+    let all: Vec<u32> = (0..cloud.len() as u32).collect();
+    complete(approximate(cloud, &all, &cloud.position, ModelInfo::default(), |_| {}))
 }
 
 fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
@@ -86,7 +87,8 @@ fn the_field_vanishes_at_the_points_and_has_their_normals_as_gradients() {
 #[test]
 fn points_between_the_centres_are_within_a_few_thousandths_of_the_surface() {
     let (few, many) = (ellipsoid(100), ellipsoid(4000));
-    let fit = complete(interpolate(&few, &many.position, ModelInfo::default(), |_| {}));
+    let all: Vec<u32> = (0..few.len() as u32).collect();
+    let fit = complete(approximate(&few, &all, &many.position, ModelInfo::default(), |_| {}));
     let info = fit.expect("a field").info;
     assert_eq!((info.points, info.centres), (4000, 100));
     assert!(info.residual_mean > 1e-6 && info.residual_mean < 1e-3, "{info:?}");

@@ -138,12 +138,12 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL or XYZ, up to 50 MB. A smooth surface goes through some of its points, as far
-    /// from each other as can be. Normals come from the file, else from its faces, else they are estimated
+    /// File of points or of a mesh: PLY, OBJ, STL or XYZ, up to 50 MB. A smooth surface is fitted to all of
+    /// them. Normals come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
-    /// Points of --points, or of a model, that the surface goes through, 100 to 800: more follow finer details and take longer
+    /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow finer details and take longer
     /// [default: 200]
     #[arg(
         long, value_name = "N", help_heading = "Surface",

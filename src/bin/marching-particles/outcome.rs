@@ -28,7 +28,7 @@ pub(crate) struct Seconds {
 pub(crate) struct Outcome {
     pub(crate) version: &'static str,
     pub(crate) surface: Option<String>,
-    /// Report of the fit, for a surface through points.
+    /// Report of the fit, for a surface near points.
     pub(crate) model: Option<ModelInfo>,
     pub(crate) formula: String,
     pub(crate) parameters: BTreeMap<String, f64>,

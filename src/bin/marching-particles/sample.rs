@@ -37,7 +37,7 @@ struct Chosen {
     name: Option<String>,
     formula: String,
     parameters: BTreeMap<String, f64>,
-    /// Report of the fit, for a surface through points.
+    /// Report of the fit, for a surface near points.
     model: Option<ModelInfo>,
     /// The box to sample in, where it is not to be fitted.
     bounds: Option<Bounds>,

@@ -87,7 +87,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes the origin of a surface through points and the distances of the points from it.
+/// Writes the origin of a surface near points and the distances of the points from it.
 fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()> {
     let credit = if model.credit.is_empty() { "" } else { ", " };
     writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
@@ -99,7 +99,7 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     let [centres, points] = [model.centres, model.points].map(|count| grouped(count as usize));
     writeln!(
         out,
-        "a surface through {centres} of {points} points, normals {normals}, condition {:.0e}",
+        "a surface from {centres} centres near {points} points, normals {normals}, condition {:.0e}",
         model.condition
     )?;
     writeln!(

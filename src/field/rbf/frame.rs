@@ -16,6 +16,13 @@ pub struct CentredFrame {
     scale: f64,
 }
 
+impl Default for CentredFrame {
+    /// The frame in which local coordinates are those of the model.
+    fn default() -> Self {
+        Self { origin: DVec3::ZERO, scale: 1.0 }
+    }
+}
+
 impl CentredFrame {
     /// Frame of `points`, which must be finite.
     #[must_use]

@@ -1,8 +1,8 @@
-//! Hermite radial basis functions: a smooth field that interpolates points with normals.
+//! Hermite radial basis functions: a smooth field near points with normals.
 //!
 //! The field is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. For d = x − cⱼ, the gradient ∇φ = 3 r d and
 //! the Hessian 3 (r I + d dᵀ/r) vanish at d = 0. `pointcloud::fit` computes the coefficients from the conditions f = 0
-//! and ∇f = n at every centre. The models of the paper (§6) are fields of this kind.
+//! and ∇f = n at points. The models of the paper (§6) are fields of this kind.
 
 mod coefficients;
 mod data;

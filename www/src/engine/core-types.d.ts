@@ -857,7 +857,7 @@ export type ModelInfo = {
   credit: string,
   /** Number of points read. */
   points: number,
-  /** Number of points that the function interpolates. */
+  /** Number of centres of the function. If every point is one, the surface goes through all of them. */
   centres: number,
   /** Estimated condition number of the system. */
   condition: number,

@@ -62,7 +62,7 @@ describe('a model from points', () => {
       '95 % are nearer than 0.64%',
       'Largest distance 1.3%',
     ]);
-    expect(fittedOf(info)).toContain('f interpolates 400 of 5,205 points');
+    expect(fittedOf(info)).toContain('f is fitted to 5,205 points from 400 of them');
     expect(fittedOf({ ...info, points: 200, centres: 200 })).toContain('f interpolates all 200 points');
   });
 
@@ -80,7 +80,7 @@ describe('a model from points', () => {
     expect(storyOf(description, FILE_SURFACE, info)).toMatchObject({
       name: 'dragon.ply',
       facts: '5,205 points',
-      text: 'The surface through 400 of the points of this file.',
+      text: 'The surface that is fitted to the points of this file.',
     });
     expect(storyOf(description, 'sphere', null)).toMatchObject({ facts: 'Degree 2 · genus 0', credit: 'Archimedes' });
     expect(storyOf(description, null, null).name).toBe('Your own formula');

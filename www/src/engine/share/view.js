@@ -104,7 +104,7 @@ export const VIEW = {
       return ends && ends.length <= 2 && new Set(ends).size === ends.length ? ends : undefined;
     },
   },
-  /** Whether the points that a model interpolates are drawn. */
+  /** Whether the centres of a model are drawn. */
   points: flag(true, 'points of the model'),
   /** The newest generation level drawn, null for all of them; a level beyond the last counts as the last. */
   level: place('generation level'),

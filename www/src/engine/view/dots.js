@@ -1,5 +1,5 @@
 /**
- * Draws the points that a model interpolates as dots on the picture.
+ * Draws the centres of a model as dots on the picture.
  *
  * A dot is a pair of discs that face the eye, ink on a casing, of a fixed size on the screen. They follow the particles
  * in the same buffer, so that no back end needs code for them. Because they face the eye, they are rewritten for every

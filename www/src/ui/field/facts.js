@@ -43,10 +43,13 @@ export function factsOf({ condition, residual_mean, residual_95, residual_max, n
 }
 
 /**
- * Says what f is, and how many of the points it interpolates.
+ * Says what f is, and what its points and centres are.
  * @param {ModelInfo} info
  */
 export function fittedOf({ points, centres }) {
-  const which = points === centres ? `all ${formatCount(points)}` : `${formatCount(centres)} of ${formatCount(points)}`;
-  return `f interpolates ${which} points, with their normals, by Hermite radial basis functions; its zeros are the surface.`;
+  const how =
+    points === centres
+      ? `interpolates all ${formatCount(points)} points`
+      : `is fitted to ${formatCount(points)} points from ${formatCount(centres)} of them`;
+  return `f ${how}, with their normals, by Hermite radial basis functions; its zeros are the surface.`;
 }

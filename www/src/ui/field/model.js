@@ -62,7 +62,7 @@ function factElements({ label, value, unit, help }) {
 }
 
 /**
- * Creates the control of the number of points that are fitted.
+ * Creates the control of the number of centres.
  * @param {Engine} engine
  * @param {Description} description
  * @param {ReadonlySignal<ModelInfo | null>} model
@@ -72,7 +72,7 @@ function createCentres(engine, { limits }, model) {
   /** The default number for the present model. */
   let usual = limits.centres;
   const slider = createSlider({
-    name: 'Points fitted',
+    name: 'Centres',
     scale,
     value: usual,
     describe: formatCount,
@@ -82,11 +82,11 @@ function createCentres(engine, { limits }, model) {
     },
     reset: () => engine.setCentres(usual),
   });
-  const caption = h('span', { class: 'name' }, 'Points fitted');
+  const caption = h('span', { class: 'name' }, 'Centres');
   const row = h('div', { class: 'row centres' }, caption, slider.range, slider.box);
   explain(caption, () => ({
-    title: 'Points fitted',
-    text: 'Points that f is zero at, with its gradient along their normals: as far from each other as can be. More follow finer details; the time to solve for them grows with the cube of their number.',
+    title: 'Centres',
+    text: 'Points from which f is built, as far from each other as can be. All points count, each for the nearest of these. More follow finer details; the time to solve for them grows with the cube of their number.',
   }));
   live(row, () => {
     const info = model.value;

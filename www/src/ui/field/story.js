@@ -1,6 +1,6 @@
 /** Returns the description of the present surface. */
 import { FILE_SURFACE } from '../../engine/constants.js';
-import { formatCount, plural } from '../format.js';
+import { plural } from '../format.js';
 
 /** @import { Description, ModelInfo } from '../../engine/types.js' */
 
@@ -13,11 +13,10 @@ export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
   if (model) return { name: model.name, facts: plural(model.points, 'point'), text: model.story, credit: model.credit };
   if (id === FILE_SURFACE) {
-    const fitted = !info || info.centres === info.points ? 'the' : `${formatCount(info.centres)} of the`;
     return {
       name: info?.name ?? 'File',
       facts: info ? plural(info.points, 'point') : '',
-      text: `The surface through ${fitted} points of this file.`,
+      text: 'The surface that is fitted to the points of this file.',
       credit: info?.credit ?? '',
     };
   }

@@ -90,7 +90,7 @@ const tool = (icon, label, text, press, props) =>
 function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
   const act = () => engine.setView({ points: !shown.peek() });
-  return tool('points', 'Show points', 'The points that the surface goes through, as dots.', act, {
+  return tool('points', 'Show points', 'The points that the surface is built from, as dots.', act, {
     hidden: () => engine.field.value?.kind !== 'points',
     'aria-pressed': () => String(shown.value),
   });
