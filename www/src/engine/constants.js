@@ -10,6 +10,11 @@ export const DISC_SIZE = { initial: 0.92, min: 0.2, max: 1.5, step: 0.01 };
  * some hundredths of a second.
  */
 export const MOST_STEPPED = 20_000;
+/**
+ * Pause in typing after which a formula is sampled: one and a half times that between the keys of a slow typist, 30
+ * words a minute.
+ */
+export const TYPING_MS = 600;
 /** Largest number of parameters in a state or a link. */
 export const MOST_PARAMETERS = 64;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */

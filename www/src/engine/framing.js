@@ -1,14 +1,16 @@
 /**
  * Decides when the camera fits the surface automatically: after a formula was typed or a link was read, and when the
- * surface disappears or reappears. It does so only while `camera.fit` is set.
+ * surface disappears or reappears. A formula that is still being typed is fitted once it has stood for another pause.
+ * If it gives way to the surface before, the camera goes back, too. All this only while `camera.fit` is set.
  *
  * @module
  */
 import { effect } from '@preact/signals-core';
+import { TYPING_MS } from './constants.js';
 
 /**
  * @import { Store } from './store.js'
- * @import { Columns } from './types.js'
+ * @import { CameraState, Columns } from './types.js'
  * @import { Viewer } from './view/viewer.js'
  */
 
@@ -34,9 +36,22 @@ export class Framing {
     this.#isTyped = false;
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
+    /** Where the camera was when the first trial began. @type {CameraState | null} */
+    let before = null;
     this.#effects = [
       effect(() => {
-        if (this.#rests() && this.#isWritten && !this.#waits()) queueMicrotask(() => this.#come());
+        const isTrial = store.trial.value === 'shown';
+        if (!this.#rests() || !this.#isWritten || this.#waits()) return;
+        const timer = setTimeout(() => this.#come(), isTrial ? TYPING_MS : 0);
+        return () => clearTimeout(timer);
+      }),
+      effect(() => {
+        const trial = store.trial.value;
+        if (trial === 'shown') before ??= viewer.camera.state;
+        else {
+          if (before && trial === 'back') this.#back(before);
+          before = null;
+        }
       }),
       effect(() => {
         // Without a surface the camera shows the box. It returns to the surface when there is one again.
@@ -67,6 +82,14 @@ export class Framing {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
     this.#fit();
+  }
+
+  /** Goes back to where the camera was, turned as the hand has turned it since. @param {CameraState} before */
+  #back({ target, distance }) {
+    const { camera } = this.#viewer;
+    if (!camera.state.fit) return;
+    camera.set({ ...camera.state, target, distance });
+    this.#viewer.moved();
   }
 
   #fit() {

@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { TYPING_MS } from './constants.js';
 import { ModelLoader } from './points/loader.js';
 import { Sampler } from './sampling/sampler.js';
 import { spawnSampler } from './sampling/spawn.js';
@@ -16,12 +17,6 @@ import { change, description } from './store.js';
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
 const REST_MS = 250;
-/**
- * Pause in typing after which a formula is sampled: one and a half times that between the keys of a slow typist, 30
- * words a minute.
- */
-const TYPING_MS = 600;
-
 /** @returns {any} */
 const spawnSolver = () =>
   new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' });
@@ -96,7 +91,7 @@ export class Runs {
   chooseTyped() {
     this.forgetLater();
     this.store.typing.value = true;
-    this.#timer = setTimeout(() => this.choose(), TYPING_MS);
+    this.#timer = setTimeout(() => this.choose({ trial: true }), TYPING_MS);
   }
 
   /** Cancels the run that waits for a pause. */

@@ -54,6 +54,7 @@ export function createStore() {
     reveal: signal(null),
     busy: signal(false),
     typing: signal(false),
+    trial: signal('none'),
     dragging: signal(false),
     partial: signal(false),
     revision: signal(0),

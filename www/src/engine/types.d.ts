@@ -244,6 +244,7 @@ export interface LoadingError {
   /** from 1 */
   line: number | null;
 }
+export type Trial = 'none' | 'shown' | 'back';
 export interface EngineSignals {
   state: ReadonlySignal<State>;
   /** null until the core has loaded */
@@ -276,6 +277,8 @@ export interface EngineSignals {
   busy: ReadonlySignal<boolean>;
   /** whether a typed formula waits for a pause before it is sampled */
   typing: ReadonlySignal<boolean>;
+  /** `shown`: the surface is that of a formula that is still being typed; `back`: it gave way to the one before */
+  trial: ReadonlySignal<Trial>;
   /** whether a control is being dragged, also while it rests */
   dragging: ReadonlySignal<boolean>;
   /** whether the picture shows a run that was stopped or capped */

@@ -119,6 +119,63 @@ describe('while somebody types', () => {
     expect(p.state.view.camera).toEqual(camera);
   });
 
+  /** Types a text with a pause at every letter, in which it is sampled. @param {Console} p @param {string} text */
+  async function typeSlowly(p, text) {
+    const { engine } = p;
+    let trials = 0;
+    for (let k = 1; k <= text.length; k += 1) {
+      engine.setFormula(text.slice(0, k), { typing: true });
+      await until(engine.typing, (typing) => !typing);
+      await eventually(() => engine.busy.value).toBe(false);
+      if (engine.trial.value === 'shown') trials += 1;
+    }
+    await settled(p);
+    return trials;
+  }
+
+  for (const [what, text, count] of /** @type {const} */ ([
+    ['without a surface', 'x^2+y^2+z^2=-1', 0],
+    ['with a mistake', 'x+y^2+siin(z', 1],
+  ]))
+    test(`a formula ${what}, whose beginnings have surfaces, brings back the one before them`, async () => {
+      const p = await open();
+      const { positions, view } = { ...p.particles(), view: p.state.view };
+      const report = p.report();
+      expect(await typeSlowly(p, text)).toBeGreaterThan(2);
+      await eventually(() => p.engine.trial.value).not.toBe('shown');
+      await settled(p);
+      const { columns } = p.engine;
+      expect(columns.positions.slice(0, 3 * columns.count)).toEqual(positions);
+      expect(p.state.view.camera).toEqual(view.camera);
+      expect(p.debug.counts().dimmed).toBe(true);
+      // Where no surface is found, the one in the picture is not measured or saved; beside a mistake it is.
+      expect(p.particles().count).toBe(count * columns.count);
+      expect(p.report()?.digest).toBe(count ? report?.digest : undefined);
+      expect(p.engine.empty.value).toBe(count === 0);
+    });
+
+  test('a formula of which a surface stays is fitted after another pause, or at once by Enter', async () => {
+    const p = await open();
+    const { distance } = p.state.view.camera;
+    for (const [text, enter] of /** @type {const} */ ([
+      ['x^2+y^2+z^2=25', false],
+      ['x^2+y^2+z^2=400', true],
+    ])) {
+      await type(p, text);
+      await until(p.engine.typing, (typing) => !typing);
+      await eventually(() => p.engine.busy.value).toBe(false);
+      const before = p.state.view.camera.distance;
+      if (enter) p.engine.setFormula(text);
+      expect(p.engine.trial.value).toBe(enter ? 'none' : 'shown');
+      await eventually(() => p.state.view.camera.distance / before).toBeGreaterThan(2);
+    }
+    // What was entered is what comes back.
+    p.engine.setFormula('x^2+y^2+z^2=-400', { typing: true });
+    await until(p.engine.empty, (empty) => empty);
+    await p.debug.still();
+    expect(p.state.view.camera.distance / distance).toBeGreaterThan(8);
+  });
+
   test('the same text once more, as by Enter, or another control samples it without a pause', async () => {
     const p = await open();
     for (const finish of [

@@ -7,6 +7,8 @@ import {
   lostRun,
   reduce,
   relaxed,
+  restoringOf,
+  trialOf,
 } from '../../src/engine/sampling/run-state.js';
 import { description } from './description.js';
 
@@ -190,4 +192,45 @@ test('a stop holds for every job sent before it', () => {
 
 test('a worker started again by hand may be sent what the last failed on', () => {
   expect(stateAfter({ type: 'crashed', input: 'x', again: false }, { type: 'revived' }).crashedInput).toBe('');
+});
+
+describe('a formula that is being typed', () => {
+  const trial = (/** @type {string} */ formula, /** @type {number} */ id) => [
+    sent(wish(formula, { trial: true })),
+    accepted(id),
+    particles,
+    done('complete', 5),
+  ];
+
+  test('is on trial: of any number of its beginnings, the surface before the first comes back', () => {
+    const state = afterWhole(...trial('xy', 2), ...trial('xyz', 3));
+    expect(trialOf(state)).toBe('shown');
+    const back = restoringOf(reduce(state, sent(wish('xyz+', { trial: true }))));
+    expect(back).toBeNull();
+    const refused = reduce(reduce(state, sent(wish('xyz+', { trial: true }))), { type: 'refused', id: 4 });
+    expect(restoringOf(refused)).toMatchObject({ field: { formula: 'x' }, restoring: true, trial: false });
+  });
+
+  test('without a surface has the one before as a backdrop, which is nobody’s surface but comes back again', () => {
+    const none = [sent(wish('xyz=-1', { trial: true })), accepted(3), done('complete', 0)];
+    const { waiting, ...state } = afterWhole(...trial('xy', 2), .../** @type {RunEvent[]} */ (none));
+    if (waiting?.kind !== 'sample') throw new Error('Nothing comes back.');
+    expect(waiting).toMatchObject({ field: { formula: 'x' }, backdrop: true });
+    const events = /** @type {RunEvent[]} */ ([sent(waiting), accepted(4), particles, done('complete', 7)]);
+    const after = events.reduce(reduce, { ...state, waiting });
+    expect(after).toMatchObject({ held: 0, shown: null, stood: { request: { field: { formula: 'x' } } } });
+    expect(trialOf(after)).toBe('back');
+    expect(trial('xyz', 5).reduce(reduce, after).stood?.request.field.formula).toBe('x');
+  });
+
+  test('stays once it is committed, or sampled by any other control', () => {
+    const state = afterWhole(...trial('xy', 2), { type: 'committed' });
+    expect(state.stood).toBeNull();
+    expect(trialOf(state)).toBe('none');
+    expect(restoringOf(state)).toMatchObject({ field: { formula: 'xy' } });
+    expect(afterWhole(...trial('xy', 2), sent(wish('xyz')), accepted(3), particles).stood).toBeNull();
+    // A commitment that comes before the particles is kept for them.
+    const early = [...trial('xy', 2).slice(0, 2), { type: 'committed' }, particles];
+    expect(afterWhole(.../** @type {RunEvent[]} */ (early)).stood).toBeNull();
+  });
 });

@@ -76,7 +76,10 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         const next = isOwn ? { formula: text, parameters: {} } : { formula: text };
         change(store, fresh ? freshShape(description(store).default_surface, text) : next);
         framing.written({ typed: true });
-      } else if (!store.typing.value) return;
+      } else if (!store.typing.value) {
+        if (!typing) runs.sampling.commit();
+        return;
+      }
       if (typing) runs.chooseTyped();
       else runs.choose();
     },

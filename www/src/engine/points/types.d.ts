@@ -38,7 +38,7 @@ export interface PointsClientOptions {
   onProgress: (progress: Extract<FromPoints, { type: 'progress' }>) => void;
   clock?: Timers;
 }
-export type SampleOptions = { grow?: boolean; fit?: boolean };
+export type SampleOptions = { grow?: boolean; fit?: boolean; trial?: boolean };
 export interface LoaderOptions {
   store: Store;
   spawn: () => WorkerLike;

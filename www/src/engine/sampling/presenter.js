@@ -32,6 +32,7 @@ export class Presenter {
    * @param {number} id @param {RunRequest} request
    */
   begin(id, request) {
+    if (request.backdrop) return;
     if (!request.live) this.store.empty.value = false;
     const phase = request.kind === 'relax' ? 'relaxation' : 'seeding';
     this.store.progress.value = { ...idleProgress(), run: id, live: request.live, phase };
@@ -39,6 +40,7 @@ export class Presenter {
 
   /** @param {CoreProgress} progress @param {Run} run */
   progress(progress, { id, request }) {
+    if (request.backdrop) return;
     if (progress.particles > 0) this.store.empty.value = false;
     this.store.progress.value = { ...progress, run: id, live: request.live };
   }
@@ -57,14 +59,15 @@ export class Presenter {
    * Shows a field that the core has accepted.
    * @param {FieldRequest} field
    * @param {Extract<FieldAnswer, {ok: true}>} answer
+   * @param {boolean} [restoring]  another field was asked for, and its error stays
    */
-  field(field, answer) {
+  field(field, answer, restoring = false) {
     const { store } = this;
     // The question about too many particles belongs to the previous field.
     if (store.notice.value?.id === 'size') store.notice.value = null;
     store.field.value = field.points !== undefined ? { ...answer, surface: field.surface ?? null } : answer;
     store.model.value = answer.model ?? null;
-    store.fieldError.value = null;
+    if (!restoring) store.fieldError.value = null;
   }
 
   /** Shows the box that was found for the field. @param {Extract<FieldAnswer, {ok: true}>} answer */
@@ -96,10 +99,11 @@ export class Presenter {
     store.mesh.value = null;
     if (request.kind !== 'sample') return;
     this.columns.clear(request.settings.sampling === 'adaptive');
+    this.columns.stale = request.backdrop === true;
     this.picture.begin({ grow: request.grow, fit: request.fit, bounds });
     batch(() => {
       store.hover.value = null;
-      store.empty.value = false;
+      store.empty.value = this.columns.stale;
     });
   }
 
@@ -147,6 +151,7 @@ export class Presenter {
    */
   end({ outcome, progress, seconds, reportFollows, record }, { id, request }, particles) {
     const { store, columns } = this;
+    if (request.backdrop) return;
     if (particles > 0) columns.record = record;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.

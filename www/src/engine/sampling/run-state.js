@@ -7,7 +7,7 @@
 import { clampSettings } from '../share/state.js';
 
 /**
- * @import { Description } from '../types.js'
+ * @import { Description, Trial } from '../types.js'
  * @import { Outcome, Run, RunEvent, RunRequest, RunState, SampleRequest, Shown, Stage } from './types.js'
  */
 
@@ -26,6 +26,7 @@ export const IDLE = Object.freeze({
   held: 0,
   accepted: null,
   shown: null,
+  stood: null,
   astray: false,
   stoppedUpTo: 0,
   crashedInput: '',
@@ -54,7 +55,7 @@ export function reduce(state, event) {
         asked: after(state.asked, event.id),
         current: { ...run, bounds: event.bounds },
         held: 0,
-        accepted: request,
+        accepted: request.backdrop ? state.accepted : request,
         astray: request.restoring === true && state.astray,
       };
     }
@@ -68,6 +69,8 @@ export function reduce(state, event) {
       return done(state, event);
     case 'reported':
       return { ...atStage(state, 'over'), shown: state.shown && { ...state.shown, reported: true } };
+    case 'committed':
+      return committed(state);
     case 'stopped':
       return { ...state, waiting: null, stoppedUpTo: state.lastId };
     case 'lost':
@@ -85,7 +88,11 @@ function firstParticles(state, description) {
   if (current?.stage !== 'seeding') return state;
   const { request } = current;
   const next = atStage(state, 'growing');
-  if (request.kind === 'sample') return { ...next, shown: { request, reported: false } };
+  if (request.backdrop) return { ...next, shown: null };
+  if (request.kind === 'sample') {
+    const stood = request.trial ? (state.stood ?? shown) : null;
+    return { ...next, shown: { request, reported: false }, stood };
+  }
   return { ...next, shown: shown && { request: relaxed(shown, request.steps, description), reported: false } };
 }
 
@@ -94,13 +101,58 @@ function done(state, { outcome, particles, reportFollows }) {
   const { current, shown, accepted } = state;
   if (!current) return state;
   const next = atStage(state, reportFollows ? 'measuring' : 'over');
+  if (current.request.backdrop) return next;
   if (tookPlace(outcome, particles)) {
-    return particles > 0 ? { ...next, held: current.id } : { ...next, held: 0, shown: null };
+    if (particles > 0) return { ...next, held: current.id };
+    if (!state.stood || !shown) return { ...next, held: 0, shown: null, stood: state.stood ?? shown };
+    // The surface of a trial stays until the one before it is back.
+    const waiting = state.asked.length === 0 ? { ...restored(state.stood), live: true, backdrop: true } : null;
+    return { ...next, held: 0, waiting };
   }
   // The previous surface stays. It still counts as the requested one if a run of the same field was stopped.
   const wanted = current.request.kind === 'sample' ? current.request : accepted;
   const same = JSON.stringify(shown?.request.field) === JSON.stringify(wanted?.field);
   return { ...next, astray: current.request.restoring === true || outcome !== 'stopped' || !same };
+}
+
+/** @param {RunState} state @returns {RunState} */
+function committed(state) {
+  const kept = (/** @type {Run} */ run) => ({
+    ...run,
+    request: { ...run.request, trial: /** @type {const} */ (false) },
+  });
+  const { current, shown } = state;
+  const isAwaited = current?.stage === 'seeding' || state.asked.length > 0;
+  return {
+    ...state,
+    asked: state.asked.map(kept),
+    current: current && kept(current),
+    stood: shown && !isAwaited ? null : state.stood,
+  };
+}
+
+/** Returns what has become of the last trial. @param {RunState} state @returns {Trial} */
+export function trialOf({ stood, shown, current }) {
+  if (stood && shown) return 'shown';
+  return current?.request.restoring ? 'back' : 'none';
+}
+
+/** Returns the run that makes a surface again. @param {Shown} shown @returns {SampleRequest} */
+const restored = ({ request }) => ({ ...request, live: false, grow: false, fit: false, trial: false, restoring: true });
+
+/**
+ * Returns the run after a request that has failed: it completes the surface that stays, or brings back the one before a
+ * trial. Null if that surface is there, or a later request is on its way.
+ * @param {RunState} state
+ * @returns {SampleRequest | null}
+ */
+export function restoringOf(state) {
+  const { asked, current, shown, stood, crashedInput } = state;
+  if (!shown || asked.length > 0 || (current?.request.restoring && current.stage !== 'over')) return null;
+  const isTried = stood !== null || runningOf(state)?.request.trial;
+  if (!isTried && (shown.reported || awaitsWorker(state))) return null;
+  const request = restored(stood ?? shown);
+  return inputOf(request) === crashedInput ? null : request;
 }
 
 /** @param {RunState} state @param {Stage} stage @returns {RunState} */

@@ -20,8 +20,10 @@ import {
   lostRun,
   reduce,
   relaxed,
+  restoringOf,
   runningOf,
   tookPlace,
+  trialOf,
 } from './run-state.js';
 
 /**
@@ -98,6 +100,12 @@ export class Sampler {
       !running.request.restoring &&
       inputOf(running.request) === inputOf(request);
     if (!same || request.live || this.store.fieldError.value) this.submit(request);
+    else if (!request.trial) this.commit();
+  }
+
+  /** Keeps the formula that was on trial. */
+  commit() {
+    this.#happened({ type: 'committed' });
   }
 
   /**
@@ -133,12 +141,10 @@ export class Sampler {
     this.client.post({ type: 'stop' });
   }
 
-  /** Completes the surface that stays on the page, with its report, after the run that interrupted it has failed. */
+  /** Completes the surface that stays on the page, with its report, after a request has failed. */
   #settle() {
-    const { shown, crashedInput } = this.runs;
-    if (!shown || shown.reported || awaitsWorker(this.runs)) return;
-    const request = { ...this.relaxed(0), restoring: true };
-    if (inputOf(request) !== crashedInput) this.submit(request);
+    const request = restoringOf(this.runs);
+    if (request) this.submit(request);
   }
 
   /**
@@ -197,6 +203,7 @@ export class Sampler {
   /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
   #attend() {
     this.store.busy.value = awaitsParticles(this.runs);
+    this.store.trial.value = trialOf(this.runs);
     this.client.setBusy(awaitsWorker(this.runs));
   }
 
@@ -268,7 +275,16 @@ export class Sampler {
   #fieldAccepted(id, request, answer) {
     this.#happened({ type: 'accepted', id, bounds: answer.bounds });
     this.#presenter.begin(id, request);
-    if (!request.restoring) this.#presenter.field(request.field, answer);
+    if (this.#isTold(request)) this.#presenter.field(request.field, answer, request.restoring);
+  }
+
+  /**
+   * Returns whether the page tells the field of this run: that of the surface in the picture while a mistake is in the
+   * formula, else that of the formula.
+   * @param {SampleRequest} request
+   */
+  #isTold({ restoring, backdrop }) {
+    return !restoring || (!backdrop && this.store.fieldError.value !== null);
   }
 
   /**
@@ -279,7 +295,7 @@ export class Sampler {
   #boxFound(answer, { request }) {
     if (request.kind !== 'sample') return;
     this.#happened({ type: 'boxed', bounds: answer.bounds });
-    if (!request.restoring) this.#presenter.box(answer);
+    if (this.#isTold(request)) this.#presenter.box(answer);
   }
 
   /** @param {number} id @param {Extract<FieldAnswer, {ok: false}>} answer */
@@ -322,7 +338,7 @@ export class Sampler {
       this.#happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
       if (surface) {
         this.#presenter.end(message, run, particles);
-        this.#learn(message, run, particles);
+        if (!request.backdrop) this.#learn(message, run, particles);
       } else {
         this.#presenter.failure(message);
       }

@@ -113,7 +113,8 @@ export type FromWorker =
 /**
  * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
  * question about a large number of particles. `restoring` completes the surface on the page while the state names
- * another one that cannot be sampled.
+ * another one that cannot be sampled; where that one has no surface, it is a `backdrop`, which is seen and no more.
+ * `trial`: the formula is still being typed (see `RunState.stood`).
  */
 export interface SampleRequest {
   kind: 'sample';
@@ -124,6 +125,8 @@ export interface SampleRequest {
   fit: boolean;
   confirmed?: boolean;
   restoring?: boolean;
+  backdrop?: boolean;
+  trial?: boolean;
   /** of fewer particles than the settings of the state ask for, or of the coarse level alone */
   coarse?: boolean;
 }
@@ -135,6 +138,8 @@ export type RelaxRequest = {
   grow: true;
   fit: false;
   restoring?: false;
+  backdrop?: false;
+  trial?: false;
 };
 export type RunRequest = SampleRequest | RelaxRequest;
 /**
@@ -164,6 +169,11 @@ export interface RunState {
   accepted: SampleRequest | null;
   /** the request whose particles are on the page, and whether their report has arrived */
   shown: Shown | null;
+  /**
+   * The surface that stood before that of a trial, a formula that is still being typed. It comes back if what is typed
+   * in the end has no surface or a mistake. It is forgotten once the formula is a trial no longer.
+   */
+  stood: Shown | null;
   /** whether the surface on the page differs from the one requested last */
   astray: boolean;
   /** id of the last job sent before a stop; no job up to it continues */
@@ -172,8 +182,9 @@ export interface RunState {
   crashedInput: string;
 }
 /**
- * The events. `particles`: the first particles of the current run have arrived; `lost`: the worker and its jobs are
- * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
+ * The events. `committed`: the formula that was asked for last is a trial no longer; `particles`: the first particles
+ * of the current run have arrived; `lost`: the worker and its jobs are gone; `crashed`: the worker failed on `input`,
+ * which is sent `again` or given up.
  */
 export type RunEvent =
   | { type: 'waits'; request: RunRequest }
@@ -184,6 +195,7 @@ export type RunEvent =
   | { type: 'particles'; description: Description | null }
   | { type: 'done'; outcome: Outcome; particles: number; reportFollows: boolean }
   | { type: 'reported' }
+  | { type: 'committed' }
   | { type: 'stopped' }
   | { type: 'lost' }
   | { type: 'crashed'; input: string; again: boolean }
