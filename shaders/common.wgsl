@@ -51,6 +51,10 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
+// What is nearest to the eye at every other pixel each way: the bits of its depth, and its normal or, once occlusion.wgsl has found
+// it, its openness.
+@group(1) @binding(0) var nearest: texture_2d<u32>;
+
 // Coverage below which a pixel is discarded: half a step of an 8-bit channel.
 const NOTHING = 0.002;
 // Share of linear light by which each component of a linear sRGB colour adds to its luminance (Rec. 709).
@@ -60,6 +64,12 @@ const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
 // inside drown, at 0.5 it is hard to tell from the front.
 const INSIDE_LIGHT = 0.40;
 const INSIDE_CHROMA = 0.5;
+
+// See oct_encode in src/render/layout.rs.
+fn oct_encode(n: vec3<f32>) -> vec2<f32> {
+    let e = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return select((1.0 - abs(e.yx)) * select(vec2<f32>(-1.0), vec2<f32>(1.0), e >= vec2<f32>(0.0)), e, n.z >= 0.0);
+}
 
 fn oct_decode(e: vec2<f32>) -> vec3<f32> {
     let z = 1.0 - abs(e.x) - abs(e.y);
@@ -112,4 +122,37 @@ fn brightness(toward_key: f32, toward_sky: f32, edge_on: f32) -> f32 {
 fn faded(level: f32) -> f32 {
     let older = level >= 0.0 && level < frame.appearance.level;
     return max(frame.light.dim, select(0.0, frame.appearance.mute, older));
+}
+
+// A texel of `nearest`: a depth and a normal of any length.
+fn texel_of(depth: f32, normal: vec3<f32>) -> vec2<u32> {
+    return vec2<u32>(bitcast<u32>(depth), pack2x16snorm(oct_encode(normal)));
+}
+
+// Difference of depths up to which texels of `nearest` are of one surface, besides that by its slope.
+const SAME_DEPTH = 3e-4;
+
+// Mean openness over `width` texels each way around a place in texels, of those that are of the surface with this depth, as far as there
+// are any. `slope` is the change of its depth from one texel to the next.
+fn mean_openness(at: vec2<f32>, width: f32, depth: f32, slope: f32) -> f32 {
+    let first = vec2<i32>(floor(at - 0.5 * width));
+    let last = vec2<i32>(textureDimensions(nearest)) - 1;
+    let across = i32(width) + 1;
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = 0; k < across * across; k++) {
+        let texel = first + vec2<i32>(k % across, k / across);
+        let found = textureLoad(nearest, clamp(texel, vec2<i32>(0), last), 0).xy;
+        let share = clamp(0.5 * width + 0.5 - abs(vec2<f32>(texel) + 0.5 - at), vec2<f32>(0.0), vec2<f32>(1.0));
+        let apart = abs(bitcast<f32>(found.x) - depth) / (SAME_DEPTH + 2.0 * width * slope);
+        let weight = share.x * share.y * clamp(2.0 - apart, 1e-4, 1.0);
+        sum += weight * bitcast<f32>(found.y);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+// Share of the light from all around that reaches a pixel with this depth. `slope` is the change of the depth to the next pixel.
+fn openness(pixel: vec2<f32>, depth: f32, slope: f32) -> f32 {
+    return mean_openness(0.5 * pixel, 1.0, depth, 2.0 * slope);
 }

@@ -1,4 +1,4 @@
-// Draws particles as discs in their tangent planes, and a ring around one of them. See src/render/mod.rs.
+// Draws particles as discs in their tangent planes or as spheres, and a ring around one of them. See src/render/mod.rs.
 
 // A particle, as RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES in src/render/layout.rs describe it.
 struct Particle {
@@ -16,14 +16,16 @@ struct Disc {
     @location(0) uv: vec2<f32>,
     // Linear colour, and the opacity: that of the colour times the progress of the appearance.
     @location(1) @interpolate(flat) colour: vec4<f32>,
-    // Direction to the key light along (t, b, n), and 1 for a disc seen from behind.
-    @location(2) @interpolate(flat) key: vec4<f32>,
-    // Direction to the sky along (t, b, n), and 1 minus the cosine of the viewing angle: 0 face-on, 1 edge-on.
-    @location(3) @interpolate(flat) sky: vec4<f32>,
+    // First axis of the plane in world coordinates, and 1 for a disc seen from behind.
+    @location(2) @interpolate(flat) t: vec4<f32>,
+    // Second axis, and 1 minus the cosine of the viewing angle: 0 face-on, 1 edge-on.
+    @location(3) @interpolate(flat) b: vec4<f32>,
     // Semi-axes of the ellipse on the screen in pixels: along t, along b.
     @location(4) @interpolate(flat) axes_px: vec2<f32>,
     // Fraction by which the disc fades to the background, because all do or because its level is not the newest.
     @location(5) @interpolate(flat) faded: f32,
+    // Centre and radius of a sphere; the radius of a disc is 0.
+    @location(6) @interpolate(flat) ball: vec4<f32>,
 }
 
 // Padding of the quad beyond the rim, in pixels. Half a pixel holds the antialiased edge; the other half is a reserve,
@@ -84,22 +86,38 @@ fn quad_corner(vertex: u32) -> vec2<f32> {
 
 @vertex
 fn vs_core(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
-    return disc_vertex(vertex, particle, POINT_DEPTH, 0.0);
+    return disc_vertex(vertex, particle, POINT_DEPTH, 0.0, false);
 }
 
 // Rims seen from behind are drawn before those seen from the front. On a closed surface this is from back to front.
 @vertex
 fn vs_rim_behind(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
-    return disc_vertex(vertex, particle, 0.0, -1.0);
+    return disc_vertex(vertex, particle, 0.0, -1.0, false);
 }
 
 @vertex
 fn vs_rim_front(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
-    return disc_vertex(vertex, particle, 0.0, 1.0);
+    return disc_vertex(vertex, particle, 0.0, 1.0, false);
 }
 
-// `side` is 1 to draw only discs seen from the front, -1 for those seen from behind, 0 for both.
-fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> Disc {
+@vertex
+fn vs_ball_core(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, POINT_DEPTH, 0.0, true);
+}
+
+@vertex
+fn vs_ball_rim(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, 0.0, 0.0, true);
+}
+
+// Distance of the eye from the centre of a sphere, in radii. From farther away its rays are as good as parallel.
+fn eye_distance(ball: vec4<f32>) -> f32 {
+    return select(1e3, clamp(distance(frame.camera.eye, ball.xyz) / ball.w, 1.0001, 1e3), frame.camera.perspective > 0.5);
+}
+
+// `side` is 1 to draw only discs seen from the front, -1 for those seen from behind, 0 for both. With `spheres` a particle is drawn as
+// the disc that its sphere covers, which faces the eye; one without a level is no particle of a surface and stays a disc.
+fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32, spheres: bool) -> Disc {
     var out: Disc;
     out.clip = hidden();
     let age = select(1.0, clamp((frame.appearance.time - particle.birth) / max(frame.appearance.fade, 1e-6), 0.0, 1.0), frame.appearance.fade > 0.0);
@@ -112,18 +130,26 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     }
 
     let v = toward_eye(particle.position);
-    let is_dot = particle.radius < 0.0;
+    let is_ball = spheres && particle.level >= 0.0;
+    let is_dot = particle.radius < 0.0 && !is_ball;
     let outward = select(oct_decode(particle.normal_oct), v, is_dot);
     let behind = dot(outward, v) < 0.0;
     if side * select(1.0, -1.0, behind) < 0.0 {
         return out;
     }
-    let n = select(outward, -outward, behind);
+    let n = select(select(outward, -outward, behind), v, is_ball);
     let t = facing_axis(n, v);
     let b = cross(n, t);
     let clip_t = clip_direction(t);
     let clip_b = clip_direction(b);
-    let plain_r = abs(particle.radius) * select(1.0, DOT, is_dot) * frame.look.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    var plain_r = abs(particle.radius) * select(1.0, DOT, is_dot) * frame.look.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    var widening = 1.0;
+    if is_ball {
+        // The outline of a sphere, seen from nearby, lies before its centre.
+        let far = eye_distance(vec4<f32>(particle.position, plain_r));
+        widening = far * inverseSqrt(far * far - 1.0);
+        plain_r *= widening;
+    }
     let plain_px = plain_r * moved_px(centre, clip_t);
     let swell = mix(CLOSED, 1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, length(plain_px)));
     let r = swell * plain_r;
@@ -140,14 +166,15 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let on_screen = corner * (reach - min(reach, vec2<f32>(MAX_REACH))) * axes;
     out.clip = centre + r * (in_plane.x * clip_t + in_plane.y * clip_b);
     out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.camera.viewport * out.clip.w, 0.0, 0.0);
-    let deeper = out.clip - (point_depth * pointness(axes) - select(0.0, 1.0, is_dot)) * r * clip_direction(v);
+    let push = (point_depth * pointness(axes) - select(0.0, 1.0, is_dot)) * r;
+    let deeper = out.clip - push * clip_direction(v);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
+    out.ball = vec4<f32>(particle.position - push * v, select(0.0, r / widening, is_ball));
 
     out.uv = corner * reach;
     out.colour = vec4<f32>(linear_from_srgb(particle.colour.rgb), opacity);
-    out.key = vec4<f32>(dot(frame.light.key, t), dot(frame.light.key, b), dot(frame.light.key, n), select(0.0, 1.0, behind));
-    let edge_on = 1.0 - dot(n, v);
-    out.sky = vec4<f32>(dot(frame.light.sky, t), dot(frame.light.sky, b), dot(frame.light.sky, n), edge_on);
+    out.t = vec4<f32>(t, select(0.0, 1.0, behind));
+    out.b = vec4<f32>(b, 1.0 - dot(n, v));
     out.axes_px = axes;
     out.faded = faded(particle.level);
     return out;
@@ -166,19 +193,25 @@ fn coverage(disc: Disc) -> f32 {
     return clamp(min(0.5 + inside_px, widest), 0.0, 1.0);
 }
 
+// `local` along the axes of the disc, in world coordinates.
+fn world_of(disc: Disc, local: vec3<f32>) -> vec3<f32> {
+    return local.x * disc.t.xyz + local.y * disc.b.xyz + local.z * cross(disc.t.xyz, disc.b.xyz);
+}
+
 fn shade(disc: Disc) -> vec3<f32> {
     let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
     let rho = min(length(disc.uv), 1.0);
     // The normal of the dome tilts outward by DOME at the rim.
     let lean = disc.uv / max(length(disc.uv), 1e-6) * rho * rho * DOME * full;
-    let scale = inverseSqrt(1.0 + dot(lean, lean));
-    let toward_key = (dot(lean, disc.key.xy) + disc.key.z) * scale;
-    let toward_sky = (dot(lean, disc.sky.xy) + disc.sky.z) * scale;
-    var light = brightness(toward_key, toward_sky, disc.sky.w);
     // The rim is darker, so that discs stand out from each other.
-    light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
-    let front = disc.colour.rgb * light;
-    let seen = inside(front, disc.key.w * frame.light.dim_backfaces);
+    let rim = 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
+    return lit(disc, normalize(world_of(disc, vec3<f32>(lean, 1.0))), disc.b.w, rim);
+}
+
+// Colour with a unit normal in world coordinates. `open` is the share of the light that is left.
+fn lit(disc: Disc, n: vec3<f32>, edge_on: f32, open: f32) -> vec3<f32> {
+    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), edge_on) * open;
+    let seen = inside(disc.colour.rgb * light, disc.t.w * frame.light.dim_backfaces);
     return fade_to(seen, frame.light.background.rgb, disc.faded);
 }
 
@@ -187,30 +220,102 @@ fn fullness(disc: Disc) -> f32 {
     return smoothstep(WIDE_PX.x, WIDE_PX.y, min(disc.axes_px.x, disc.axes_px.y));
 }
 
+// Coverage from which a pixel belongs to the core.
+fn core_of(disc: Disc, of_points: f32) -> f32 {
+    return mix(mix(CORE.y, CORE.z, fullness(disc)), of_points, as_point(disc));
+}
+
 // Degree from 0 to 1 to which a disc is treated as a point. It reaches 1 halfway through the enlargement, so that
 // sheets close before gaps become small.
 fn as_point(disc: Disc) -> f32 {
     return smoothstep(0.0, 0.5, pointness(disc.axes_px));
 }
 
+// Coverage of a pixel that belongs to the core, or, with `rim`, of one that does not; 0 for the others. All pixels of points are drawn
+// in both passes.
+fn covered_in(disc: Disc, rim: bool) -> f32 {
+    let covered = coverage(disc) * disc.colour.a;
+    let core = core_of(disc, select(CORE.x, 1.01, rim));
+    return select(0.0, covered, (covered < core) == rim);
+}
+
 @fragment
 fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
-    let covered = coverage(disc) * disc.colour.a;
-    if covered < mix(mix(CORE.y, CORE.z, fullness(disc)), CORE.x, as_point(disc)) {
+    return painted(disc, covered_in(disc, false));
+}
+
+@fragment
+fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
+    return painted(disc, covered_in(disc, true));
+}
+
+fn painted(disc: Disc, covered: f32) -> vec4<f32> {
+    if covered < NOTHING {
         discard;
     }
     return vec4<f32>(shade(disc) * covered, covered);
 }
 
+// Normal of a sphere where the ray through the pixel meets it, along the axes of its disc.
+fn ball_normal(disc: Disc) -> vec3<f32> {
+    let far = eye_distance(disc.ball);
+    let far_sq = far * far;
+    let rho_sq = min(dot(disc.uv, disc.uv), 1.0);
+    // Where the ray meets the plane of the disc, which goes through the centre, in radii of the sphere.
+    let met = disc.uv * sqrt(far_sq / (far_sq - 1.0));
+    let along = (far_sq - far * sqrt(1.0 - rho_sq)) / (dot(met, met) + far_sq);
+    return normalize(vec3<f32>(along * met, far * (1.0 - along)));
+}
+
+// Depth of a place.
+fn depth_at(place: vec3<f32>) -> f32 {
+    let clip = frame.camera.clip_from_world * vec4<f32>(place, 1.0);
+    return clip.z / clip.w;
+}
+
+struct Pixel {
+    @location(0) colour: vec4<f32>,
+    @builtin(frag_depth) depth: f32,
+}
+
 @fragment
-fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
-    let covered = coverage(disc) * disc.colour.a;
-    // All pixels of points are drawn again.
-    let core = mix(mix(CORE.y, CORE.z, fullness(disc)), 1.01, as_point(disc));
-    if covered >= core || covered < NOTHING {
+fn fs_ball_core(disc: Disc) -> Pixel {
+    return painted_ball(disc, false);
+}
+
+@fragment
+fn fs_ball_rim(disc: Disc) -> Pixel {
+    return painted_ball(disc, true);
+}
+
+fn painted_ball(disc: Disc, rim: bool) -> Pixel {
+    let covered = covered_in(disc, rim);
+    if disc.ball.w == 0.0 {
+        return Pixel(painted(disc, covered), disc.clip.z);
+    }
+    if covered < NOTHING {
         discard;
     }
-    return vec4<f32>(shade(disc) * covered, covered);
+    let local = ball_normal(disc);
+    let n = world_of(disc, local);
+    let depth = depth_at(disc.ball.xyz + disc.ball.w * n);
+    let slope = abs(depth_at(disc.ball.xyz) - depth) / min(disc.axes_px.x, disc.axes_px.y);
+    return Pixel(vec4<f32>(lit(disc, n, 1.0 - local.z, openness(disc.clip.xy, depth, slope)) * covered, covered), depth);
+}
+
+struct Nearest {
+    @location(0) texel: vec2<u32>,
+    @builtin(frag_depth) depth: f32,
+}
+
+@fragment
+fn fs_ball_nearest(disc: Disc) -> Nearest {
+    if coverage(disc) * disc.colour.a < 0.5 {
+        discard;
+    }
+    let n = world_of(disc, select(ball_normal(disc), vec3<f32>(0.0, 0.0, 1.0), disc.ball.w == 0.0));
+    let depth = select(depth_at(disc.ball.xyz + disc.ball.w * n), disc.clip.z, disc.ball.w == 0.0);
+    return Nearest(texel_of(depth, n), depth);
 }
 
 struct Ring {

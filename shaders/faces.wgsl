@@ -150,7 +150,8 @@ fn shade_face(point: Point, front: bool) -> vec3<f32> {
     let n = normalize(select(-point.normal, point.normal, front));
     let v = normalize(point.to_eye);
     let facing = clamp(dot(n, v), 0.0, 1.0);
-    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing);
+    let open = openness(point.clip.xy, point.clip.z, fwidth(point.clip.z));
+    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing) * open;
     var colour = point.colour * light;
 
     // Distances from the sides in pixels, and the heights over them.
@@ -189,6 +190,36 @@ fn fs_cut_face(point: Point, @builtin(front_facing) front: bool) -> @location(0)
         discard;
     }
     return vec4<f32>(colour, shown);
+}
+
+// What is nearest of the faces, for occlusion.wgsl.
+struct Shell {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) normal: vec3<f32>,
+    // See beyond_plane.
+    @location(1) beyond: f32,
+}
+
+@vertex
+fn vs_nearest(@builtin(vertex_index) vertex: u32, face: Face) -> Shell {
+    var out: Shell;
+    out.clip = hidden();
+    if is_hidden(face) || face.level > frame.appearance.level {
+        return out;
+    }
+    let position = corner_of(face, vertex).place.xyz;
+    out.clip = frame.camera.clip_from_world * vec4<f32>(position, 1.0);
+    out.normal = cross(face.b.xyz - face.a.xyz, face.c.xyz - face.a.xyz);
+    out.beyond = beyond_plane(position);
+    return out;
+}
+
+@fragment
+fn fs_nearest(shell: Shell) -> @location(0) vec2<u32> {
+    if shell.beyond > 0.0 {
+        discard;
+    }
+    return texel_of(shell.clip.z, shell.normal);
 }
 
 // The surface as a ghost beneath its discs.

@@ -1,4 +1,4 @@
-//! Renderer of particles, as discs or as the faces between them, on WebGPU and WebGL2 through wgpu.
+//! Renderer of particles, as discs, as spheres or as the faces between them, on WebGPU and WebGL2 through wgpu.
 //!
 //! The renderer takes columns of numbers and a camera matrix; it knows no field and no sampler.
 //!
@@ -21,6 +21,11 @@
 //!   the rim passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and
 //!   coverage decreases with the size of a point, so that the picture is steady under motion.
 //!
+//! # How a sphere is drawn
+//!
+//! A sphere is a disc that faces the eye, as large as its outline. The fragment shader finds where the ray of the pixel meets the
+//! sphere, and writes that depth: spheres that touch cut each other where they should. Core, rim and points are those of discs.
+//!
 //! # How a mesh is drawn
 //!
 //! * **Geometry.** Each face is an instanced triangle whose record repeats the three corners. A fragment then knows its
@@ -32,9 +37,17 @@
 //! * **Silhouettes** are antialiased by four samples per pixel, for which the pipelines are compiled when the first faces are
 //!   drawn.
 //!
+//! # How a surface takes light from itself
+//!
+//! A mesh and spheres are darker where less of the light from all around reaches them. What is nearest to the eye is drawn first, at
+//! every other pixel each way: its depth and its normal. A second pass finds the openness of each texel from 16 places around it that
+//! rise above its tangent plane; a third one takes the mean of neighbours on the same surface, in which the pattern of these places
+//! cancels out. Faces and spheres multiply their light by it when they are drawn. Reach and darkness follow from the picture alone,
+//! so that a frame in motion, one at rest and a larger picture are alike.
+//!
 //! # How a plane cuts
 //!
-//! A disc whose centre is beyond the cutting plane is not drawn, so that discs stay whole. Faces are cut along the plane: their
+//! A disc or sphere whose centre is beyond the cutting plane is not drawn, so that discs stay whole. Faces are cut along the plane: their
 //! fragments beyond it are discarded, and those at the edge cover as many of the pixel's samples as lie on the side that is shown.
 //!
 //! # Colour

@@ -1,7 +1,7 @@
-//! Encoder of the render pass of a picture.
+//! Encoder of the render passes of a picture.
 
 use super::frame::Frame;
-use super::pipelines::{DEPTH_FORMAT, FrameBinding, Pipelines, TargetKind};
+use super::pipelines::{DEPTH_FORMAT, FrameBinding, Kind, NEAREST_FORMAT, Pipelines};
 use super::store::Store;
 
 /// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader could antialias. All devices of
@@ -12,10 +12,7 @@ const FACE_SAMPLES: u32 = 4;
 pub(super) struct Painter {
     format: wgpu::TextureFormat,
     frame: FrameBinding,
-    /// Pipelines for pictures of discs alone.
-    discs: Pipelines,
-    /// Pipelines for pictures with faces, made for the first one.
-    faces: Option<Pipelines>,
+    pipelines: Pipelines,
     /// Buffers of the canvas, kept between pictures.
     buffers: Option<Buffers>,
 }
@@ -28,6 +25,15 @@ struct Buffers {
     samples: Option<wgpu::Texture>,
     /// The texture that the samples are resolved to, if it is copied to the target.
     resolved: Option<wgpu::Texture>,
+    occlusion: Option<Occlusion>,
+}
+
+/// What the openness of a surface is found with, at every other pixel each way.
+#[derive(Clone)]
+struct Occlusion {
+    depth: wgpu::TextureView,
+    /// Depths of what is nearest with normals, then with openness: each is read, by its group, to draw on the other.
+    nearest: [(wgpu::TextureView, wgpu::BindGroup); 2],
 }
 
 /// Contents of a picture.
@@ -35,6 +41,8 @@ pub(super) struct Scene<'a> {
     pub(super) particles: &'a Store,
     /// Number of particles.
     pub(super) count: u32,
+    /// Whether the particles are drawn as spheres.
+    pub(super) spheres: bool,
     pub(super) faces: Option<Faces<'a>>,
     /// The pieces of creases, and their number.
     pub(super) lines: &'a Store,
@@ -70,11 +78,11 @@ pub(super) struct Canvas<'a> {
 }
 
 impl Painter {
-    /// Compiles the pipelines for targets of `format`, which must be an sRGB format so that blending is linear.
+    /// For targets of `format`, which must be an sRGB format so that blending is linear.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let frame = FrameBinding::new(device);
-        let discs = Pipelines::new(device, &frame, TargetKind { format, samples: 1 });
-        Self { format, frame, discs, faces: None, buffers: None }
+        let pipelines = Pipelines::new(device, &frame, format);
+        Self { format, frame, pipelines, buffers: None }
     }
 
     /// Drops the buffers, since the size of the target has changed.
@@ -91,36 +99,65 @@ impl Painter {
         scene: &Scene<'_>,
     ) {
         queue.write_buffer(&self.frame.buffer, 0, bytemuck::bytes_of(&scene.frame));
-        let samples = if scene.faces.is_some() { FACE_SAMPLES } else { 1 };
-        let target = TargetKind { format: self.format, samples };
         let buffers = match &self.buffers {
-            Some(buffers) if buffers.fit(canvas, target) => buffers.clone(),
-            _ => Buffers::new(device, canvas, target),
+            Some(buffers) if buffers.fit(canvas, scene) => buffers.clone(),
+            _ => self.buffers(device, canvas, scene),
         };
         if canvas.keep {
             self.buffers = Some(buffers.clone());
         }
-        let pipelines = if scene.faces.is_some() {
-            self.faces.get_or_insert_with(|| Pipelines::new(device, &self.frame, target))
-        } else {
-            &self.discs
-        };
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if let Some(Occlusion { depth, nearest }) = &buffers.occlusion {
+            let clear = wgpu::Color { r: f64::from(1.0_f32.to_bits()), ..wgpu::Color::TRANSPARENT };
+            let target = |k: usize| Target { view: &nearest[k].0, resolve: None, clear, depth: None };
+            let mut pass = self.pass(&mut encoder, Target { depth: Some(depth), ..target(0) });
+            scene.draw_nearest(&mut pass, &mut |kind| self.pipelines.get(device, kind, 1));
+            drop(pass);
+            for (kind, from) in [(Kind::Occlusion, 0), (Kind::Mean, 1)] {
+                let mut pass = self.pass(&mut encoder, target(1 - from));
+                pass.set_bind_group(1, &nearest[from].1, &[]);
+                pass.set_pipeline(&self.pipelines.get(device, kind, 1));
+                pass.draw(0..3, 0..1);
+            }
+        }
         let [sampled, resolved] =
             [&buffers.samples, &buffers.resolved].map(|texture| texture.as_ref().map(view_of));
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("picture"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+        let mut pass = self.pass(
+            &mut encoder,
+            Target {
                 view: sampled.as_ref().unwrap_or(canvas.view),
+                resolve: sampled.as_ref().map(|_| resolved.as_ref().unwrap_or(canvas.view)),
+                clear: scene.clear_colour(),
+                depth: Some(&view_of(&buffers.depth)),
+            },
+        );
+        if let Some(Occlusion { nearest: [(_, open), _], .. }) = &buffers.occlusion {
+            pass.set_bind_group(1, open, &[]);
+        }
+        scene.draw(&mut pass, &mut |kind| self.pipelines.get(device, kind, scene.samples()));
+        drop(pass);
+        if let (Some(resolved), Some(texture)) = (&buffers.resolved, canvas.copied) {
+            let (from, to) = (resolved.as_image_copy(), texture.as_image_copy());
+            encoder.copy_texture_to_texture(from, to, resolved.size());
+        }
+        queue.submit([encoder.finish()]);
+    }
+
+    /// Begins a pass whose depths are not kept.
+    fn pass<'a>(&self, encoder: &'a mut wgpu::CommandEncoder, target: Target<'_>) -> wgpu::RenderPass<'a> {
+        let Target { view, resolve, clear, depth } = target;
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
                 depth_slice: None,
-                resolve_target: sampled.as_ref().map(|_| resolved.as_ref().unwrap_or(canvas.view)),
+                resolve_target: resolve,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(scene.clear_colour()),
-                    store: if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                    load: wgpu::LoadOp::Clear(clear),
+                    store: if resolve.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
                 },
             })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &view_of(&buffers.depth),
+            depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+                view,
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Discard,
@@ -130,15 +167,55 @@ impl Painter {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &self.frame.group, &[]);
-        scene.draw(&mut pass, pipelines);
-        drop(pass);
-        if let (Some(resolved), Some(texture)) = (&buffers.resolved, canvas.copied) {
-            let (from, to) = (resolved.as_image_copy(), texture.as_image_copy());
-            encoder.copy_texture_to_texture(from, to, resolved.size());
+        pass
+    }
+
+    /// Makes the buffers of a picture.
+    fn buffers(&self, device: &wgpu::Device, canvas: &Canvas<'_>, scene: &Scene<'_>) -> Buffers {
+        let texture = |[width, height]: [u32; 2], format, sample_count, usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
+                view_formats: &[],
+            })
+        };
+        let (size, samples) = (canvas.size, scene.samples());
+        let plain = wgpu::TextureUsages::empty();
+        let is_copied = samples > 1 && canvas.copied.is_some();
+        Buffers {
+            depth: texture(size, DEPTH_FORMAT, samples, plain),
+            samples: (samples > 1).then(|| texture(size, self.format, samples, plain)),
+            resolved: is_copied.then(|| texture(size, self.format, 1, wgpu::TextureUsages::COPY_SRC)),
+            occlusion: scene.is_occluded().then(|| {
+                let size = size.map(|side| side.div_ceil(2));
+                let nearest = [(), ()].map(|()| {
+                    let view =
+                        view_of(&texture(size, NEAREST_FORMAT, 1, wgpu::TextureUsages::TEXTURE_BINDING));
+                    let group = self.pipelines.group(device, &view);
+                    (view, group)
+                });
+                Occlusion { depth: view_of(&texture(size, DEPTH_FORMAT, 1, plain)), nearest }
+            }),
         }
-        queue.submit([encoder.finish()]);
     }
 }
+
+/// Target of a pass.
+struct Target<'a> {
+    view: &'a wgpu::TextureView,
+    /// What its samples are resolved to.
+    resolve: Option<&'a wgpu::TextureView>,
+    clear: wgpu::Color,
+    depth: Option<&'a wgpu::TextureView>,
+}
+
+/// Hands out the pipelines for a target.
+type Get<'a> = dyn FnMut(Kind) -> wgpu::RenderPipeline + 'a;
 
 impl Scene<'_> {
     fn clear_colour(&self) -> wgpu::Color {
@@ -146,32 +223,60 @@ impl Scene<'_> {
         if self.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } }
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipelines: &Pipelines) {
-        let mut first_disc = 0;
-        if let Some(&Faces { store, count, particles, is_ghost }) = self.faces.as_ref() {
-            pass.set_pipeline(match (is_ghost, self.is_cut) {
-                (true, _) => &pipelines.ghost,
-                (false, true) => &pipelines.cut_faces,
-                (false, false) => &pipelines.faces,
-            });
+    /// Samples per pixel.
+    fn samples(&self) -> u32 {
+        if self.faces.is_some() { FACE_SAMPLES } else { 1 }
+    }
+
+    /// Whether the surface takes light from itself: a mesh or spheres do, discs and a ghost do not.
+    fn is_occluded(&self) -> bool {
+        self.spheres || self.faces.as_ref().is_some_and(|faces| !faces.is_ghost)
+    }
+
+    /// The particles that are drawn themselves.
+    fn drawn(&self) -> core::ops::Range<u32> {
+        self.faces.as_ref().map_or(0, |faces| if faces.is_ghost { 0 } else { faces.particles })..self.count
+    }
+
+    fn draw_nearest(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
+        if let Some(&Faces { store, count, is_ghost: false, .. }) = self.faces.as_ref() {
+            pass.set_pipeline(&get(Kind::FaceNearest));
             draw_instances(pass, store, 3, 0..count);
-            first_disc = if is_ghost { 0 } else { particles };
         }
-        let [behind, front] = &pipelines.rims;
-        for pipeline in [&pipelines.core, behind, front] {
-            pass.set_pipeline(pipeline);
-            draw_instances(pass, self.particles, 4, first_disc..self.count);
+        if self.spheres {
+            pass.set_pipeline(&get(Kind::BallNearest));
+            draw_instances(pass, self.particles, 4, self.drawn());
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
+        if let Some(&Faces { store, count, is_ghost, .. }) = self.faces.as_ref() {
+            pass.set_pipeline(&get(match (is_ghost, self.is_cut) {
+                (true, _) => Kind::Ghost,
+                (false, true) => Kind::CutFace,
+                (false, false) => Kind::Face,
+            }));
+            draw_instances(pass, store, 3, 0..count);
+        }
+        let kinds: &[Kind] = if self.spheres {
+            &[Kind::BallCore, Kind::BallRim]
+        } else {
+            &[Kind::DiscCore, Kind::RimBehind, Kind::RimFront]
+        };
+        for &kind in kinds {
+            pass.set_pipeline(&get(kind));
+            draw_instances(pass, self.particles, 4, self.drawn());
         }
         if self.line_count > 0 {
-            pass.set_pipeline(&pipelines.creases);
+            pass.set_pipeline(&get(Kind::Crease));
             draw_instances(pass, self.lines, 4, 0..self.line_count);
         }
         if self.clip_box {
-            pass.set_pipeline(&pipelines.clip_box);
+            pass.set_pipeline(&get(Kind::ClipBox));
             pass.draw(0..4, 0..12);
         }
         if let Some(index) = self.outline.filter(|&index| index < self.count) {
-            pass.set_pipeline(&pipelines.ring);
+            pass.set_pipeline(&get(Kind::Ring));
             draw_instances(pass, self.particles, 4, index..index + 1);
         }
     }
@@ -194,35 +299,12 @@ fn draw_instances(
 }
 
 impl Buffers {
-    fn new(device: &wgpu::Device, canvas: &Canvas<'_>, target: TargetKind) -> Self {
-        let [width, height] = canvas.size;
-        let texture = |label, format, sample_count, usage| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                view_formats: &[],
-            })
-        };
-        let TargetKind { format, samples } = target;
-        let plain = wgpu::TextureUsages::empty();
-        let is_copied = samples > 1 && canvas.copied.is_some();
-        Self {
-            depth: texture("depth", DEPTH_FORMAT, samples, plain),
-            samples: (samples > 1).then(|| texture("samples", format, samples, plain)),
-            resolved: is_copied.then(|| texture("resolved", format, 1, wgpu::TextureUsages::COPY_SRC)),
-        }
-    }
-
-    fn fit(&self, canvas: &Canvas<'_>, target: TargetKind) -> bool {
-        let Self { depth, resolved, .. } = self;
+    fn fit(&self, canvas: &Canvas<'_>, scene: &Scene<'_>) -> bool {
+        let Self { depth, resolved, occlusion, .. } = self;
         [depth.width(), depth.height()] == canvas.size
-            && depth.sample_count() == target.samples
-            && (target.samples == 1 || resolved.is_some() == canvas.copied.is_some())
+            && depth.sample_count() == scene.samples()
+            && (scene.samples() == 1 || resolved.is_some() == canvas.copied.is_some())
+            && occlusion.is_some() == scene.is_occluded()
     }
 }
 

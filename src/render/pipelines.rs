@@ -1,14 +1,16 @@
-//! Render pipelines and the uniform buffer that they share.
+//! Render pipelines, and the uniform buffer that they share.
 
 use super::frame::Frame;
 use super::layout::{
     Attribute, AttributeFormat, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint,
     LINE_ATTRIBUTES, LineRecord, RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
 };
-use super::shaders::{DISCS, FACES, LINES};
+use super::shaders::{DISCS, FACES, LINES, OCCLUSION, Shader};
 
 /// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Format of what is nearest to the eye: the bits of a depth, and those of a normal or of the openness. All devices draw on it.
+pub(super) const NEAREST_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// The uniform buffer for a [`Frame`], which all pipelines of a device share.
 pub(super) struct FrameBinding {
@@ -17,161 +19,245 @@ pub(super) struct FrameBinding {
     layout: wgpu::BindGroupLayout,
 }
 
-/// Pipelines for a target.
-pub(super) struct Pipelines {
-    /// Draws fully covered pixels of discs, with depth test and depth writes.
-    pub(super) core: wgpu::RenderPipeline,
-    /// Blend partly covered pixels of discs seen from behind and of discs seen from the front, with depth test, without
-    /// depth writes.
-    pub(super) rims: [wgpu::RenderPipeline; 2],
-    /// Draws faces, with depth test and depth writes.
-    pub(super) faces: wgpu::RenderPipeline,
-    /// Draws faces that a plane may cut, with depth test and depth writes. The samples of a pixel antialias the edge at the plane.
-    pub(super) cut_faces: wgpu::RenderPipeline,
-    /// Draws faces as a ghost beneath discs, with depth test and depth writes.
-    pub(super) ghost: wgpu::RenderPipeline,
-    /// Blends a ring around a particle over everything.
-    pub(super) ring: wgpu::RenderPipeline,
-    /// Blends the edges of the clip box, with depth test, without depth writes.
-    pub(super) clip_box: wgpu::RenderPipeline,
-    /// Blends the creases, with depth test, without depth writes.
-    pub(super) creases: wgpu::RenderPipeline,
-}
-
-/// Format and sample count of the texture that a pipeline draws into.
-#[derive(Clone, Copy)]
-pub(super) struct TargetKind {
-    /// An sRGB format, so that blending is linear.
-    pub(super) format: wgpu::TextureFormat,
-    /// Samples per pixel.
-    pub(super) samples: u32,
-}
-
 /// Blending of colours that are premultiplied by their opacity.
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Fully covered pixels of discs, with depth writes.
+    DiscCore,
+    /// Partly covered pixels of discs seen from behind.
+    RimBehind,
+    /// Partly covered pixels of discs seen from the front.
+    RimFront,
+    /// Fully covered pixels of spheres, with depth writes.
+    BallCore,
+    /// Partly covered pixels of spheres.
+    BallRim,
+    /// What is nearest of the spheres.
+    BallNearest,
+    /// Faces, with depth writes.
+    Face,
+    /// Faces that a plane may cut, with depth writes. The samples of a pixel antialias the edge at the plane.
+    CutFace,
+    /// What is nearest of the faces.
+    FaceNearest,
+    /// Faces as a ghost beneath discs, with depth writes.
+    Ghost,
+    /// The openness of what is nearest.
+    Occlusion,
+    /// The same, smoothed.
+    Mean,
+    /// A ring around a particle, over everything.
+    Ring,
+    /// The edges of the clip box.
+    ClipBox,
+    /// The creases.
+    Crease,
+}
+
+/// Records in a vertex buffer: bytes of each, and its attributes.
+type Slot = (usize, &'static [Attribute]);
+
+const COLOURS: Slot = (COLOUR_STRIDE, &COLOUR_ATTRIBUTES);
+const PARTICLES: &[Slot] = &[(size_of::<Record>(), &RECORD_ATTRIBUTES), COLOURS];
+const TRIANGLES: &[Slot] =
+    &[(size_of::<FaceRecord>(), &FACE_ATTRIBUTES), (size_of::<FaceTint>(), &TINT_ATTRIBUTES)];
+const PIECES: &[Slot] = &[(size_of::<LineRecord>(), &LINE_ATTRIBUTES), COLOURS];
+
+/// How a pipeline draws on its target.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Blends and writes depths.
+    Solid,
+    /// Writes depths. The opacity says how many samples of a pixel are covered, instead of being blended.
+    Covering,
+    /// Blends with depth test, without depth writes.
+    Blended,
+    /// Blends over everything.
+    Above,
+    /// Writes depths and what is nearest.
+    Nearest,
+    /// Computes every texel of what is nearest.
+    Screen,
+}
+
 /// The properties in which the pipelines differ.
-struct PipelineSpec<'a> {
-    label: &'a str,
-    shader: &'a wgpu::ShaderModule,
-    vertex: &'a str,
-    fragment: &'a str,
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    depth_write: bool,
-    /// Whether the opacity says how many samples of a pixel are covered, instead of being blended.
-    alpha_to_coverage: bool,
-    depth_compare: wgpu::CompareFunction,
+struct Spec {
+    shader: Shader,
+    vertex: &'static str,
+    fragment: &'static str,
+    slots: &'static [Slot],
+    way: Way,
+}
+
+impl Kind {
+    fn spec(self) -> Spec {
+        use Way::{Above, Blended, Covering, Nearest, Screen, Solid};
+        let (shader, vertex, fragment, slots, way) = match self {
+            Self::DiscCore => (DISCS, "vs_core", "fs_core", PARTICLES, Solid),
+            Self::RimBehind => (DISCS, "vs_rim_behind", "fs_rim", PARTICLES, Blended),
+            Self::RimFront => (DISCS, "vs_rim_front", "fs_rim", PARTICLES, Blended),
+            Self::BallCore => (DISCS, "vs_ball_core", "fs_ball_core", PARTICLES, Solid),
+            Self::BallRim => (DISCS, "vs_ball_rim", "fs_ball_rim", PARTICLES, Blended),
+            Self::BallNearest => (DISCS, "vs_ball_core", "fs_ball_nearest", PARTICLES, Nearest),
+            Self::Ring => (DISCS, "vs_ring", "fs_ring", PARTICLES, Above),
+            Self::Face => (FACES, "vs_face", "fs_face", TRIANGLES, Solid),
+            Self::CutFace => (FACES, "vs_face", "fs_cut_face", TRIANGLES, Covering),
+            Self::FaceNearest => (FACES, "vs_nearest", "fs_nearest", TRIANGLES, Nearest),
+            Self::Ghost => (FACES, "vs_ghost", "fs_ghost", TRIANGLES, Covering),
+            Self::ClipBox => (LINES, "vs_box", "fs_line", &[][..], Blended),
+            Self::Crease => (LINES, "vs_crease", "fs_line", PIECES, Blended),
+            Self::Occlusion => (OCCLUSION, "vs_cover", "fs_occlusion", &[][..], Screen),
+            Self::Mean => (OCCLUSION, "vs_cover", "fs_mean", &[][..], Screen),
+        };
+        Spec { shader, vertex, fragment, slots, way }
+    }
+
+    /// Whether its shader reads what is nearest.
+    fn reads_nearest(self) -> bool {
+        matches!(
+            self,
+            Self::BallCore | Self::BallRim | Self::Face | Self::CutFace | Self::Occlusion | Self::Mean
+        )
+    }
+}
+
+/// Pipelines of a device, each compiled when it is first used.
+pub(super) struct Pipelines {
+    /// Format of the pictures: an sRGB format, so that blending is linear.
+    format: wgpu::TextureFormat,
+    /// Without and with the group with what is nearest.
+    layouts: [wgpu::PipelineLayout; 2],
+    /// Layout of that group.
+    nearest: wgpu::BindGroupLayout,
+    /// By their names.
+    modules: Vec<(&'static str, wgpu::ShaderModule)>,
+    /// By what they draw, and the samples per pixel of the target.
+    made: Vec<((Kind, u32), wgpu::RenderPipeline)>,
+}
+
+/// Returns the entry of `key`, which `make` makes unless it is there.
+fn entry<K: PartialEq, V: Clone>(made: &mut Vec<(K, V)>, key: K, make: impl FnOnce() -> V) -> V {
+    if let Some((_, value)) = made.iter().find(|(other, _)| *other == key) {
+        return value.clone();
+    }
+    let value = make();
+    made.push((key, value.clone()));
+    value
 }
 
 impl Pipelines {
-    /// Compiles the pipelines for a target.
-    pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, target: TargetKind) -> Self {
-        let [discs, faces, lines] = [DISCS, FACES, LINES].map(|shader| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(shader.name),
-                source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
+    /// Pipelines for pictures of `format`.
+    pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, format: wgpu::TextureFormat) -> Self {
+        let label = Some("nearest");
+        let nearest = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Uint,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
+        });
+        let groups = [Some(&frame.layout), Some(&nearest)];
+        let layouts = [1, 2].map(|count| {
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &groups[..count],
+                immediate_size: 0,
             })
         });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("frame"),
-            bind_group_layouts: &[Some(&frame.layout)],
-            immediate_size: 0,
-        });
+        Self { format, layouts, nearest, modules: Vec::new(), made: Vec::new() }
+    }
 
-        let record = RECORD_ATTRIBUTES.map(vertex_attribute);
-        let colour = COLOUR_ATTRIBUTES.map(vertex_attribute);
-        let corners = FACE_ATTRIBUTES.map(vertex_attribute);
-        let tint = TINT_ATTRIBUTES.map(vertex_attribute);
-        let ends = LINE_ATTRIBUTES.map(vertex_attribute);
-        let instance = |stride: usize| wgpu::VertexBufferLayout {
-            array_stride: stride as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &[],
-        };
-        let particles = [
-            Some(wgpu::VertexBufferLayout { attributes: &record, ..instance(size_of::<Record>()) }),
-            Some(wgpu::VertexBufferLayout { attributes: &colour, ..instance(COLOUR_STRIDE) }),
-        ];
-        let triangles = [
-            Some(wgpu::VertexBufferLayout { attributes: &corners, ..instance(size_of::<FaceRecord>()) }),
-            Some(wgpu::VertexBufferLayout { attributes: &tint, ..instance(size_of::<FaceTint>()) }),
-        ];
-        let pieces = [
-            Some(wgpu::VertexBufferLayout { attributes: &ends, ..instance(size_of::<LineRecord>()) }),
-            Some(wgpu::VertexBufferLayout { attributes: &colour, ..instance(COLOUR_STRIDE) }),
-        ];
-        let disc = PipelineSpec {
-            label: "disc core",
-            shader: &discs,
-            vertex: "vs_core",
-            fragment: "fs_core",
-            buffers: &particles,
-            depth_write: true,
-            alpha_to_coverage: false,
-            depth_compare: wgpu::CompareFunction::LessEqual,
-        };
-        let face = PipelineSpec {
-            label: "face",
-            shader: &faces,
-            vertex: "vs_face",
-            fragment: "fs_face",
-            buffers: &triangles,
-            ..disc
-        };
-        let make = |recipe: PipelineSpec<'_>| pipeline(device, &layout, target, &recipe);
-        Self {
-            rims: ["vs_rim_behind", "vs_rim_front"].map(|vertex| {
-                make(PipelineSpec {
-                    label: "disc rim",
-                    vertex,
-                    fragment: "fs_rim",
-                    depth_write: false,
-                    ..disc
+    /// The group with what is nearest, for the pipelines that read it.
+    pub(super) fn group(&self, device: &wgpu::Device, nearest: &wgpu::TextureView) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("nearest"),
+            layout: &self.nearest,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(nearest),
+            }],
+        })
+    }
+
+    /// The pipeline that draws `kind` on a target with so many samples per pixel.
+    pub(super) fn get(&mut self, device: &wgpu::Device, kind: Kind, samples: u32) -> wgpu::RenderPipeline {
+        let Self { format, layouts, modules, made, .. } = self;
+        entry(made, (kind, samples), || {
+            let Spec { shader, vertex, fragment, slots, way } = kind.spec();
+            let module = entry(modules, shader.name, || {
+                device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(shader.name),
+                    source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
                 })
-            }),
-            cut_faces: make(PipelineSpec {
-                label: "cut face",
-                fragment: "fs_cut_face",
-                // A single sample has no share to be covered.
-                alpha_to_coverage: target.samples > 1,
-                ..face
-            }),
-            ghost: make(PipelineSpec {
-                label: "ghost",
-                vertex: "vs_ghost",
-                fragment: "fs_ghost",
-                alpha_to_coverage: target.samples > 1,
-                ..face
-            }),
-            faces: make(face),
-            ring: make(PipelineSpec {
-                label: "ring",
-                vertex: "vs_ring",
-                fragment: "fs_ring",
-                depth_write: false,
-                depth_compare: wgpu::CompareFunction::Always,
-                ..disc
-            }),
-            clip_box: make(PipelineSpec {
-                label: "clip box",
-                shader: &lines,
-                vertex: "vs_box",
-                fragment: "fs_line",
-                buffers: &[],
-                depth_write: false,
-                ..disc
-            }),
-            creases: make(PipelineSpec {
-                label: "creases",
-                shader: &lines,
-                vertex: "vs_crease",
-                fragment: "fs_line",
-                buffers: &pieces,
-                depth_write: false,
-                ..disc
-            }),
-            core: make(disc),
-        }
+            });
+            let attributes: Vec<Vec<_>> =
+                slots.iter().map(|(_, table)| table.iter().map(vertex_attribute).collect()).collect();
+            let buffers: Vec<_> = slots
+                .iter()
+                .zip(&attributes)
+                .map(|(&(stride, _), attributes)| {
+                    Some(wgpu::VertexBufferLayout {
+                        array_stride: stride as u64,
+                        step_mode: wgpu::VertexStepMode::Instance,
+                        attributes,
+                    })
+                })
+                .collect();
+            let is_nearest = matches!(way, Way::Nearest | Way::Screen);
+            let alpha_to_coverage = way == Way::Covering;
+            let compare = if way == Way::Above {
+                wgpu::CompareFunction::Always
+            } else {
+                wgpu::CompareFunction::LessEqual
+            };
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(fragment),
+                layout: Some(&layouts[usize::from(kind.reads_nearest())]),
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some(vertex),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology: wgpu::PrimitiveTopology::TriangleStrip,
+                    ..wgpu::PrimitiveState::default()
+                },
+                depth_stencil: (way != Way::Screen).then(|| wgpu::DepthStencilState {
+                    format: DEPTH_FORMAT,
+                    depth_write_enabled: Some(matches!(way, Way::Solid | Way::Covering | Way::Nearest)),
+                    depth_compare: Some(compare),
+                    stencil: wgpu::StencilState::default(),
+                    bias: wgpu::DepthBiasState::default(),
+                }),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    alpha_to_coverage_enabled: alpha_to_coverage,
+                    ..wgpu::MultisampleState::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: if is_nearest { NEAREST_FORMAT } else { *format },
+                        blend: (!is_nearest && !alpha_to_coverage).then_some(BLEND),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        })
     }
 }
 
@@ -206,53 +292,7 @@ impl FrameBinding {
     }
 }
 
-fn pipeline(
-    device: &wgpu::Device,
-    layout: &wgpu::PipelineLayout,
-    target: TargetKind,
-    recipe: &PipelineSpec<'_>,
-) -> wgpu::RenderPipeline {
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(recipe.label),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module: recipe.shader,
-            entry_point: Some(recipe.vertex),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: recipe.buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
-            depth_write_enabled: Some(recipe.depth_write),
-            depth_compare: Some(recipe.depth_compare),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState {
-            count: target.samples,
-            alpha_to_coverage_enabled: recipe.alpha_to_coverage,
-            ..wgpu::MultisampleState::default()
-        },
-        fragment: Some(wgpu::FragmentState {
-            module: recipe.shader,
-            entry_point: Some(recipe.fragment),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: target.format,
-                blend: (!recipe.alpha_to_coverage).then_some(BLEND),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-fn vertex_attribute(attribute: Attribute) -> wgpu::VertexAttribute {
+fn vertex_attribute(attribute: &Attribute) -> wgpu::VertexAttribute {
     wgpu::VertexAttribute {
         format: match attribute.format {
             AttributeFormat::Float32 => wgpu::VertexFormat::Float32,

@@ -423,6 +423,7 @@ impl Renderer {
         let scene = Scene {
             particles: &content.particles,
             count: content.count,
+            spheres: style.spheres,
             faces: has_faces.then_some(faces),
             lines: &content.lines,
             line_count: content.line_count,

@@ -33,14 +33,16 @@ macro_rules! shader {
 pub const COMMON: &str = "common.wgsl";
 
 /// All shaders. A test checks that they are the files in `shaders/`.
-pub const SHADERS: [Shader; 3] = [DISCS, FACES, LINES];
+pub const SHADERS: [Shader; 4] = [DISCS, FACES, LINES, OCCLUSION];
 
-/// Draws particles as discs, and a ring around one of them.
+/// Draws particles as discs or as spheres, and a ring around one of them.
 pub const DISCS: Shader = shader!("discs.wgsl");
 /// Draws the triangles of a mesh.
 pub const FACES: Shader = shader!("faces.wgsl");
 /// Draws the edges of the clip box, and the creases of a surface.
 pub const LINES: Shader = shader!("lines.wgsl");
+/// Finds how open a surface is to light from all around.
+pub const OCCLUSION: Shader = shader!("occlusion.wgsl");
 
 /// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns
 /// the length of the whole.

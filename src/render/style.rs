@@ -12,7 +12,9 @@ pub struct Style {
     pub background: [f32; 4],
     /// Shape in which particles are drawn.
     pub drawing: Drawing,
-    /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
+    /// Whether particles are drawn as spheres where they would be drawn as discs.
+    pub spheres: bool,
+    /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
     /// make the order visible.
     pub disc_scale: f32,
     /// Direction to the key light in view coordinates: x right, y up, z towards the viewer.
@@ -80,6 +82,7 @@ impl Default for Style {
         Self {
             background: [0.98, 0.98, 0.98, 1.0],
             drawing: Drawing::Discs,
+            spheres: false,
             disc_scale: 0.92,
             key_light_view: [-0.45, 0.65, 0.62],
             dim: 0.0,
@@ -200,6 +203,7 @@ mod tests {
         let style = Style {
             background: [nan, -1.0, 2.0, nan],
             drawing: Drawing::Faces { flat: true, edge_px: nan },
+            spheres: false,
             disc_scale: nan,
             key_light_view: [nan; 3],
             dim: nan,

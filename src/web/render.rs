@@ -262,7 +262,7 @@ impl Renderer {
 
     /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
     ///
-    /// `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
+    /// `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
     /// `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
     /// `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
     ///
@@ -433,6 +433,7 @@ fn read_style(json: &str) -> Result<Style, JsError> {
         let is_ghost = get(&faces, "ghost")?.is_truthy();
         style.drawing = if is_ghost { Drawing::Ghost } else { Drawing::Faces { flat, edge_px } };
     }
+    style.spheres = get(&value, "spheres")?.is_truthy();
     style.level = get(&value, "level")?.as_f64().map(|level| level as u32);
     if let Some(index) = get(&value, "outline")?.as_f64() {
         style.outline = (index >= 0.0).then_some(index as u32);

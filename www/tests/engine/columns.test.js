@@ -186,6 +186,21 @@ describe('picking', () => {
     expect(pick(columns, upwards, { discScale: 0.92, toleranceRad: 0, plane: all })).toBe(null);
   });
 
+  test('finds the sphere where it covers the picture beyond its disc', () => {
+    // Past the pole by more than a radius, in the plane that touches the surface there.
+    const i = pick(columns, upwards, { discScale: 1, toleranceRad: 0, spheres: true }) ?? 0;
+    const [x, y, z] = columns.positions.subarray(3 * i, 3 * i + 3);
+    const sideways = (/** @type {number} */ far) => ({
+      eye: /** @type {[number, number, number]} */ ([-5, y, z - far * columns.radii[i]]),
+      direction: /** @type {[number, number, number]} */ ([1, 0, 0]),
+    });
+    const options = { discScale: 1, toleranceRad: 0 };
+    expect(x * x + y * y).toBeLessThan(0.01);
+    expect(pick(columns, sideways(0.8), options)).toBe(null);
+    expect(pick(columns, sideways(0.8), { ...options, spheres: true })).not.toBe(null);
+    expect(pick(columns, sideways(1.2), { ...options, spheres: true })).toBe(null);
+  });
+
   test('finds the disc that the definition finds, from anywhere, and in a gap one around it', () => {
     let hits = 0;
     let gaps = 0;

@@ -84,6 +84,38 @@ export const suite = () =>
       expect((await picture(page)).drawn).toBeGreaterThan(0.1);
     });
 
+    await test.step('it is darker where it stands in its own light', async () => {
+      // The flanks of a straight valley, seen from above, are lit alike but for what they take from each other.
+      await page.evaluate(() =>
+        /** @type {any} */ (window).marchingParticles.set({
+          formula: 'z = 2 abs(x)',
+          bounds: { min: [-1, -1, -1], max: [1, 1, 3] },
+          settings: { radius_share: 0.02 },
+        }),
+      );
+      const camera = { target: /** @type {[number, number, number]} */ ([0, 0, 0]), distance: 9, yaw: 0, pitch: 1.5, fit: false };
+      await look(page, { ...plain, colour: 'plain', projection: 'orthographic', creases: false, camera });
+      const { pixels: bytes } = await pixels(page, 160, 120);
+      const light = (/** @type {number} */ row) => bytes[4 * (160 * row + 80)];
+      // The bottom lies across the middle.
+      for (const side of [-1, 1]) expect(light(60 + 22 * side)).toBeGreaterThan(1.1 * light(60 + 3 * side));
+    });
+
+    await test.step('spheres stand out from the surface on which discs lie', async () => {
+      await page.evaluate(
+        (v) => /** @type {any} */ (window).marchingParticles.set({ surface: 'ellipsoid', settings: v }),
+        { radius_share: 0.02 },
+      );
+      const seenAs = async (/** @type {'discs' | 'spheres'} */ draw) => {
+        await page.evaluate((v) => /** @type {any} */ (window).marchingParticles.engine.setView(v), { draw, size: 1 });
+        await atRest(page);
+        return { ...(await picture(page)), pixels: await seen() };
+      };
+      const [discs, spheres] = [await seenAs('discs'), await seenAs('spheres')];
+      expect(spheres.drawn).toBeGreaterThan(1.02 * discs.drawn);
+      expect(differing(spheres.pixels, discs.pixels)).toBeGreaterThan(0.3 * spheres.drawn);
+    });
+
     await test.step('what is seen from behind is darker and greyer, on a light and on a dark ground', async () => {
       await expectInside(page, 'discs');
       await expectInside(page, 'mesh');

@@ -73,7 +73,7 @@ export const VIEW = {
   /** Whether what is farther away looks smaller. */
   projection: choice('projection', ['perspective', 'orthographic']),
   /** The way of drawing the particles. */
-  draw: choice('way of drawing', ['discs', 'mesh']),
+  draw: choice('way of drawing', ['discs', 'spheres', 'mesh']),
   /** The lighting and colours of the faces of a mesh. */
   faces: choice('faces of the mesh', ['smooth', 'flat']),
   /** Whether the edges of a mesh are drawn. */

@@ -11,14 +11,18 @@ import { PALETTES } from './palettes.js';
  * @import { Look } from './types.js'
  */
 
+/** Radius of the discs in repulsion radii; spheres have that of their particles and touch. @param {Look} look */
+export const scaleOf = ({ draw, size }) => (draw === 'spheres' ? 1 : size);
+
 /** Duration in which a new particle fades in. */
 export const FADE_S = 0.12;
 /** Width of the edges of faces, in page pixels. */
 const EDGE_PX = 1;
-/** Share by which what is seen from behind is drawn as an inside: darker and greyer. */
-const DIM_BACKFACES = 1;
-/** The same of the faces of a mesh: enough to tell its sides apart. */
-const DIM_BEHIND_FACES = 0.25;
+/**
+ * Share by which what is seen from behind is drawn as an inside, darker and greyer: all of a disc; of a sphere, so that the
+ * far side stays back in the gaps; of a mesh enough to tell its sides apart, since one looks into it where it is cut.
+ */
+const DIM_BEHIND = { discs: 1, spheres: 0.5, mesh: 0.25 };
 
 /** Returns what the picture shows of the view. @param {ViewState} view */
 export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {
@@ -64,12 +68,12 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
   return {
     background: [...rgbFromPacked(palette.ground), 1],
     faces: facesOf(look),
-    disc_scale: look.size,
+    spheres: look.draw === 'spheres',
+    disc_scale: scaleOf(look),
     dim,
     fade_s: calm ? 0 : FADE_S,
     level: shownLevel(look, lastLevel),
-    // A mesh is looked into where the box cuts it, so that its inside is to be seen as well.
-    dim_backfaces: look.draw === 'mesh' ? DIM_BEHIND_FACES : DIM_BACKFACES,
+    dim_backfaces: DIM_BEHIND[look.draw],
     outline: look.highlight,
     box: look.box && { ...look.box, colour: [...rgbFromPacked(palette.box), 0.9] },
     plane: look.plane,

@@ -146,6 +146,8 @@ export type Context = { palette: Palette; columns: Columns; range: [number, numb
 export interface PickOptions {
   /** disc radius as a share of the particle's radius */
   discScale: number;
+  /** whether they are drawn as spheres */
+  spheres?: boolean;
   /** angle around the ray within which a disc that is too small to hit is found */
   toleranceRad: number;
   /** particles of later levels are hidden */

@@ -10,6 +10,7 @@ import { radiiOf } from './creases.js';
 import { dotsOf } from './dots.js';
 import { Glide } from './glide.js';
 import { PALETTES } from './palettes.js';
+import { scaleOf } from './style.js';
 
 /**
  * @import { Columns } from '../types.js'
@@ -144,12 +145,13 @@ export class ParticleUpload {
    * @param {{count: number, ratio: number}} present  particles that the device holds; canvas pixels per page pixel
    * @returns discs written
    */
-  writePoints(renderer, { points, size, theme }, view, { count, ratio }) {
+  writePoints(renderer, look, view, { count, ratio }) {
+    const { points, theme } = look;
     if (!points) return 0;
     const { columns } = this;
     // A dot is moved forward by this distance, so that the discs around it do not cut it.
     const lift = columns.count > 0 ? columns.radii[columns.count >> 1] : 0;
-    const dots = dotsOf(points, view, { px: ratio, size, lift, palette: PALETTES[theme] });
+    const dots = dotsOf(points, view, { px: ratio, size: scaleOf(look), lift, palette: PALETTES[theme] });
     if (count + dots.radii.length > renderer.max_particles()) return 0;
     renderer.write(count, dots.positions, dots.normals, dots.radii, dots.levels, dots.colours, -Infinity);
     return dots.radii.length;

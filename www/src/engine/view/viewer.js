@@ -16,7 +16,7 @@ import { pick } from './picking.js';
 import { Reveal } from './reveal.js';
 import { Scene } from './scene.js';
 import { Screen } from './screen.js';
-import { FADE_S, firstLook, shownLevel, shownStep, styleOf } from './style.js';
+import { FADE_S, firstLook, scaleOf, shownLevel, shownStep, styleOf } from './style.js';
 import { ParticleUpload } from './upload.js';
 
 /**
@@ -288,7 +288,8 @@ export class Viewer {
       columns,
       { eye: view.eye, direction: rayThrough(view, x, y) },
       {
-        discScale: look.size,
+        discScale: scaleOf(look),
+        spheres: look.draw === 'spheres',
         toleranceRad: PICK_PX * view.worldPerPx,
         lastLevel: shownLevel(look, columns.lastLevel) ?? Infinity,
         plane: look.plane,

@@ -212,9 +212,10 @@ const line = (name, buttons, hidden) =>
 
 /** Creates the choice of the way of drawing, with what belongs to each way. @param {Engine} engine */
 function drawing(engine) {
-  const isMesh = computed(() => engine.state.value.view.draw === 'mesh');
-  const noDiscs = () => isMesh.value;
-  const noMesh = () => !isMesh.value;
+  const drawn = computed(() => engine.state.value.view.draw);
+  const noDiscs = () => drawn.value !== 'discs';
+  const noParticles = () => drawn.value === 'mesh';
+  const noMesh = () => drawn.value !== 'mesh';
   const defects =
     'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.';
   const beneath = 'The surface beneath the discs, faintly. Joining the particles takes a moment.';
@@ -226,10 +227,11 @@ function drawing(engine) {
   return [
     choices(engine, 'Draw', 'draw', [
       ['discs', 'Discs'],
+      ['spheres', 'Spheres'],
       ['mesh', 'Mesh'],
     ]),
     h('div', { class: 'menu-line', hidden: noDiscs }, h('span', null, 'Disc size'), discSize(engine)),
-    switches(engine, 'Beneath', [['ghost', 'Surface', beneath]], noDiscs),
+    switches(engine, 'Beneath', [['ghost', 'Surface', beneath]], noParticles),
     choices(
       engine,
       'Faces',

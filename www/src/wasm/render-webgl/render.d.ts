@@ -71,7 +71,7 @@ export class Renderer {
     /**
      * Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
      *
-     * `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
+     * `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
      * `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
      * `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
      *
