@@ -404,9 +404,13 @@ impl Sampler {
         for (patch, points) in patches {
             probe.select(patch);
             let mut near = singular::near_survey(probe.field, &points, spacing, &self.bounds);
-            near.points.retain(|point| probe.is_on_patch(point.position.as_vec3(), patch));
-            self.singular.extend_from_slice(&near.points);
             self.find_tips(probe, patch, &near, spacing);
+            // At a tip another branch may be zero, too.
+            near.points.retain(|point| {
+                let is_tip = |tip: &Tip| Some(tip.patch) == patch && tip.position == point.position;
+                self.tips.iter().any(is_tip) || probe.is_on_patch(point.position.as_vec3(), patch)
+            });
+            self.singular.extend_from_slice(&near.points);
         }
         probe.select(None);
     }

@@ -67,13 +67,8 @@ impl Tip {
         spacing: f64,
     ) -> Option<Self> {
         let radius = SMALL * spacing;
-        let link = link(probe, position, radius)?;
         let patch = patch.unwrap_or_else(|| probe.field.branch_at(position));
-        let mut is_own =
-            |point: &LinkPoint| probe.field.branch_at(position + point.direction * radius) == patch;
-        if !link.iter().flatten().all(&mut is_own) {
-            return None;
-        }
+        let link = link_on_patch(probe, patch, position, radius)?;
         let faces_out = |curve: &Loop| {
             let normal = mean(curve, |point| point.normal);
             curve.iter().all(|point| point.normal.dot(normal) > LEAST_COSINE)
@@ -123,7 +118,7 @@ impl Tip {
 
     /// The nappes at a distance from the tip, in their order; none if the sphere of that radius shows others.
     fn nappes(&self, probe: &mut Probe, distance: f64) -> Option<Vec<Loop>> {
-        let mut open = link(probe, self.position, distance)?;
+        let mut open = link_on_patch(probe, self.patch, self.position, distance)?;
         if open.len() != self.nappes.len() {
             return None;
         }
@@ -331,6 +326,19 @@ fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
         }
     }
     Some(curves)
+}
+
+/// The curves of the link of a branch, which is selected, on which it gives f; none if it gives f on a part of one only.
+fn link_on_patch(probe: &mut Probe, patch: u32, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
+    let mut link = link(probe, centre, radius)?;
+    let mut is_cut = false;
+    link.retain(|curve| {
+        let own =
+            curve.iter().filter(|p| probe.field.branch_at(centre + p.direction * radius) == patch).count();
+        is_cut |= 0 < own && own < curve.len();
+        own > 0
+    });
+    (!is_cut).then_some(link)
 }
 
 /// Numbers of a coordinate of a corner of the octahedron.
