@@ -1,6 +1,7 @@
 //! The phases of a run: their public names, and the state that each of them carries.
 
 use super::refine::Components;
+use glam::Vec3;
 use serde::Serialize;
 
 /// Phase of a run.
@@ -117,35 +118,14 @@ impl PhaseState {
     }
 }
 
-/// The order in which the survey's points are tried as seeds: one chosen at random, then the others in grid order.
+/// What is tried as a seed: a place on creases and tips first, then the point of the surface nearest to a place drawn from the box, and
+/// then the survey's points in grid order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurveyCursor {
-    /// Whether the particles on creases and tips have been placed, which come before all seeds.
+    /// Whether the particles on creases and tips have been placed.
     pub(super) has_creases: bool,
-    first: usize,
-    tried: usize,
-    count: usize,
-}
-
-impl SurveyCursor {
-    /// Starts with one of the `count` points, chosen by the number `random`.
-    pub(super) fn new(count: usize, random: u64) -> Self {
-        let first = if count == 0 { 0 } else { (random % count as u64) as usize };
-        Self { has_creases: false, first, tried: 0, count }
-    }
-}
-
-impl Iterator for SurveyCursor {
-    type Item = usize;
-
-    fn next(&mut self) -> Option<usize> {
-        let point = match self.tried {
-            k if k >= self.count => return None,
-            0 => self.first,
-            k if k <= self.first => k - 1,
-            k => k,
-        };
-        self.tried += 1;
-        Some(point)
-    }
+    /// The place drawn from the box, until it has been tried.
+    pub(super) drawn: Option<Vec3>,
+    /// The survey's point that is tried next.
+    pub(super) next: usize,
 }

@@ -136,8 +136,10 @@ impl Sampler {
             self.counts.front_evaluations = 0;
             self.components.restart();
         }
-        let random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed).next_u64();
-        PhaseState::Seeding(SurveyCursor::new(self.survey.position.len(), random))
+        let mut random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed);
+        let share = DVec3::from_array([(); 3].map(|()| f64::from(random.next_u32()) / 4_294_967_296.0));
+        let drawn = (self.bounds.lo() + self.bounds.size() * share).as_vec3();
+        PhaseState::Seeding(SurveyCursor { has_creases: false, drawn: Some(drawn), next: 0 })
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
@@ -156,15 +158,21 @@ impl Sampler {
             if self.has_too_many_lone_seeds() {
                 return PhaseState::Search;
             }
-            let Some(i) = cursor.next() else { return PhaseState::Search };
-            *left -= 1;
-            let point = OrientedPoint { position: self.survey.position[i], normal: self.survey.normal[i] };
             let start = probe.evaluations();
+            let drawn = cursor.drawn.take();
+            let point = drawn.and_then(|place| self.survey.nearest_to(probe, place, &self.bounds));
+            let Some(point) = point.or_else(|| {
+                cursor.next += 1;
+                self.survey.point(cursor.next - 1)
+            }) else {
+                return PhaseState::Search;
+            };
+            *left -= 1;
             let patch = self.patch_at(probe, point.position);
             probe.select(patch);
             let front = self.tools.front.active_mut();
             let is_seed = !front.is_covered(probe, &self.output.particles, point, patch)
-                && self.survey.is_zero(probe, i);
+                && self.survey.is_zero(probe, point);
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
                 return next;

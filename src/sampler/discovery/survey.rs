@@ -10,6 +10,7 @@ use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
 use crate::sampler::discovery::nearness::{Nearness, STEPS, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{MAX_NEWTON_STEPS, ResidualLimits, Tolerance, tolerance};
+use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 
 /// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
@@ -357,10 +358,53 @@ impl Survey {
         }
     }
 
-    /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
+    /// The point of this index, and the normal there.
+    pub(crate) fn point(&self, i: usize) -> Option<OrientedPoint> {
+        Some(OrientedPoint { position: *self.position.get(i)?, normal: self.normal[i] })
+    }
+
+    /// The point of the surface nearest to a place, or one at which the distance from it has another minimum. It moves little when the
+    /// surface does, which a point of the survey does not.
+    pub(crate) fn nearest_to(
+        &self,
+        probe: &mut Probe,
+        place: Vec3,
+        bounds: &Bounds,
+    ) -> Option<OrientedPoint> {
+        /// Steps along the surface. On a plane one is enough, on a sphere around a place the way is short.
+        const WAYS: u32 = 32;
+        let distance_sq = |i: usize| self.position[i].distance_squared(place);
+        let first = (0..self.position.len()).min_by(|&i, &j| distance_sq(i).total_cmp(&distance_sq(j)))?;
+        let (mut nearest, mut share) = (self.point(first)?, 1.0);
+        let Tolerance { residual, min_gradient, .. } = self.tolerance();
+        let limits = &mut Descent { residual, ..Descent::default() };
+        for _ in 0..WAYS {
+            let way = place - nearest.position;
+            let along = way - nearest.normal * way.dot(nearest.normal);
+            let (mut points, mut normals, mut ok) =
+                ([nearest.position + along * share], [nearest.normal], [false]);
+            probe.land_along_gradient(
+                &mut points,
+                &mut normals,
+                &mut ok,
+                min_gradient,
+                limits,
+                MAX_NEWTON_STEPS,
+            );
+            let [position] = points;
+            if ok[0] && bounds.contains(position) && position.distance_squared(place) < way.length_squared() {
+                nearest = OrientedPoint { position, normal: normals[0] };
+            } else {
+                share *= 0.5;
+            }
+        }
+        Some(nearest)
+    }
+
+    /// Whether f comes to zero at a point of the survey and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
     /// zero and falls away from a pole.
-    pub(crate) fn is_zero(&self, probe: &mut Probe, i: usize) -> bool {
-        let (p, n) = (self.position[i], self.normal[i]);
+    pub(crate) fn is_zero(&self, probe: &mut Probe, point: OrientedPoint) -> bool {
+        let OrientedPoint { position: p, normal: n } = point;
         let step = POLE_PROBE * self.residual.max(self.resolution);
         let (value, _) = probe.gradients(&[p, p + n * step, p - n * step]);
         // NaN, where f ends, is no larger.
