@@ -1,7 +1,6 @@
 //! The phases of a run: their public names, and the state that each of them carries.
 
 use super::refine::Components;
-use glam::Vec3;
 use serde::Serialize;
 
 /// Phase of a run.
@@ -118,14 +117,13 @@ impl PhaseState {
     }
 }
 
-/// What is tried as a seed: a place on creases and tips first, then the point of the surface nearest to a place drawn from the box, and
-/// then the survey's points in grid order.
-#[derive(Clone, Copy, Debug)]
+/// What is tried as a seed: creases and tips first, then a point drawn from the surface, and then the survey's points in grid order.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SurveyCursor {
     /// Whether the particles on creases and tips have been placed.
     pub(super) has_creases: bool,
-    /// The place drawn from the box, until it has been tried.
-    pub(super) drawn: Option<Vec3>,
+    /// Whether a point has been drawn.
+    pub(super) has_drawn: bool,
     /// The survey's point that is tried next.
     pub(super) next: usize,
 }

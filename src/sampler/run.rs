@@ -16,7 +16,7 @@ use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
-use rand_core::{Rng, SeedableRng};
+use rand_core::SeedableRng;
 
 /// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
 /// than one of the front, and a caller that derives its budget from the front's pace must not wait. Its size changes no particle.
@@ -136,10 +136,7 @@ impl Sampler {
             self.counts.front_evaluations = 0;
             self.components.restart();
         }
-        let mut random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed);
-        let share = DVec3::from_array([(); 3].map(|()| f64::from(random.next_u32()) / 4_294_967_296.0));
-        let drawn = (self.bounds.lo() + self.bounds.size() * share).as_vec3();
-        PhaseState::Seeding(SurveyCursor { has_creases: false, drawn: Some(drawn), next: 0 })
+        PhaseState::Seeding(SurveyCursor::default())
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
@@ -159,8 +156,11 @@ impl Sampler {
                 return PhaseState::Search;
             }
             let start = probe.evaluations();
-            let drawn = cursor.drawn.take();
-            let point = drawn.and_then(|place| self.survey.nearest_to(probe, place, &self.bounds));
+            let mut point = None;
+            if !core::mem::replace(&mut cursor.has_drawn, true) {
+                let mut random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed);
+                point = self.survey.on_random_line(probe, &self.bounds, &mut random);
+            }
             let Some(point) = point.or_else(|| {
                 cursor.next += 1;
                 self.survey.point(cursor.next - 1)

@@ -12,6 +12,7 @@ use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{MAX_NEWTON_STEPS, ResidualLimits, Tolerance, tolerance};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
+use rand_core::Rng;
 
 /// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
 /// apart is missed; with two or four, 9 and 5 of 26 random surfaces of near sheets take other seeds.
@@ -363,42 +364,53 @@ impl Survey {
         Some(OrientedPoint { position: *self.position.get(i)?, normal: self.normal[i] })
     }
 
-    /// The point of the surface nearest to a place, or one at which the distance from it has another minimum. It moves little when the
-    /// surface does, which a point of the survey does not.
-    pub(crate) fn nearest_to(
+    /// A point at which a random line through the box meets the surface; none if many lines miss it. It is anywhere on the surface with equal
+    /// probability (L. A. Santaló, "Integral Geometry and Geometric Probability", §14.3, 1976), and moves little when the surface does, which
+    /// a point of the survey does not.
+    pub(crate) fn on_random_line(
         &self,
         probe: &mut Probe,
-        place: Vec3,
         bounds: &Bounds,
+        random: &mut impl Rng,
     ) -> Option<OrientedPoint> {
-        /// Steps along the surface. On a plane one is enough, on a sphere around a place the way is short.
-        const WAYS: u32 = 32;
-        let distance_sq = |i: usize| self.position[i].distance_squared(place);
-        let first = (0..self.position.len()).min_by(|&i, &j| distance_sq(i).total_cmp(&distance_sq(j)))?;
-        let (mut nearest, mut share) = (self.point(first)?, 1.0);
+        /// Lines that are tried. A third of them meet a surface that its box fits.
+        const LINES: u32 = 64;
+        /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface, the point moves more than that.
+        const LEAST_COSINE: f32 = 0.5;
         let Tolerance { residual, min_gradient, .. } = self.tolerance();
-        let limits = &mut Descent { residual, ..Descent::default() };
-        for _ in 0..WAYS {
-            let way = place - nearest.position;
-            let along = way - nearest.normal * way.dot(nearest.normal);
-            let (mut points, mut normals, mut ok) =
-                ([nearest.position + along * share], [nearest.normal], [false]);
-            probe.land_along_gradient(
-                &mut points,
-                &mut normals,
-                &mut ok,
-                min_gradient,
-                limits,
-                MAX_NEWTON_STEPS,
-            );
-            let [position] = points;
-            if ok[0] && bounds.contains(position) && position.distance_squared(place) < way.length_squared() {
-                nearest = OrientedPoint { position, normal: normals[0] };
-            } else {
-                share *= 0.5;
+        // One more step from there.
+        let limits = &mut Descent { trust: residual, ..Descent::default() };
+        for _ in 0..LINES {
+            let mut share = || f64::from(random.next_u32()) / 4_294_967_296.0;
+            let [a, b] =
+                [(); 2].map(|()| bounds.lo() + bounds.size() * DVec3::new(share(), share(), share()));
+            // On the line through both, as far beyond each as they are apart.
+            let place = |k: usize| a.lerp(b, 3.0 * k as f64 / (BATCH - 1) as f64 - 1.0).as_vec3();
+            let places: [Vec3; BATCH] = core::array::from_fn(place);
+            let along = (b - a).as_vec3().normalize_or_zero();
+            let mut values = [0.0; BATCH];
+            values.copy_from_slice(probe.gradients(&places).0);
+            for (p, f) in places.windows(2).zip(values.windows(2)) {
+                if !(f[0].is_finite() && f[1].is_finite()) || (f[0] <= 0.0) == (f[1] <= 0.0) {
+                    continue;
+                }
+                let (mut point, mut normal, mut ok) =
+                    ([p[0].lerp(p[1], f[0] / (f[0] - f[1]))], [Vec3::ZERO], [false]);
+                probe.land_along_gradient(
+                    &mut point,
+                    &mut normal,
+                    &mut ok,
+                    min_gradient,
+                    limits,
+                    MAX_NEWTON_STEPS,
+                );
+                let ([position], [normal]) = (point, normal);
+                if ok[0] && bounds.contains(position) && normal.dot(along).abs() >= LEAST_COSINE {
+                    return Some(OrientedPoint { position, normal });
+                }
             }
         }
-        Some(nearest)
+        None
     }
 
     /// Whether f comes to zero at a point of the survey and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
