@@ -1,6 +1,7 @@
 //! Solids with sharp edges by both methods: `docs/solids.md` is what this writes.
 //!
-//! `cargo bench --bench solids --profile dev > docs/solids.md` measures every solid with 1,500, 6,000 and 24,000 particles.
+//! `cargo bench --bench solids --profile dev > docs/solids.md` measures every solid with 1,500, 6,000 and 24,000 particles. With
+//! `-- FOLDER` it also writes every mesh there, for `benches/tetgen.py`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/solid_table.rs"]
@@ -8,9 +9,11 @@ mod solid_table;
 
 use core::f64::consts::PI;
 use marching_particles::particles::Particles;
-use marching_particles::{Bounds, Field, Formula, Method, Run, Settings, sample};
+use marching_particles::{Bounds, Field, Formula, MeshFormat, Method, Run, Settings, sample};
 use solid_table::SOLIDS;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Numbers of particles.
@@ -25,7 +28,8 @@ Solids by the front with ten relaxation steps and by the refined method. This pa
 meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the
 edge* is the largest distance of a particle on a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of
 the mesh over the exact one. The smallest angle is that of the triangles of the report, and so are six neighbours, holes and pairs,
-which README.md defines.";
+which README.md defines. TetGen (package tetgen 0.8.4 of PyPI, `benches/tetgen.py`) fills every mesh with tetrahedra, without moving or
+adding a point on it, and their volume is the mesh's.";
 
 /// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and corners, where they are known.
 struct Solid {
@@ -67,7 +71,12 @@ fn off_the_edge(particles: &Particles, field: &mut Formula) -> f64 {
     farthest
 }
 
-fn write_row(out: &mut dyn Write, solid: &Solid, settings: &Settings) -> io::Result<()> {
+fn write_row(
+    out: &mut dyn Write,
+    folder: Option<&Path>,
+    solid: &Solid,
+    settings: &Settings,
+) -> io::Result<()> {
     let mut seconds = f64::INFINITY;
     let mut off = 0.0;
     for _ in 0..RUNS {
@@ -81,6 +90,10 @@ fn write_row(out: &mut dyn Write, solid: &Solid, settings: &Settings) -> io::Res
     }
     let sample = sample(solid.field.clone(), settings).expect("particles");
     let report = sample.report();
+    if let Some(folder) = folder {
+        let name = format!("{} {} {:?}.obj", solid.name, report.count, settings.method);
+        sample.write_mesh(MeshFormat::Obj, &mut BufWriter::new(File::create(folder.join(name))?))?;
+    }
     let method = match (settings.method, report.growth.refined_levels) {
         (Method::Front, _) => "front".to_owned(),
         (Method::Refined, Some(levels)) => format!("refined {levels} ×"),
@@ -114,6 +127,9 @@ fn write_row(out: &mut dyn Write, solid: &Solid, settings: &Settings) -> io::Res
 
 fn main() -> io::Result<()> {
     let out = &mut io::stdout();
+    // Cargo adds an option of its own.
+    let folder = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).map(PathBuf::from);
+    folder.as_ref().map_or(Ok(()), fs::create_dir_all)?;
     writeln!(out, "# Solids with sharp edges\n\n{HEAD}")?;
     for count in COUNTS {
         writeln!(out, "\n## {count} particles\n")?;
@@ -125,8 +141,8 @@ fn main() -> io::Result<()> {
         writeln!(out, "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|")?;
         for solid in &solids() {
             let settings = Settings::with_count(count);
-            write_row(out, solid, &settings)?;
-            write_row(out, solid, &settings.refined())?;
+            write_row(out, folder.as_deref(), solid, &settings)?;
+            write_row(out, folder.as_deref(), solid, &settings.refined())?;
         }
     }
     Ok(())
