@@ -23,7 +23,7 @@ const ROOMS: [Room; 4] = [
             // A box is found before anything is sampled.
             ("extent", &["math", "slices", "field"]),
             // From a file to a field. The core that samples is built without it.
-            ("pointcloud", &["math", "field", "spatial", "slices"]),
+            ("pointcloud", &["math", "field", "spatial", "topology", "slices"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever made them.
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),

@@ -50,10 +50,37 @@ pub struct ModelInfo {
     pub residual_95: f64,
     /// Maximum residual, as a share of that diagonal.
     pub residual_max: f64,
+    /// Position of the point with that residual.
+    pub farthest: [f64; 3],
+    /// The mesh of the file, if it has faces.
+    pub mesh: Option<GivenMesh>,
     /// Origin of the normals.
     pub normals: NormalSource,
     /// Warnings for the user.
     pub warnings: Vec<String>,
+}
+
+/// The mesh of a file, as it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct GivenMesh {
+    /// Area of all faces, in the units of the file.
+    pub area: f64,
+    /// Components, Euler number and border loops, if every edge has one or two faces of equal orientation. Corners that coincide in single
+    /// precision are one.
+    pub topology: Option<GivenTopology>,
+}
+
+/// The connectivity of the mesh of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct GivenTopology {
+    /// Number of connected components.
+    pub components: usize,
+    /// Euler number: vertices − edges + faces.
+    pub euler: i64,
+    /// Number of border loops, where the mesh is open.
+    pub borders: usize,
 }
 
 /// Report and box that accompany a solved system to the session that samples it.

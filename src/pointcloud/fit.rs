@@ -168,8 +168,9 @@ pub async fn approximate(
         return Err(FitError::Singular { condition });
     }
     let mut field = field_of(&x, &centres, &frame)?;
-    let residuals = residuals(&mut field, given, |share| tell(end + (1.0 - end) * share)).await;
+    let (residuals, farthest) = residuals(&mut field, given, |share| tell(end + (1.0 - end) * share)).await;
     let info = ModelInfo {
+        farthest: farthest.to_array(),
         points: given.len().max(cloud.len()) as u32,
         centres: centres.len() as u32,
         normals: cloud.source,
@@ -415,18 +416,27 @@ impl System {
     }
 }
 
-/// Residuals |f|/|∇f| of the points; there is none where ∇f vanishes.
-async fn residuals(field: &mut RbfField, points: &[DVec3], tell: impl Fn(f64)) -> Vec<f32> {
+/// Residuals |f|/|∇f| of the points, and the point with the largest one. There is none where ∇f vanishes.
+async fn residuals(field: &mut RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
     let mut residuals = Vec::with_capacity(points.len());
+    let (mut largest, mut farthest) = (0.0, DVec3::ZERO);
     for range in ranges(points.len(), BATCH) {
         tell(range.start as f64 / points.len() as f64);
-        let batch: Vec<Vec3> = points[range].iter().map(|p| p.as_vec3()).collect();
+        let points = &points[range];
+        let batch: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
         let mut value = vec![0.0; batch.len()];
         let mut gradient = vec![Vec3::ZERO; batch.len()];
         field.gradients(&batch, &mut value, &mut gradient);
-        let of_each = value.iter().zip(&gradient).map(|(value, gradient)| value.abs() / gradient.length());
-        residuals.extend(of_each.filter(|residual| residual.is_finite()));
+        for (p, (value, gradient)) in points.iter().zip(value.iter().zip(&gradient)) {
+            let residual = value.abs() / gradient.length();
+            if residual.is_finite() {
+                residuals.push(residual);
+            }
+            if residual.is_finite() && residual > largest {
+                (largest, farthest) = (residual, *p);
+            }
+        }
         pause().await;
     }
-    residuals
+    (residuals, farthest)
 }

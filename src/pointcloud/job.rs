@@ -276,6 +276,7 @@ async fn of_file(
     let mesh = reader.read(status.begin(&READING)).await?;
     info.points = mesh.position.len() as u32;
     let has_faces = !mesh.faces.is_empty();
+    info.mesh = mesh.given().await?;
     let on_faces = mesh.on_faces().await;
     let (mut cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
     info.warnings = warnings;

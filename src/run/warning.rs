@@ -1,7 +1,8 @@
 //! Warnings about a run: a typed list, whose `Display` is a sentence for each.
 
-use super::{Run, check};
+use super::{Report, Run, check};
 use crate::field::Field;
+use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
 use crate::math::{grouped, shortest_text};
 use crate::mesh::build::Triangulation;
 use crate::quality::Measurements;
@@ -18,6 +19,10 @@ const CLOSE_SHARE: f64 = 0.005;
 const CLOSE_COUNT: usize = 8;
 /// Places of components without a particle that are named in words; the report has all.
 const NAMED: usize = 4;
+
+/// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a share of the mesh's. Of smooth
+/// meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of a washer and 5 % of a cube.
+const AREA_TOLERANCE: f64 = 0.05;
 
 /// A warning about a run. `Display` gives it in one or two sentences, with what to do.
 ///
@@ -115,6 +120,19 @@ pub enum Warning {
         /// Components and Euler number of the sample.
         sample: (usize, i64),
     },
+    /// The surface that was fitted to a mesh has another topology or area than the mesh.
+    FileDiffers {
+        /// The mesh of the file.
+        mesh: GivenMesh,
+        /// Components and Euler number of the sample.
+        sample: (usize, i64),
+        /// Area of the sample.
+        area: f64,
+        /// Position of the point of the file that is farthest from the surface.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
     /// It is not proven that every component has been found.
     Unproven {
         /// The reason. Its position is in the coordinates of the field.
@@ -152,6 +170,19 @@ impl Warning {
         let mesh = (mesh.topology.components.len(), mesh.topology.euler());
         let differs = mesh.0 != sample.0 || !is_cut && mesh.1 != sample.1;
         (differs && !measured.valence.is_empty()).then_some(Self::MeshDiffers { mesh, sample })
+    }
+
+    /// The warning about a surface that was fitted to the mesh of a file, if it has another topology than the mesh or if their areas differ
+    /// by more than [`AREA_TOLERANCE`].
+    #[must_use]
+    pub fn of_file(model: &ModelInfo, report: &Report) -> Option<Self> {
+        let (mesh, figures) = (model.mesh?, report.measures.quality?);
+        let Connectivity { components, euler, .. } = figures.connectivity;
+        let sample = (components, euler);
+        let is_other = mesh.topology.is_some_and(|given| (given.components, given.euler) != sample);
+        let differs = is_other || (figures.area / mesh.area - 1.0).abs() > AREA_TOLERANCE;
+        let (position, length) = (model.farthest, report.sizes.radius);
+        differs.then_some(Self::FileDiffers { mesh, sample, area: figures.area, position, length })
     }
 }
 
@@ -348,6 +379,25 @@ impl fmt::Display for Warning {
                     told(mesh),
                     told(sample)
                 )
+            }
+            Self::FileDiffers { mesh, sample, area, position, length } => {
+                let told = |&(components, euler): &(usize, i64), area: f64| {
+                    let components = counted(components, "component", "components");
+                    format!("{components}, Euler number {euler} and area {area:.3}")
+                };
+                let given = match mesh.topology {
+                    Some(GivenTopology { components, euler, .. }) => told(&(components, euler), mesh.area),
+                    None => format!("area {:.3} and edges of more than two faces", mesh.area),
+                };
+                write!(
+                    f,
+                    "The mesh of the file has {given}, the surface fitted to it {}: holes are closed, parts joined or edges rounded. \
+                     The farthest point of the file is near {}. More centres, or a file with more points, follow the mesh more closely.",
+                    told(sample, *area),
+                    place(*position, *length)
+                )?;
+                let is_open = mesh.topology.is_some_and(|topology| topology.borders > 0);
+                f.write_str(if is_open { " The mesh is open: beyond its borders the surface goes on." } else { "" })
             }
             Self::Unproven { doubt, length } => unproven(f, doubt, *length),
             Self::Digits { position, distance, spacing } => write!(

@@ -22,7 +22,7 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::field::{Field, forward_field};
 use crate::math::Bounds;
-use crate::run::{Report, Run, Start};
+use crate::run::{Report, Run, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
 use fitting::Fitting;
 use serde::{Deserialize, Serialize};
@@ -399,6 +399,10 @@ impl Session {
         let has_own_box = self.run.reach().is_none() && self.surface.is_some() && !self.fitting.is_given;
         if has_own_box || self.source().formula().is_none_or(Formula::is_constant) {
             report.cut = None;
+        }
+        if let Source::Points { info, .. } = self.source() {
+            let differs = Warning::of_file(info, &report);
+            report.warnings.extend(differs);
         }
         Some(report)
     }

@@ -7,6 +7,7 @@
 
 use crate::golden;
 use glam::DVec3;
+use marching_particles::Report;
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
@@ -296,12 +297,12 @@ proptest! {
     }
 }
 
-#[test]
-fn a_surface_follows_large_faces_between_few_corners() {
+/// Text of an OBJ file of a washer with the outer radius 1 and the thickness 0.4.
+fn washer(inner: f64) -> String {
     /// Corners of a washer, an inner and an outer ring at either end, as many as a circle needs.
     const STEPS: u32 = 48;
     let mut text = String::new();
-    for (radius, z) in [(1.0, -0.2), (1.0, 0.2), (0.4, 0.2), (0.4, -0.2)] {
+    for (radius, z) in [(1.0, -0.2), (1.0, 0.2), (inner, 0.2), (inner, -0.2)] {
         for k in 0..STEPS {
             let (sine, cosine) = libm::sincos(f64::from(k) * core::f64::consts::TAU / f64::from(STEPS));
             let _ = writeln!(text, "v {} {} {z}", radius * cosine, radius * sine);
@@ -317,8 +318,46 @@ fn a_surface_follows_large_faces_between_few_corners() {
             let _ = writeln!(text, "f {a} {b} {d} {c}");
         }
     }
-    let fit = run(Job::file("washer.obj", text.into(), DEFAULT_CENTRES).expect("a good file"), 1000)
-        .expect("a field");
+    text
+}
+
+fn fit_of(name: &str, text: String) -> Fit {
+    run(Job::file(name, text.into(), DEFAULT_CENTRES).expect("a good file"), 1000).expect("a field")
+}
+
+/// Warnings about the surface of a fit that speak of the mesh of its file.
+fn said_of_mesh(fit: Fit) -> Vec<String> {
+    let warnings = sampled(fit, 2000).1.warnings;
+    warnings.iter().map(ToString::to_string).filter(|warning| warning.contains("mesh of the file")).collect()
+}
+
+#[test]
+fn a_mesh_of_another_form_than_its_surface_is_told() {
+    assert_eq!(said_of_mesh(fit_of("washer.obj", washer(0.4))), [""; 0]);
+    // A hole that is finer than the distance between centres is closed.
+    let [closed] = said_of_mesh(fit_of("washer.obj", washer(0.05))).try_into().expect("one warning");
+    let said = "The mesh of the file has 1 component, Euler number 0 and area 8.8";
+    assert!(
+        closed.starts_with(said) && closed.contains("1 component, Euler number 2 and area 8."),
+        "{closed}"
+    );
+    assert!(
+        closed.contains("The farthest point of the file is near (") && !closed.contains("open"),
+        "{closed}"
+    );
+    // Without a face of its inner wall the mesh is open.
+    let faces = washer(0.4);
+    let open: Vec<&str> = faces.lines().filter(|line| *line != "f 98 99 147 146").collect();
+    let [open] = said_of_mesh(fit_of("open.obj", open.join("\n"))).try_into().expect("one warning");
+    assert!(
+        open.contains("Euler number -1") && open.ends_with("beyond its borders the surface goes on."),
+        "{open}"
+    );
+}
+
+#[test]
+fn a_surface_follows_large_faces_between_few_corners() {
+    let fit = fit_of("washer.obj", washer(0.4));
     assert!(
         fit.info.warnings.iter().any(|warning| warning.contains("put on faces")),
         "{:?}",
@@ -378,13 +417,20 @@ fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut 
     text
 }
 
-/// Components and Euler number of a fit, and the root of the mean square of its distances from the true surface.
-fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
+/// A session that has sampled the surface of a fit, and its report.
+fn sampled(fit: Fit, count: u32) -> (Session, Report) {
     let mut session = Session::new();
     session.set_points(fit.data, fit.info, fit.bounds).expect("a field");
-    session.start(&Settings::with_count(2000)).expect("valid settings");
+    session.start(&Settings::with_count(count)).expect("valid settings");
     while session.run.step(10_000).stop_reason.is_none() {}
-    let connectivity = session.report().measures.quality.expect("particles").connectivity;
+    let report = session.report();
+    (session, report)
+}
+
+/// Components and Euler number of a fit, and the root of the mean square of its distances from the true surface.
+fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
+    let (session, report) = sampled(fit, 2000);
+    let connectivity = report.measures.quality.expect("particles").connectivity;
     let distances = session.run.particles().position.iter().map(|p| distance(p.as_dvec3()));
     let (sum, count) = distances.fold((0.0, 0.0), |(sum, count), d| (sum + d * d, count + 1.0));
     (connectivity.components, connectivity.euler, (sum / count).sqrt())
@@ -428,10 +474,7 @@ fn noise_is_smoothed_by_all_points() {
 fn a_noisy_bunny_keeps_its_form() {
     let bunny = marching_particles::pointcloud::models::fit(&MODELS[0]);
     let mut field = bunny.field();
-    let mut session = Session::new();
-    session.set_points(bunny.data, bunny.info, bunny.bounds).expect("a field");
-    session.start(&Settings::with_count(5000)).expect("valid settings");
-    while session.run.step(10_000).stop_reason.is_none() {}
+    let (session, _) = sampled(bunny, 5000);
     let true_points: Vec<(DVec3, DVec3)> = session
         .run
         .particles()

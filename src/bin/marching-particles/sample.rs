@@ -17,7 +17,7 @@ use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
     Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Method, Parameter, Phase,
-    Reach, Run, Settings, StopReason, gallery,
+    Reach, Run, Settings, StopReason, Warning, gallery,
 };
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -148,6 +148,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
 
     let mut report = sample.report().clone();
     report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
+    let differs = model.as_ref().and_then(|model| Warning::of_file(model, &report));
+    report.warnings.extend(differs);
     report.volume = mesh.as_ref().and_then(|mesh| mesh.volume);
     report.smallest_angle = mesh.as_ref().and_then(|mesh| mesh.smallest_angle);
     if has_own_box {

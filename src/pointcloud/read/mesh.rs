@@ -1,8 +1,12 @@
 //! Contents of a file: positions, normals and faces.
 
 use super::{ReadError, push};
+use crate::field::model::{GivenMesh, GivenTopology};
+use crate::math::IndexTable;
+use crate::pointcloud::thin::find_or_add;
 use crate::pointcloud::{Cloud, NormalSource};
 use crate::slices::{pause, ranges};
+use crate::topology::Topology;
 use glam::DVec3;
 
 /// Faces summed in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
@@ -116,6 +120,42 @@ impl FileMesh {
             }
         }
         inside
+    }
+
+    /// Area and connectivity of the faces; none if there is none.
+    ///
+    /// # Errors
+    ///
+    /// If there is not enough memory.
+    pub async fn given(&self) -> Result<Option<GivenMesh>, ReadError> {
+        let (mut table, mut welded, mut triangles) = (IndexTable::default(), Vec::new(), Vec::new());
+        let mut area = 0.0;
+        for (k, triangle) in self.triangles().enumerate() {
+            if k % FACES == 0 {
+                pause().await;
+            }
+            area += 0.5 * self.area_vector(triangle).length();
+            let mut corners = [0; 3];
+            for (welded_corner, corner) in corners.iter_mut().zip(triangle) {
+                // A corner that comes again may differ in its last digits.
+                let p = self.position[corner].as_vec3().as_dvec3();
+                *welded_corner = find_or_add(&mut table, p, &mut welded).ok_or(ReadError::Memory)?;
+            }
+            let [a, b, c] = corners;
+            if a != b && b != c && c != a {
+                push(&mut triangles, corners)?;
+            }
+        }
+        if triangles.is_empty() {
+            return Ok(None);
+        }
+        let topology = Topology::in_slices(&triangles, welded.len()).await;
+        let topology = topology.is_manifold().then(|| GivenTopology {
+            components: topology.components.len(),
+            euler: topology.euler(),
+            borders: topology.borders.len(),
+        });
+        Ok(Some(GivenMesh { area, topology }))
     }
 
     /// The triangles into which the faces are divided, by the indices of their corners.

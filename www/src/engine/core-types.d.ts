@@ -331,6 +331,25 @@ export type FunctionInfo = {
   help: string,
 };
 
+/** The mesh of a file, as it is. */
+export type GivenMesh = {
+  /** Area of all faces, in the units of the file. */
+  area: number,
+  /** Components, Euler number and border loops, if every edge has one or two faces of equal orientation. Corners that coincide in single
+  * precision are one. */
+  topology: GivenTopology | null,
+};
+
+/** The connectivity of the mesh of a file. */
+export type GivenTopology = {
+  /** Number of connected components. */
+  components: number,
+  /** Euler number: vertices − edges + faces. */
+  euler: number,
+  /** Number of border loops, where the mesh is open. */
+  borders: number,
+};
+
 /** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
 * Bins are equal, and values outside fall into the outermost. */
 export type Histogram = {
@@ -869,6 +888,10 @@ export type ModelInfo = {
   residual_95: number,
   /** Maximum residual, as a share of that diagonal. */
   residual_max: number,
+  /** Position of the point with that residual. */
+  farthest: [number, number, number],
+  /** The mesh of the file, if it has faces. */
+  mesh: GivenMesh | null,
   /** Origin of the normals. */
   normals: NormalSource,
   /** Warnings for the user. */

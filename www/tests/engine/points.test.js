@@ -25,6 +25,8 @@ const info = /** @type {ModelInfo} */ ({
   residual_mean: 0.002,
   residual_95: 0.006,
   residual_max: 0.01,
+  farthest: [0, 0, 0],
+  mesh: null,
   normals: 'given',
   warnings: [],
 });

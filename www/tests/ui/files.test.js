@@ -18,6 +18,8 @@ const info = /** @type {ModelInfo} */ ({
   residual_mean: 0.00221,
   residual_95: 0.00641,
   residual_max: 0.0134,
+  farthest: [0, 0, 0],
+  mesh: null,
   normals: 'from_mesh',
   warnings: [],
 });
