@@ -132,7 +132,8 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32, sph
     let v = toward_eye(particle.position);
     let is_ball = spheres && particle.level >= 0.0;
     let is_dot = particle.radius < 0.0 && !is_ball;
-    let outward = select(oct_decode(particle.normal_oct), v, is_dot);
+    // A particle on a crease has no side.
+    let outward = select(oct_decode(particle.normal_oct), v, particle.radius < 0.0);
     let behind = dot(outward, v) < 0.0;
     if side * select(1.0, -1.0, behind) < 0.0 {
         return out;

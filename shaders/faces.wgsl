@@ -193,33 +193,12 @@ fn fs_cut_face(point: Point, @builtin(front_facing) front: bool) -> @location(0)
 }
 
 // What is nearest of the faces, for occlusion.wgsl.
-struct Shell {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) normal: vec3<f32>,
-    // See beyond_plane.
-    @location(1) beyond: f32,
-}
-
-@vertex
-fn vs_nearest(@builtin(vertex_index) vertex: u32, face: Face) -> Shell {
-    var out: Shell;
-    out.clip = hidden();
-    if is_hidden(face) || face.level > frame.appearance.level {
-        return out;
-    }
-    let position = corner_of(face, vertex).place.xyz;
-    out.clip = frame.camera.clip_from_world * vec4<f32>(position, 1.0);
-    out.normal = cross(face.b.xyz - face.a.xyz, face.c.xyz - face.a.xyz);
-    out.beyond = beyond_plane(position);
-    return out;
-}
-
 @fragment
-fn fs_nearest(shell: Shell) -> @location(0) vec2<u32> {
-    if shell.beyond > 0.0 {
+fn fs_nearest(point: Point) -> @location(0) vec2<u32> {
+    if point.beyond > 0.0 {
         discard;
     }
-    return texel_of(shell.clip.z, shell.normal);
+    return texel_of(point.clip.z, point.normal);
 }
 
 // The surface as a ghost beneath its discs.

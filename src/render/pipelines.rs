@@ -105,7 +105,7 @@ impl Kind {
             Self::Ring => (DISCS, "vs_ring", "fs_ring", PARTICLES, Above),
             Self::Face => (FACES, "vs_face", "fs_face", TRIANGLES, Solid),
             Self::CutFace => (FACES, "vs_face", "fs_cut_face", TRIANGLES, Covering),
-            Self::FaceNearest => (FACES, "vs_nearest", "fs_nearest", TRIANGLES, Nearest),
+            Self::FaceNearest => (FACES, "vs_face", "fs_nearest", TRIANGLES, Nearest),
             Self::Ghost => (FACES, "vs_ghost", "fs_ghost", TRIANGLES, Covering),
             Self::ClipBox => (LINES, "vs_box", "fs_line", &[][..], Blended),
             Self::Crease => (LINES, "vs_crease", "fs_line", PIECES, Blended),

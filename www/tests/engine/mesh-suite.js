@@ -93,7 +93,13 @@ export const suite = () =>
           settings: { radius_share: 0.02 },
         }),
       );
-      const camera = { target: /** @type {[number, number, number]} */ ([0, 0, 0]), distance: 9, yaw: 0, pitch: 1.5, fit: false };
+      const camera = {
+        target: /** @type {[number, number, number]} */ ([0, 0, 0]),
+        distance: 9,
+        yaw: 0,
+        pitch: 1.5,
+        fit: false,
+      };
       await look(page, { ...plain, colour: 'plain', projection: 'orthographic', creases: false, camera });
       const { pixels: bytes } = await pixels(page, 160, 120);
       const light = (/** @type {number} */ row) => bytes[4 * (160 * row + 80)];

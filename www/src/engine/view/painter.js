@@ -1,8 +1,8 @@
 /**
  * Draws discs on a 2-D canvas without a graphics API, as the last fallback. Each disc is an ellipse on the screen,
  * filled pixel by pixel with the depth of its plane. Creases and the clip box are lines one pixel wide. The picture is
- * like that of a graphics card, but without antialiasing, domes, fading in and what needs faces or shaders: a mesh, spheres
- * and the light that a surface takes from itself.
+ * like that of a graphics card, but without antialiasing, domes, fading in, spheres, a mesh, and shade of a surface on
+ * itself.
  *
  * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *

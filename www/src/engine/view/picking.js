@@ -1,6 +1,7 @@
 /**
- * Finds the particle under a point of the picture by intersecting a ray with every disc or sphere on the CPU. For 200,000
- * particles this is one pass over two columns, about a millisecond, and no id buffer has to be drawn and read back.
+ * Finds the particle under a point of the picture by intersecting a ray with every disc or sphere on the CPU. For
+ * 200,000 particles this is one pass over two columns, about a millisecond, and no id buffer has to be drawn and read
+ * back.
  *
  * @module
  */

@@ -19,8 +19,9 @@ export const FADE_S = 0.12;
 /** Width of the edges of faces, in page pixels. */
 const EDGE_PX = 1;
 /**
- * Share by which what is seen from behind is drawn as an inside, darker and greyer: all of a disc; of a sphere, so that the
- * far side stays back in the gaps; of a mesh enough to tell its sides apart, since one looks into it where it is cut.
+ * Share by which what is seen from behind is drawn as an inside, darker and greyer: all of a disc; of a sphere so much
+ * that the far side stays back in the gaps; of a mesh enough to tell its sides apart, as one looks into it where it is
+ * cut.
  */
 const DIM_BEHIND = { discs: 1, spheres: 0.5, mesh: 0.25 };
 
