@@ -4,7 +4,26 @@ import { afresh, open, report, settled, state, typeFormula } from './helpers.js'
 test('a formula is typed, and mended', async ({ page }) => {
   test.slow();
   const { clean } = await open(page);
+  await test.step('a formula typed while the full editor comes is not taken for one that was left; no name is broken', async () => {
+    await page.route('**/code-editor*.js', async (route) => {
+      await new Promise((go) => setTimeout(go, 1500));
+      await route.continue();
+    });
+    const engine = (/** @type {string} */ name) =>
+      page.evaluate((of) => /** @type {any} */ (window).marchingParticles.engine[of].value, name);
+    await page.getByRole('textbox', { name: 'Formula' }).fill('x');
+    await expect.poll(() => engine('trial')).toBe('shown');
+    await expect(page.locator('.code-host')).toBeVisible();
+    expect(await engine('trial')).toBe('shown');
+    await page.unroute('**/code-editor*.js');
+    await typeFormula(page, `${'sinh(x) + '.repeat(12)}y`);
+    const broken = await page.locator('.cm-function').evaluateAll((all) => all.map((e) => e.getClientRects().length));
+    expect(broken).toEqual(Array(12).fill(1));
+    await clean();
+  });
+
   await test.step('a typed formula gets sliders for its unknown names, and dragging one samples anew', async () => {
+    await afresh(page);
     await typeFormula(page, 'x^2 + y^2 + k z^2 = 1');
     const slider = page.getByRole('slider', { name: /k$/ });
     await expect(slider).toBeVisible();

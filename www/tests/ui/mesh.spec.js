@@ -1,6 +1,6 @@
 import { expect, test } from '@playwright/test';
 import { link } from '../engine/browser.js';
-import { afresh, open, state } from './helpers.js';
+import { afresh, open, state, typeFormula } from './helpers.js';
 
 test('the mesh', async ({ page }) => {
   const { clean } = await open(page);
@@ -18,9 +18,16 @@ test('the mesh', async ({ page }) => {
       ]);
       expect(file.suggestedFilename()).toMatch(new RegExp(`^ellipsoid-\\d+-mesh\\.${format}$`));
     }
+    const [bottom, levels] = await Promise.all([panel.boundingBox(), page.locator('.panel-levels').boundingBox()]);
+    expect((bottom?.y ?? 0) + (bottom?.height ?? 0)).toBeLessThanOrEqual(levels?.y ?? 0);
     await page.keyboard.press('Escape');
     await expect(panel).toBeHidden();
     await expect(page.getByRole('button', { name: 'Make a mesh' })).toBeFocused();
+    await page.keyboard.press('Enter');
+    await expect(panel).toBeVisible();
+    await typeFormula(page, 'x^2 +');
+    await expect(panel).toBeHidden();
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toBeFocused();
   });
 
   await test.step('what is open is shown in the picture', async () => {

@@ -1,5 +1,7 @@
-import { describe, expect, it } from 'vitest';
-import { arrange, countChanged, isSegmented, isShown } from '../../src/ui/sampling/settings.js';
+import { signal } from '@preact/signals-core';
+import { afterEach, describe, expect, it, vi } from 'vitest';
+import { remembered } from '../../src/ui/remembered.js';
+import { arrange, countChanged, isDue, isSegmented, isShown } from '../../src/ui/sampling/settings.js';
 
 /** @param {object} change */
 const setting = (change) =>
@@ -60,5 +62,48 @@ describe('the settings', () => {
     expect(countChanged([seed], all, { seed: 3 })).toBe(1);
     expect(countChanged([seed], all, { seed: 0 })).toBe(0);
     expect(countChanged([scale], all, { scale: 4 })).toBe(0);
+  });
+});
+
+describe('Run', () => {
+  it('is quiet while the picture is that of the present input, and during a run', () => {
+    const store = {
+      typing: signal(false),
+      partial: signal(false),
+      report: signal(/** @type {object | null} */ ({})),
+      empty: signal(false),
+      busy: signal(false),
+      progress: signal({ phase: 'done' }),
+    };
+    const due = isDue(/** @type {any} */ (store));
+    expect(due.value).toBe(false);
+    for (const name of /** @type {const} */ (['typing', 'partial'])) {
+      store[name].value = true;
+      expect(due.value, name).toBe(true);
+      store[name].value = false;
+    }
+    store.report.value = null;
+    expect(due.value).toBe(true);
+    for (const name of /** @type {const} */ (['busy', 'empty'])) {
+      store[name].value = true;
+      expect(due.value, name).toBe(false);
+      store[name].value = false;
+    }
+  });
+});
+
+describe('the fold of the report', () => {
+  afterEach(() => vi.unstubAllGlobals());
+
+  it('is as it was left, also where the browser keeps nothing', () => {
+    const kept = new Map();
+    const storage = { getItem: kept.get.bind(kept), setItem: kept.set.bind(kept) };
+    vi.stubGlobal('localStorage', storage);
+    const isOpen = remembered('report', false);
+    expect(isOpen.value).toBe(false);
+    isOpen.value = true;
+    expect(remembered('report', false).value).toBe(true);
+    vi.stubGlobal('localStorage', undefined);
+    expect(remembered('report', false).value).toBe(false);
   });
 });

@@ -43,6 +43,16 @@ test('the view', async ({ page }) => {
     await page.keyboard.press('Escape');
     await page.getByRole('button', { name: 'Fit', exact: true }).click();
     await expect.poll(async () => Math.abs((await camera()).distance / first.distance - 1)).toBeLessThan(0.01);
+    await atRest(page);
+    const [lowest, caption] = await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const { positions, count } = engine.columns;
+      let y = 0;
+      for (let i = 0; i < count; i += 1) y = Math.max(y, engine.project(positions.subarray(3 * i, 3 * i + 3)).y);
+      return [y, document.querySelector('.caption')?.getBoundingClientRect().top];
+    });
+    expect(lowest).toBeGreaterThan(0);
+    expect(lowest).toBeLessThan(Number(caption));
   });
 
   await test.step('a menu opened by the pointer and closed by Escape gives the focus back without an error', async () => {

@@ -74,7 +74,10 @@ class FormulaInput {
       focused: () => this.#upgrade(),
     });
     this.holder.append(this.editor.element);
-    this.holder.addEventListener('focusout', this.#finish);
+    // The caret may also go from one editor to the other.
+    this.holder.addEventListener('focusout', ({ relatedTarget }) => {
+      if (!(relatedTarget instanceof Node && this.holder.contains(relatedTarget))) this.#finish();
+    });
     live(this.holder, () => {
       const text = shown.value;
       if (this.editor.text() !== text) this.editor.setText(text);
@@ -115,9 +118,10 @@ class FormulaInput {
         selection: plain.selection(),
       });
       this.editor = next;
-      plain.element.replaceWith(next.element);
-      this.#render();
+      plain.element.after(next.element);
       if (focused) next.focus();
+      plain.element.remove();
+      this.#render();
     } catch {
       // The text area stays.
     }

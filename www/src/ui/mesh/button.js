@@ -1,6 +1,6 @@
 /** The button that makes a mesh, and opens the panel with the verdict on it. The panel comes with the first press. */
 import { button } from '../button.js';
-import { h, query } from '../dom.js';
+import { h, live, query } from '../dom.js';
 import { explain, place } from '../explain.js';
 import { loadSheet } from '../sheet.js';
 import sheet from './mesh.css?url';
@@ -28,6 +28,10 @@ export function createMeshButton(engine, toast) {
       close();
     });
     document.body.append(holder);
+    // A mesh is of no use beside a formula with a mistake. The caret stays in the formula.
+    live(holder, () => {
+      if (engine.fieldError.value) holder.hidePopover();
+    });
     return holder;
   };
   const open = async () => {
@@ -36,9 +40,11 @@ export function createMeshButton(engine, toast) {
     try {
       const holder = await panel;
       if (!holder.matches(':popover-open')) holder.showPopover();
-      // Its right end is that of the button, so that it does not reach over the report.
-      const { right, top, height } = element.getBoundingClientRect();
-      place(holder, new DOMRect(right - holder.offsetWidth, top, holder.offsetWidth, height), 'above');
+      // Its right end is that of the button, so that it does not reach over the report, and it is above the levels.
+      const { right, top, bottom } = element.getBoundingClientRect();
+      const levels = query(document, '.panel-levels').getBoundingClientRect();
+      const from = levels.height > 0 ? Math.min(top, levels.top) : top;
+      place(holder, new DOMRect(right - holder.offsetWidth, from, holder.offsetWidth, bottom - from), 'above');
       query(holder, '.save').focus();
     } catch {
       panel = null;

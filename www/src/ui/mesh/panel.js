@@ -43,7 +43,7 @@ export function createMeshPanel(engine, { toast, close }) {
   note.textContent = FORMATS[0][1];
   const scale = h('input', {
     type: 'number',
-    class: 'field',
+    class: 'box',
     min: '0',
     step: 'any',
     value: '1',

@@ -5,7 +5,7 @@ import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { plural } from '../format.js';
 import { createSetting } from './setting.js';
-import { arrange, countChanged } from './settings.js';
+import { arrange, countChanged, isDue } from './settings.js';
 
 /**
  * @import { Description, Engine, SettingInfo } from '../../engine/types.js'
@@ -52,17 +52,6 @@ function createTrack({ busy, reveal, progress, loading }) {
     style: { '--fraction': () => fraction.value },
   });
 }
-
-/**
- * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet,
- * as changes are sampled by themselves.
- * @param {Engine} engine
- */
-export const isDue = ({ typing, partial, report, empty, busy, progress }) =>
-  computed(() => {
-    const isWhole = report.value !== null || empty.value || busy.value || progress.value.phase !== 'done';
-    return typing.value || partial.value || !isWhole;
-  });
 
 /** @param {Engine} engine */
 function createActions(engine) {

@@ -1,6 +1,7 @@
-/** Decides which settings are shown, where, and with which control. */
+/** Decides which settings are shown, where, and with which control, and whether they ask for another run. */
+import { computed } from '@preact/signals-core';
 
-/** @import { SettingInfo, Settings } from '../../engine/types.js' */
+/** @import { Engine, SettingInfo, Settings } from '../../engine/types.js' */
 
 /** The setting on which the others depend. It is shown first. */
 const KIND = 'sampling';
@@ -61,3 +62,14 @@ export function countChanged(some, all, values) {
   return some.filter((info) => isShown(info, all, values) && (values[info.name] ?? info.default) !== info.default)
     .length;
 }
+
+/**
+ * Returns whether a run would change the picture: it is not that of the whole present input. Otherwise *Run* is quiet,
+ * as changes are sampled by themselves.
+ * @param {Engine} engine
+ */
+export const isDue = ({ typing, partial, report, empty, busy, progress }) =>
+  computed(() => {
+    const isWhole = report.value !== null || empty.value || busy.value || progress.value.phase !== 'done';
+    return typing.value || partial.value || !isWhole;
+  });
