@@ -207,15 +207,7 @@ export interface Legend {
  * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation
  * steps alone, which were made after it.
  */
-export type Timing = {
-  steps: number;
-  sampling: number;
-  total: number;
-  seconds: Seconds;
-  us_per_particle: number;
-  particles: number;
-  live: boolean;
-};
+export type Timing = { steps: number; sampling: number; seconds: Seconds; particles: number };
 /**
  * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
  * picture.

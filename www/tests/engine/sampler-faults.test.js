@@ -401,8 +401,6 @@ describe('a worker that fails', () => {
     say(crash);
     // The relaxation that was lost cannot be made again on its own: the run that ends with it is.
     expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
-    sampler.store.description.value = description;
-    expect(sampler.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
     accept(4);
     complete(4, 7);
     say(crash);

@@ -63,7 +63,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
       return png(await picture(options));
     },
     async exportFile(format, { link } = {}) {
-      if (!runs.sampling.shown) throw new Error('There is no surface.');
+      if (columns.stale || columns.count === 0) throw new Error('There is no surface.');
       const { csv, ply } = await fetchExports();
       const record = columns.record && { ...columns.record, link: link ?? null };
       return (format === 'csv' ? csv : ply)(columns, description(store).columns, record);

@@ -7,7 +7,7 @@ import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
  * @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js'
- * @import { Measured, Run, RunRequest, SampleRequest } from './types.js'
+ * @import { Measured, Run, SampleRequest } from './types.js'
  */
 
 /** Pause between live requests after which the next one belongs to another drag. */
@@ -86,38 +86,17 @@ const samplingSeconds = ({ seeding, generation, refinement, relaxation }) =>
   seeding + generation + refinement + relaxation;
 
 /**
- * Returns the timing before the report has arrived.
- * @param {Seconds} seconds
- * @param {number} particles
- * @param {RunRequest} request
+ * Returns the timing of a run.
+ * @param {Seconds} seconds @param {number} particles
+ * @param {number} steps  those of a relaxation alone, else 0
  * @returns {Timing}
  */
-export function timingOf(seconds, particles, request) {
-  const steps = request.kind === 'relax' ? request.steps : 0;
-  const sampling = samplingSeconds(seconds);
-  const usPerParticle = particles > 0 ? (sampling * 1e6) / particles : 0;
-  return { steps, sampling, total: sampling, seconds, us_per_particle: usPerParticle, particles, live: request.live };
-}
-
-/**
- * Returns the timing once the report has arrived.
- * @param {{seconds: Seconds, count: number}} report
- * @param {number} steps  as of the timing before the report
- * @returns {Timing}
- */
-export function timingOfReport({ seconds, count }, steps) {
-  const sampling = samplingSeconds(seconds);
-  const usPerParticle = (sampling * 1e6) / Math.max(1, count);
-  return {
-    steps,
-    sampling,
-    total: sampling + seconds.quality,
-    seconds,
-    us_per_particle: usPerParticle,
-    particles: count,
-    live: false,
-  };
-}
+export const timingOf = (seconds, particles, steps) => ({
+  steps,
+  sampling: samplingSeconds(seconds),
+  seconds,
+  particles,
+});
 
 /**
  * Returns the length to which the cost of a run is related (see {@link sizeOf}), or NaN if it is unknown. A uniform run

@@ -7,7 +7,7 @@ import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
 import { idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
-import { timingOf, timingOfReport } from './pace.js';
+import { timingOf } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'
@@ -165,7 +165,7 @@ export class Presenter {
     if (progress) {
       store.progress.value = { ...progress, run: id, live: request.live, phase: reportFollows ? 'quality' : 'done' };
     }
-    store.timing.value = timingOf(seconds, particles, request);
+    store.timing.value = timingOf(seconds, particles, request.kind === 'relax' ? request.steps : 0);
     if (request.fit && particles > 0) this.picture.fit();
   }
 
@@ -183,7 +183,7 @@ export class Presenter {
       store.report.value = report;
       store.revision.value += 1;
       store.progress.value = { ...store.progress.value, phase: 'done' };
-      store.timing.value = timingOfReport(report, store.timing.value?.steps ?? 0);
+      store.timing.value = timingOf(report.seconds, report.count, store.timing.value?.steps ?? 0);
     });
     this.picture.recolour(0, columns.count);
   }

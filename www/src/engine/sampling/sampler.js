@@ -19,7 +19,6 @@ import {
   isToWait,
   lostRun,
   reduce,
-  relaxed,
   restoringOf,
   runningOf,
   tookPlace,
@@ -69,11 +68,6 @@ export class Sampler {
   /** The last sampling that the core accepted. */
   get accepted() {
     return this.runs.accepted;
-  }
-
-  /** The sampling whose particles are on the page. */
-  get shown() {
-    return this.runs.shown;
   }
 
   start() {
@@ -145,16 +139,6 @@ export class Sampler {
   #settle() {
     const request = restoringOf(this.runs);
     if (request) this.submit(request);
-  }
-
-  /**
-   * Returns the run that repeats the present surface with that many more relaxation steps.
-   * @param {number} steps
-   * @returns {SampleRequest}
-   */
-  relaxed(steps) {
-    if (!this.runs.shown) throw new Error('There is no surface.');
-    return relaxed(this.runs.shown, steps, this.store.description.value);
   }
 
   /** Sends a request, or has it wait for the one that runs. @param {RunRequest} request */

@@ -223,21 +223,21 @@ export function sanitize(raw, description, hasFile = false) {
       if (raw.declared.length > MOST_PARAMETERS) reset.push(`declared parameters beyond the ${MOST_PARAMETERS}th`);
     } else reset.push('declared parameters');
   }
-  if (raw.centres !== undefined && raw.centres !== null) {
-    const centres = validCentres(raw.centres, description, state.surface);
-    if (centres === undefined) reset.push('number of centres');
-    else state.centres = centres;
-  }
-  if (raw.bounds !== undefined && raw.bounds !== null) {
-    const bounds = validBounds(raw.bounds, description.limits);
-    if (bounds) state.bounds = bounds;
-    else reset.push('clip box');
-  }
-  if (raw.plane !== undefined && raw.plane !== null) {
-    const plane = validPlane(raw.plane);
-    if (plane) state.plane = plane;
-    else reset.push('cutting plane');
-  }
+  /**
+   * Takes a part that may be absent, if it is valid.
+   * @template T
+   * @param {unknown} part @param {(part: unknown) => T | undefined} valid @param {string} words
+   * @returns {T | null}
+   */
+  const optional = (part, valid, words) => {
+    if (part === undefined || part === null) return null;
+    const value = valid(part);
+    if (value === undefined) reset.push(words);
+    return value ?? null;
+  };
+  state.centres = optional(raw.centres, (v) => validCentres(v, description, state.surface), 'number of centres');
+  state.bounds = optional(raw.bounds, (v) => validBounds(v, description.limits), 'clip box');
+  state.plane = optional(raw.plane, validPlane, 'cutting plane');
   if (raw.settings !== undefined) {
     if (isRecord(raw.settings)) {
       for (const [name, value] of Object.entries(raw.settings)) {
