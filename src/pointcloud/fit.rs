@@ -18,14 +18,10 @@ use crate::math::{Bounds, sort_numbers};
 use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// Minimum number of centres: fewer bound no volume.
 const MIN_CENTRES: usize = 4;
-/// Maximum number of centres: the matrix of so many takes 128 MB, and solving it takes minutes in a browser.
-const MAX_CENTRES: usize = 1000;
-/// Distance below which two centres count as one, as a share of the diagonal of their box. In single precision, in
-/// which the surface is sampled, they coincide.
-const DUPLICATE_SHARE: f64 = 1e-6;
 /// Condition number from which a solution is refused: fewer than three digits are left in double precision.
 const MAX_CONDITION: f64 = 1e13;
 /// Condition number above which the user is warned: fewer than six digits are left, as many as single precision shows.
@@ -56,7 +52,7 @@ const ELIMINATION_SPAN: [f64; 2] = [0.5, 0.9];
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Centres and coefficients.
-    pub data: RbfData,
+    pub data: Arc<RbfData>,
     /// Box to sample in: that of all points, with a margin.
     pub bounds: Bounds,
     /// Report for the user.
@@ -85,34 +81,6 @@ pub enum FitError {
         /// Number of centres.
         count: usize,
     },
-    /// There are more centres than can be solved for.
-    #[error("{count} centres are more than {MAX_CENTRES}")]
-    TooMany {
-        /// Number of centres.
-        count: usize,
-    },
-    /// The numbers of points and of normals differ.
-    #[error("there are {points} points and {normals} normals")]
-    Normals {
-        /// Number of points.
-        points: usize,
-        /// Number of normals.
-        normals: usize,
-    },
-    /// A coordinate is not finite, or a normal has no direction.
-    #[error("point {index} is not finite or its normal has no direction")]
-    NotFinite {
-        /// Index of the centre.
-        index: usize,
-    },
-    /// Two centres coincide.
-    #[error("points {first} and {second} are the same: each place may be given once")]
-    Duplicate {
-        /// Index of the first one.
-        first: usize,
-        /// Index of the second one.
-        second: usize,
-    },
     /// All centres lie in a plane or on a line, or there is not enough memory for their equations.
     #[error(transparent)]
     Cloud(#[from] CloudError),
@@ -137,8 +105,11 @@ impl From<SingularMatrix> for FitError {
 ///
 /// # Errors
 ///
-/// If there are too few or too many centres, if they coincide or lie in one plane, if a point is not finite, if the system cannot be
-/// solved, or if memory runs out.
+/// If there are too few centres, if they lie in one plane, if the system cannot be solved, or if memory runs out.
+///
+/// # Panics
+///
+/// If a point has no normal.
 pub async fn approximate(
     cloud: &Cloud,
     chosen: &[u32],
@@ -146,16 +117,19 @@ pub async fn approximate(
     info: ModelInfo,
     tell: impl Fn(f64),
 ) -> Result<Fit, FitError> {
-    let normals = check_numbers(cloud, chosen.len())?;
+    assert_eq!(cloud.len(), cloud.normal.len(), "every point has a normal");
+    if chosen.len() < MIN_CENTRES {
+        return Err(FitError::TooFew { count: chosen.len() });
+    }
     let frame = CentredFrame::of(cloud.only(chosen).position.into_iter());
     // Positions are rounded to single precision, so that sampling finds exactly the same centres.
     let local: Vec<DVec3> = cloud.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
     let centres: Vec<DVec3> = chosen.iter().map(|&i| local[i as usize]).collect();
-    check_centres(&centres)?;
+    check_spread(&centres)?;
     let points: Vec<CellPoint> = local
         .into_iter()
-        .zip(normals)
-        .map(|(position, normal)| CellPoint { position, normal, cell: 0 })
+        .zip(&cloud.normal)
+        .map(|(position, normal)| CellPoint { position, normal: normal.normalize_or_zero(), cell: 0 })
         .collect();
     let smoothing = smoothing(&points, &centres, |share| tell(TRIALS_END * share)).await?;
     let [begin, end] = ELIMINATION_SPAN;
@@ -178,24 +152,6 @@ pub async fn approximate(
         ..info
     };
     Ok(reported(&field, given, residuals, info))
-}
-
-/// Unit normals of the points, whose numbers are checked.
-fn check_numbers(cloud: &Cloud, count: usize) -> Result<Vec<DVec3>, FitError> {
-    match count {
-        ..MIN_CENTRES => return Err(FitError::TooFew { count }),
-        _ if count > MAX_CENTRES => return Err(FitError::TooMany { count }),
-        _ if cloud.len() != cloud.normal.len() => {
-            return Err(FitError::Normals { points: cloud.len(), normals: cloud.normal.len() });
-        }
-        _ => {}
-    }
-    let pairs = cloud.position.iter().zip(&cloud.normal).enumerate();
-    pairs
-        .map(|(index, (p, n))| {
-            n.try_normalize().filter(|_| p.is_finite()).ok_or(FitError::NotFinite { index })
-        })
-        .collect()
 }
 
 /// A point in local coordinates.
@@ -309,19 +265,6 @@ fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info
     }
     let bounds = Bounds { min: (lo - margin).to_array(), max: (hi + margin).to_array() };
     Fit { data: field.data().clone(), bounds, info }
-}
-
-/// Checks that the centres are distinct and not in one plane.
-fn check_centres(centres: &[DVec3]) -> Result<(), FitError> {
-    check_spread(centres)?;
-    let (lo, hi) = corners(centres);
-    let tolerance = DUPLICATE_SHARE * (hi - lo).length();
-    for (second, p) in centres.iter().enumerate() {
-        if let Some(first) = centres[..second].iter().position(|q| p.distance(*q) <= tolerance) {
-            return Err(FitError::Duplicate { first, second });
-        }
-    }
-    Ok(())
 }
 
 /// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of every centre.

@@ -62,45 +62,18 @@ fn decode(bytes: &[u8]) -> Cloud {
     cloud
 }
 
-/// Encodes a data file. [`cloud`] reads it back up to rounding.
+/// Direction with an octahedral encoding on the square from −1 to 1.
 ///
-/// # Panics
-///
-/// If the cloud is empty.
-#[must_use]
-pub fn encode(cloud: &Cloud) -> Vec<u8> {
-    assert!(!cloud.is_empty(), "a model has points");
-    let lo = cloud.position.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let hi = cloud.position.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let side = f64::from((hi - lo).max_element() as f32);
-    let mut bytes: Vec<u8> =
-        [lo.x, lo.y, lo.z, side].iter().flat_map(|&x| (x as f32).to_le_bytes()).collect();
-    let lo = lo.as_vec3().as_dvec3();
-    for (&p, &n) in cloud.position.iter().zip(&cloud.normal) {
-        let (p, n) = ((p - lo) / side, 0.5 * octahedral_encode(n) + 0.5);
-        let numbers = [p.x, p.y, p.z, n.x, n.y].map(|x| (x * STEPS).round() as u16);
-        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-    }
-    bytes
-}
-
-/// Octahedral encoding of a direction, on the square from −1 to 1.
-///
-/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z; the lower half is unfolded over its
-/// edges.
-fn octahedral_encode(n: DVec3) -> DVec2 {
-    let flat = n.truncate() / (n.x.abs() + n.y.abs() + n.z.abs());
-    if n.z < 0.0 { unfold_lower_half(flat) } else { flat }
-}
-
-/// Direction with an octahedral encoding.
+/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z. The lower half is unfolded over its edges: the inner diamond
+/// of the square is exchanged with its four corners.
 fn octahedral_decode(flat: DVec2) -> DVec3 {
     let z = 1.0 - flat.x.abs() - flat.y.abs();
-    let flat = if z < 0.0 { unfold_lower_half(flat) } else { flat };
-    flat.extend(z).normalize_or(DVec3::Z)
-}
-
-/// Exchanges the inner diamond of the square with its four corners.
-fn unfold_lower_half(flat: DVec2) -> DVec2 {
-    (1.0 - DVec2::new(flat.y, flat.x).abs()) * DVec2::new(1.0_f64.copysign(flat.x), 1.0_f64.copysign(flat.y))
+    if z < 0.0 {
+        let unfolded = 1.0 - DVec2::new(flat.y, flat.x).abs();
+        (unfolded * DVec2::new(1.0_f64.copysign(flat.x), 1.0_f64.copysign(flat.y)))
+            .extend(z)
+            .normalize_or(DVec3::Z)
+    } else {
+        flat.extend(z).normalize_or(DVec3::Z)
+    }
 }

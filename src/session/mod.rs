@@ -27,6 +27,7 @@ use crate::sampler::{Settings, SettingsError};
 use fitting::Fitting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Request for a field. All members are optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -355,13 +356,14 @@ impl Session {
     /// If the data makes no field or the box is not one; nothing is changed then.
     pub fn set_points(
         &mut self,
-        data: RbfData,
+        data: impl Into<Arc<RbfData>>,
         info: ModelInfo,
         bounds: Bounds,
     ) -> Result<FieldAnswer, FieldError> {
         if !bounds.is_valid() {
             return Err(FieldError::Box);
         }
+        let data = data.into();
         let known = match self.source() {
             Source::Points { field, .. } if *field.data() == data => Some(field.clone()),
             _ => None,

@@ -17,6 +17,7 @@ pub use frame::CentredFrame;
 use super::{Field, Jet};
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// A field given by centres and coefficients, defined everywhere.
 ///
@@ -27,7 +28,7 @@ use glam::{DVec3, Vec3};
 /// cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself it is the sum over the other centres.
 #[derive(Clone, Debug)]
 pub struct RbfField {
-    data: RbfData,
+    data: Arc<RbfData>,
     tree: tree::CellTree,
 }
 
@@ -37,15 +38,16 @@ impl RbfField {
     /// # Errors
     ///
     /// If `data` fails [`RbfData::check`].
-    pub fn new(data: RbfData) -> Result<Self, DataError> {
+    pub fn new(data: impl Into<Arc<RbfData>>) -> Result<Self, DataError> {
+        let data = data.into();
         data.check()?;
         let tree = tree::CellTree::new(&data);
         Ok(Self { data, tree })
     }
 
-    /// Centres and coefficients of the field.
+    /// Centres and coefficients of the field, which its copies share.
     #[must_use]
-    pub fn data(&self) -> &RbfData {
+    pub fn data(&self) -> &Arc<RbfData> {
         &self.data
     }
 }

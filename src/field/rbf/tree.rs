@@ -16,6 +16,7 @@ use super::kernel::{self, LocalPoint, LocalPoints, Near};
 use super::taylor::{Polynomial, TERMS, Taylor};
 use crate::math::{LANES, Lanes, Sym3};
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1: the box of a fit with its
 /// margin needs at most a third of it. The field outside of the root cell is evaluated in double precision.
@@ -73,7 +74,8 @@ struct LeafCell {
 /// Octree of the cells made so far.
 #[derive(Clone, Debug)]
 pub(super) struct CellTree {
-    centres: Vec<Centre>,
+    /// All centres, which copies of the tree share.
+    centres: Arc<[Centre]>,
     origin: [f32; 3],
     scale: f32,
     taylor: Taylor,
@@ -88,7 +90,7 @@ impl CellTree {
         let frame = CentredFrame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
         // With g the function in local coordinates, f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
-        let centres: Vec<Centre> = (0..data.centres.len())
+        let centres: Arc<[Centre]> = (0..data.centres.len())
             .map(|j| Centre {
                 position: frame.local(DVec3::from_array(data.centres[j])),
                 alpha: data.alpha[j] / (scale * scale),
