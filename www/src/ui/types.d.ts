@@ -222,6 +222,16 @@ export interface LayoutOptions {
   covered: () => number;
   inset: (insets: { top: number; right: number; bottom: number; left: number }) => void;
 }
+export interface SelectOptions<T> {
+  /** accessible name */
+  name: string;
+  choices: readonly { value: T; label: string }[];
+  /** the choice that is shown, from signals */
+  value: () => NoInfer<T>;
+  change: (value: T) => void;
+  /** more classes */
+  look?: string;
+}
 export interface SegmentedOptions<T extends string> {
   /** accessible name */
   name: string;

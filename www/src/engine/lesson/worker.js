@@ -5,6 +5,7 @@
  */
 import init, { Lesson } from '../../wasm/lesson/lesson.js';
 import wasmUrl from '../../wasm/lesson/lesson_bg.wasm?url';
+import { crashWords } from '../bundle/crash.js';
 import { loadModule, words } from '../bundle/load.js';
 import { follow } from './follow.js';
 
@@ -13,13 +14,7 @@ import { follow } from './follow.js';
 /** @param {FromLesson} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-/** The last message of the bundle's panic hook, which writes to the console. */
-let lastWords = '';
-const say = console.error.bind(console);
-console.error = (...parts) => {
-  lastWords = parts.map(String).join(' ').slice(0, 4000);
-  say(...parts);
-};
+const crashOf = crashWords();
 
 /** @type {Promise<ReturnType<typeof follow>> | null} */
 let follower = null;
@@ -45,7 +40,6 @@ self.onmessage = async (/** @type {MessageEvent<ToLesson>} */ { data }) => {
   try {
     await ready.receive(data);
   } catch (error) {
-    const stack = error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '';
-    post({ type: 'crashed', message: lastWords || words(error), stack });
+    post({ type: 'crashed', ...crashOf(error) });
   }
 };

@@ -5,6 +5,7 @@
  */
 import init, { Points } from '../../wasm/points/points.js';
 import wasmUrl from '../../wasm/points/points_bg.wasm?url';
+import { crashWords } from '../bundle/crash.js';
 import { loadModule, words } from '../bundle/load.js';
 import { BEAT_MS } from './protocol.js';
 import { solve } from './solve.js';
@@ -14,13 +15,7 @@ import { solve } from './solve.js';
 /** @param {FromPoints} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-/** The last message of the bundle's panic hook, which writes to the console. */
-let lastWords = '';
-const say = console.error.bind(console);
-console.error = (...parts) => {
-  lastWords = parts.map(String).join(' ').slice(0, 4000);
-  say(...parts);
-};
+const crashOf = crashWords();
 
 self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
   // The bundle and the file may take long to come. The page sees that the worker is alive.
@@ -41,10 +36,6 @@ self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
       post,
     });
   } catch (error) {
-    post({
-      type: 'crashed',
-      message: lastWords || words(error),
-      stack: error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '',
-    });
+    post({ type: 'crashed', ...crashOf(error) });
   }
 };

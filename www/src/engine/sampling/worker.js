@@ -5,7 +5,7 @@
  * @module
  */
 import init, { Core } from '../../wasm/core/core.js';
-import { words } from '../bundle/load.js';
+import { crashWords } from '../bundle/crash.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
 import { join, write } from './joining.js';
@@ -38,14 +38,7 @@ let mesh = false;
 const files = [];
 let pumping = false;
 let dead = false;
-/** The last message of the core's panic hook, which writes to the console. */
-let lastWords = '';
-
-const say = console.error.bind(console);
-console.error = (...parts) => {
-  lastWords = parts.map(String).join(' ').slice(0, 4000);
-  say(...parts);
-};
+const crashOf = crashWords();
 
 // A message to the worker itself ends the task, so that waiting messages are handled. Browsers delay timers by 4 ms.
 const selfChannel = new MessageChannel();
@@ -152,8 +145,7 @@ async function serve(ours) {
 /** @param {number} id @param {unknown} error */
 function crashed(id, error) {
   dead = true;
-  const stack = error instanceof Error ? (error.stack ?? '') : '';
-  post({ type: 'crashed', id, message: lastWords || words(error), stack: stack.slice(0, 4000) });
+  post({ type: 'crashed', id, ...crashOf(error) });
 }
 
 self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
@@ -225,7 +217,7 @@ async function boot(module) {
     core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
     post({ type: 'ready', description: core.describe() });
   } catch (error) {
-    failed('init', `The sampler did not start: ${lastWords || words(error)}`);
+    failed('init', `The sampler did not start: ${crashOf(error).message}`);
   }
   clearInterval(beat);
   await pump();

@@ -5,6 +5,7 @@ import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatStep } from '../format.js';
 import { createSegmented } from '../segmented.js';
+import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
 
 /**
@@ -97,19 +98,13 @@ function createCourse({ playing, course, speed }) {
         course.value = value;
       },
     }),
-    h(
-      'select',
-      {
-        class: 'select',
-        'aria-label': 'Speed',
-        prop: { value: () => String(speed.value) },
-        on: {
-          change: ({ currentTarget }) => {
-            speed.value = Number(currentTarget.value);
-          },
-        },
+    createSelect({
+      name: 'Speed',
+      choices: SPEEDS.map((value) => ({ value, label: `${value}\u202f×` })),
+      value: () => speed.value,
+      change: (value) => {
+        speed.value = value;
       },
-      SPEEDS.map((value) => h('option', { value }, `${value}\u202f×`)),
-    ),
+    }),
   );
 }

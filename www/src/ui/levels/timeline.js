@@ -10,6 +10,7 @@ import { fill, h, live, s } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { createSegmented } from '../segmented.js';
+import { createSelect } from '../select.js';
 import { isMeant, moveOf } from './keys.js';
 import { createLevels } from './levels.js';
 import { Player } from './player.js';
@@ -219,19 +220,15 @@ function captionOf({ track }) {
 
 /** @param {Player} player */
 function speedOf(player) {
-  return h(
-    'select',
-    {
-      class: 'select speed',
-      'aria-label': 'Speed of the timeline',
-      on: {
-        change: ({ currentTarget }) => {
-          player.speed = Number(currentTarget.value);
-        },
-      },
+  return createSelect({
+    name: 'Speed of the timeline',
+    choices: SPEEDS.map((value) => ({ value, label: `${value}\u202f×` })),
+    value: () => player.speed,
+    change: (value) => {
+      player.speed = value;
     },
-    SPEEDS.map((value) => h('option', { value, selected: value === 1 }, `${value}\u202f×`)),
-  );
+    look: 'speed',
+  });
 }
 
 /**

@@ -1,10 +1,11 @@
 /** Creates the control of one setting from the core's description. */
 import { computed } from '@preact/signals-core';
-import { h, uniqueId } from '../dom.js';
+import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { wantsSlider } from '../scale.js';
 import { createSegmented } from '../segmented.js';
+import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
 import { isSegmented, isShown } from './settings.js';
 
@@ -49,25 +50,14 @@ const kindOf = (info) =>
  * @param {ReadonlySignal<number | string>} value
  */
 function createChoice(engine, info, value) {
-  if (isSegmented(info)) {
-    return createSegmented({
-      name: info.label,
-      choices: info.choices ?? [],
-      value: () => String(value.value),
-      change: (next) => engine.setSetting(info.name, next),
-    });
-  }
-  return h(
-    'select',
-    {
-      class: 'select',
-      id: uniqueId('setting'),
-      'aria-label': info.label,
-      prop: { value: () => String(value.value) },
-      on: { change: ({ currentTarget }) => engine.setSetting(info.name, currentTarget.value) },
-    },
-    (info.choices ?? []).map((choice) => h('option', { value: choice.value }, choice.label)),
-  );
+  const options = {
+    name: info.label,
+    choices: info.choices ?? [],
+    value: () => String(value.value),
+    change: (/** @type {string} */ next) => engine.setSetting(info.name, next),
+  };
+  if (isSegmented(info)) return createSegmented(options);
+  return createSelect(options);
 }
 
 /**

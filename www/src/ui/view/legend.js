@@ -2,6 +2,7 @@
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { cycleEnds, formatCount, formatSignificant } from '../format.js';
+import { createSelect } from '../select.js';
 
 /**
  * @import { Description, Engine, Legend } from '../../engine/types.js'
@@ -13,19 +14,12 @@ import { cycleEnds, formatCount, formatSignificant } from '../format.js';
  * @param {Description} description
  */
 export function createLegend(engine, { colours }) {
-  const colour = () => engine.state.value.view.colour;
-  const select = h(
-    'select',
-    {
-      class: 'select',
-      'aria-label': 'Colour by',
-      prop: { value: colour },
-      on: {
-        change: ({ currentTarget }) => engine.setView({ colour: colours[currentTarget.selectedIndex].id }),
-      },
-    },
-    colours.map(({ id, label }) => h('option', { value: id }, label)),
-  );
+  const select = createSelect({
+    name: 'Colour by',
+    choices: colours.map(({ id, label }) => ({ value: id, label })),
+    value: () => engine.state.value.view.colour,
+    change: (colour) => engine.setView({ colour }),
+  });
   explain(select, () => {
     const entry = colours.find(({ id }) => id === engine.state.peek().view.colour);
     return entry ? { title: entry.label, text: entry.help } : null;
