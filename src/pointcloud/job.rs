@@ -277,7 +277,10 @@ async fn of_file(
     info.points = mesh.position.len() as u32;
     let has_faces = !mesh.faces.is_empty();
     info.mesh = mesh.given().await?;
-    let on_faces = mesh.on_faces().await;
+    let on_faces = match &info.mesh {
+        Some(given) => mesh.on_faces(given.area).await,
+        None => Cloud::default(),
+    };
     let (mut cloud, warnings) = mesh.into_cloud(status.begin(&FACING)).await?;
     info.warnings = warnings;
     if !(cloud.normal.is_empty() || on_faces.is_empty()) {

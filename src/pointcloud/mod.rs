@@ -61,6 +61,13 @@ impl Cloud {
         self.position.is_empty()
     }
 
+    /// Leaves out the points whose normals are zero.
+    fn retain_with_normal(&mut self) {
+        let mut stays = self.normal.iter().map(|normal| *normal != DVec3::ZERO);
+        self.position.retain(|_| stays.next().unwrap_or(false));
+        self.normal.retain(|normal| *normal != DVec3::ZERO);
+    }
+
     /// The points with these indices, in this order.
     #[must_use]
     pub fn only(&self, indices: &[u32]) -> Self {

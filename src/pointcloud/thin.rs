@@ -88,9 +88,7 @@ pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudE
         for normal in normal.iter_mut() {
             *normal = normal.normalize_or_zero();
         }
-        let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
-        position.retain(|_| stays.next().unwrap_or(false));
-        normal.retain(|normal| *normal != DVec3::ZERO);
+        cloud.retain_with_normal();
     }
     Ok(cloud)
 }

@@ -11,8 +11,6 @@ const MAGIC: [u8; 8] = *b"mp-hrbf1";
 const NUMBERS: usize = 7;
 /// Number of points that are evaluated together in double precision: two SIMD registers of WebAssembly, one of AVX.
 const QUAD: usize = 4;
-/// Maximum number of centres: 5.6 MB. An exact evaluation visits every centre at every point.
-const MAX_CENTRES: usize = 100_000;
 
 /// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three lists have equal
 /// lengths.
@@ -33,12 +31,6 @@ pub enum DataError {
     /// There is no centre.
     #[error("a field needs at least one centre")]
     Empty,
-    /// There are more centres than can be evaluated in reasonable time.
-    #[error("{count} centres are more than {MAX_CENTRES}")]
-    TooMany {
-        /// Number of centres.
-        count: usize,
-    },
     /// The lengths of the lists differ.
     #[error("{centres} centres with {alpha} and {beta} coefficients")]
     Lengths {
@@ -61,7 +53,7 @@ pub enum DataError {
 }
 
 impl RbfData {
-    /// Checks that the lists have equal lengths and are neither empty nor too long, and that all numbers are finite.
+    /// Checks that the lists have equal lengths and are not empty, and that all numbers are finite.
     ///
     /// # Errors
     ///
@@ -71,10 +63,8 @@ impl RbfData {
         if centres != alpha || centres != beta {
             return Err(DataError::Lengths { centres, alpha, beta });
         }
-        match centres {
-            0 => return Err(DataError::Empty),
-            count if count > MAX_CENTRES => return Err(DataError::TooMany { count }),
-            _ => {}
+        if centres == 0 {
+            return Err(DataError::Empty);
         }
         match (0..centres).find(|&j| !self.numbers(j).iter().all(|number| number.is_finite())) {
             Some(index) => Err(DataError::NotFinite { index }),

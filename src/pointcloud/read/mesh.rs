@@ -77,27 +77,19 @@ impl FileMesh {
                 normal.len()
             ));
         }
-        let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
-        self.position.retain(|_| stays.next().unwrap_or(false));
-        normal.retain(|normal| *normal != DVec3::ZERO);
         let source = if given { NormalSource::Given } else { NormalSource::FromMesh };
-        Ok((Cloud { position: self.position, normal, source }, self.warnings))
+        let mut cloud = Cloud { position: self.position, normal, source };
+        cloud.retain_with_normal();
+        Ok((cloud, self.warnings))
     }
 
-    /// Points inside of faces, evenly by their area, with the normals of the faces. A surface that the corners alone decide need not
+    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the faces. A surface that the corners alone decide need not
     /// follow a large face. A face with less than a thousandth of the area has none.
-    pub async fn on_faces(&self) -> Cloud {
+    pub async fn on_faces(&self, total: f64) -> Cloud {
         /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M. Roberts, "The unreasonable
         /// effectiveness of quasirandom sequences", 2018).
         const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
         let mut inside = Cloud { source: NormalSource::FromMesh, ..Cloud::default() };
-        let mut total = 0.0;
-        for (k, triangle) in self.triangles().enumerate() {
-            if k % FACES == 0 {
-                pause().await;
-            }
-            total += self.area_vector(triangle).length();
-        }
         for (k, triangle) in self.triangles().enumerate() {
             if k % FACES == 0 {
                 pause().await;
@@ -110,7 +102,7 @@ impl FileMesh {
             if given.dot(normal) < 0.0 {
                 normal = -normal;
             }
-            for k in 1..=(ON_FACES * area.length() / total) as u32 {
+            for k in 1..=(ON_FACES * area.length() / (2.0 * total)) as u32 {
                 let [mut u, mut v] = STEPS.map(|step| (f64::from(k) * step).fract());
                 if u + v > 1.0 {
                     (u, v) = (1.0 - u, 1.0 - v);
