@@ -1,7 +1,7 @@
 //! Solids with sharp edges by both methods: `docs/solids.md` is what this writes.
 //!
 //! `cargo bench --bench solids --profile dev > docs/solids.md` measures every solid with 1,500, 6,000 and 24,000 particles. With
-//! `-- FOLDER` it also writes every mesh there, for `benches/tetgen.py`.
+//! `-- FOLDER` it also writes every mesh there, for `benches/tetrahedra.py`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/solid_table.rs"]
@@ -28,7 +28,7 @@ Solids by the front with ten relaxation steps and by the refined method. This pa
 meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the
 edge* is the largest distance of a particle on a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of
 the mesh over the exact one. The smallest angle is that of the triangles of the report, and so are six neighbours, holes and pairs,
-which README.md defines. TetGen (package tetgen 0.8.4 of PyPI, `benches/tetgen.py`) fills every mesh with tetrahedra, without moving or
+which README.md defines. TetGen (package tetgen 0.8.4 of PyPI, `benches/tetrahedra.py`) fills every mesh with tetrahedra, without moving or
 adding a point on it, and their volume is the mesh's.";
 
 /// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and corners, where they are known.

@@ -2,7 +2,7 @@
 
 pip install tetgen
 cargo bench --bench solids --profile dev -- target/solids > docs/solids.md
-python benches/tetgen.py target/solids
+python benches/tetrahedra.py target/solids
 """
 
 import pathlib
