@@ -173,7 +173,7 @@ impl Warning {
     }
 
     /// The warning about a surface that was fitted to the mesh of a file, if it has another topology than the mesh or if their areas differ
-    /// by more than [`AREA_TOLERANCE`].
+    /// by more than 5 %.
     #[must_use]
     pub fn of_file(model: &ModelInfo, report: &Report) -> Option<Self> {
         let (mesh, figures) = (model.mesh?, report.measures.quality?);
