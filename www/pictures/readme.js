@@ -86,7 +86,7 @@ const SOLIDS = [
 const LEVEL_PX = { width: 300, height: 240 };
 const LEVEL_SCALE = 1.5;
 const LEVEL_SURFACE = 'torus';
-const LEVEL_SETTINGS = { radius_share: 0.0075, seed: 4 };
+const LEVEL_SETTINGS = { radius_share: 0.0075, seed: 3 };
 const LEVELS = [10, 17, 25, 34];
 const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
 
