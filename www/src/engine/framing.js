@@ -1,7 +1,8 @@
 /**
  * Decides when the camera fits the surface automatically: after a formula was typed or a link was read, and when the
- * surface disappears or reappears. A formula that is still being typed is fitted once it has stood for another pause.
- * If it gives way to the surface before, the camera goes back, too. All this only while `camera.fit` is set.
+ * surface disappears or reappears. A formula that is still being typed is fitted, and kept, once it has stood for
+ * another pause. If it gives way to the surface before, the camera goes back, too. The camera moves only while
+ * `camera.fit` is set.
  *
  * @module
  */
@@ -19,6 +20,9 @@ export class Framing {
   #columns;
   #viewer;
 
+  /** Keeps the formula that was on trial. */
+  #keep;
+
   /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
   #isWritten;
 
@@ -27,11 +31,12 @@ export class Framing {
 
   #effects;
 
-  /** @param {{ store: Store, columns: Columns, viewer: Viewer }} parts */
-  constructor({ store, columns, viewer }) {
+  /** @param {{ store: Store, columns: Columns, viewer: Viewer, keep: () => void }} parts */
+  constructor({ store, columns, viewer, keep }) {
     this.#store = store;
     this.#columns = columns;
     this.#viewer = viewer;
+    this.#keep = keep;
     this.#isWritten = false;
     this.#isTyped = false;
     /** Whether the camera shows the whole box because there is no surface. */
@@ -81,6 +86,7 @@ export class Framing {
   #come() {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
+    this.#keep();
     this.#fit();
   }
 

@@ -45,7 +45,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       fetchExports().catch(() => {});
     },
   });
-  const framing = new Framing({ store, columns, viewer });
+  const framing = new Framing({ store, columns, viewer, keep: () => runs.sampling.commit() });
 
   /** @type {Parts['adopt']} */
   function adopt(whole) {

@@ -168,8 +168,13 @@ describe('while somebody types', () => {
       if (enter) p.engine.setFormula(text);
       expect(p.engine.trial.value).toBe(enter ? 'none' : 'shown');
       await eventually(() => p.state.view.camera.distance / before).toBeGreaterThan(2);
+      // What the camera has fitted stands.
+      expect(p.engine.trial.value).toBe('none');
+      const { positions } = p.particles();
+      await typeSlowly(p, 'x+y^2+siin(z');
+      await eventually(() => p.particles().positions).toEqual(positions);
+      expect(p.state.view.camera.distance / before).toBeGreaterThan(2);
     }
-    // What was entered is what comes back.
     p.engine.setFormula('x^2+y^2+z^2=-400', { typing: true });
     await until(p.engine.empty, (empty) => empty);
     await p.debug.still();
