@@ -1,8 +1,7 @@
 /**
  * Decides when the camera fits the surface automatically: after a formula was typed or a link was read, and when the
- * surface disappears or reappears. A formula that is still being typed is fitted, and kept, once it has stood for
- * another pause. If it gives way to the surface before, the camera goes back, too. The camera moves only while
- * `camera.fit` is set.
+ * surface disappears or reappears. A formula that is still being typed is kept once it has stood for another pause. If
+ * it gives way to the surface before, the camera goes back, too. The camera moves only while `camera.fit` is set.
  *
  * @module
  */
@@ -20,9 +19,6 @@ export class Framing {
   #columns;
   #viewer;
 
-  /** Keeps the formula that was on trial. */
-  #keep;
-
   /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
   #isWritten;
 
@@ -31,12 +27,14 @@ export class Framing {
 
   #effects;
 
-  /** @param {{ store: Store, columns: Columns, viewer: Viewer, keep: () => void }} parts */
+  /**
+   * `keep` keeps the formula that was on trial.
+   * @param {{ store: Store, columns: Columns, viewer: Viewer, keep: () => void }} parts
+   */
   constructor({ store, columns, viewer, keep }) {
     this.#store = store;
     this.#columns = columns;
     this.#viewer = viewer;
-    this.#keep = keep;
     this.#isWritten = false;
     this.#isTyped = false;
     /** Whether the camera shows the whole box because there is no surface. */
@@ -45,9 +43,11 @@ export class Framing {
     let before = null;
     this.#effects = [
       effect(() => {
-        const isTrial = store.trial.value === 'shown';
-        if (!this.#rests() || !this.#isWritten || this.#waits()) return;
-        const timer = setTimeout(() => this.#come(), isTrial ? TYPING_MS : 0);
+        if (this.#rests() && this.#isWritten && !this.#waits()) queueMicrotask(() => this.#come());
+      }),
+      effect(() => {
+        if (store.trial.value !== 'shown' || !this.#rests() || this.#waits()) return;
+        const timer = setTimeout(keep, TYPING_MS);
         return () => clearTimeout(timer);
       }),
       effect(() => {
@@ -86,7 +86,6 @@ export class Framing {
   #come() {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
-    this.#keep();
     this.#fit();
   }
 

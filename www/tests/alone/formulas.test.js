@@ -154,21 +154,21 @@ describe('while somebody types', () => {
       expect(p.engine.empty.value).toBe(count === 0);
     });
 
-  test('a formula of which a surface stays is fitted after another pause, or at once by Enter', async () => {
+  test('a formula that has a surface is fitted, and stands after another pause, or at once by Enter', async () => {
     const p = await open();
     const { distance } = p.state.view.camera;
     for (const [text, enter] of /** @type {const} */ ([
       ['x^2+y^2+z^2=25', false],
       ['x^2+y^2+z^2=400', true],
     ])) {
+      const before = p.state.view.camera.distance;
       await type(p, text);
       await until(p.engine.typing, (typing) => !typing);
       await eventually(() => p.engine.busy.value).toBe(false);
-      const before = p.state.view.camera.distance;
+      expect(p.engine.trial.value).toBe('shown');
       if (enter) p.engine.setFormula(text);
-      expect(p.engine.trial.value).toBe(enter ? 'none' : 'shown');
+      else await until(p.engine.trial, (trial) => trial === 'none');
       await eventually(() => p.state.view.camera.distance / before).toBeGreaterThan(2);
-      // What the camera has fitted stands.
       expect(p.engine.trial.value).toBe('none');
       const { positions } = p.particles();
       await typeSlowly(p, 'x+y^2+siin(z');
