@@ -147,7 +147,7 @@ pub mod web;
 pub use export::{Format, MeshFormat};
 pub use extent::Reach;
 pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Parameter};
-pub use field::{Bounded, Enclosure, Field, FnField, Jet, gallery};
+pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
 pub use glam;
 pub use math::{Bounds, Sym3};
 pub use mesh::build::Triangulation;

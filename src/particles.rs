@@ -36,6 +36,22 @@ pub struct Particles {
     pub segments: Vec<[u32; 2]>,
     /// For each of the segments, the patches on its left and on its right, seen from outside.
     pub sides: Vec<[u32; 2]>,
+    /// Opposite faces of a cell on which the particles are the same, see [`UnitCell`](crate::field::UnitCell).
+    pub opposite: Vec<OppositeFaces>,
+    /// For each row, the first row of the particle on the lowest faces of a cell of which its own is the image: of its own particle, but
+    /// on an upper face. Empty unless opposite faces are the same.
+    pub periodic: Vec<u32>,
+}
+
+/// Two opposite faces of a cell with the same particles: their coordinates are the same bit for bit but that across the faces.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OppositeFaces {
+    /// The axis across the faces: 0, 1 or 2.
+    pub axis: u8,
+    /// The patches that the lower and the upper face are.
+    pub patches: [u32; 2],
+    /// Pairs of rows: that of a particle on the lower face, of its patch, and that of the same particle on the upper face.
+    pub rows: Vec<[u32; 2]>,
 }
 
 /// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
@@ -180,6 +196,25 @@ impl Particles {
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 
+    /// Takes pairs of opposite faces, of which the upper ones are images of the lower ones.
+    pub(crate) fn repeat(&mut self, opposite: Vec<OppositeFaces>) {
+        let mut periodic: Vec<u32> = (0..self.len()).map(|i| self.first_row(i) as u32).collect();
+        // From an edge of the box one comes to the lowest one across both faces.
+        for &[lower, upper] in opposite.iter().flat_map(|faces| &faces.rows) {
+            let [lower, upper] = [lower, upper].map(|row| self.first_row(row as usize));
+            periodic[upper] = periodic[lower];
+        }
+        self.periodic = (0..self.len()).map(|i| periodic[self.first_row(i)]).collect();
+        self.opposite = opposite;
+    }
+
+    /// Number of pairs of particles on opposite faces of a cell; none unless such faces are the same.
+    #[must_use]
+    pub fn pairs(&self) -> Option<usize> {
+        let pairs = self.opposite.iter().map(|faces| faces.rows.len()).sum();
+        (!self.opposite.is_empty()).then_some(pairs)
+    }
+
     /// The patch of row `i`; none if the surface has no creases.
     #[must_use]
     pub fn patch_of(&self, i: usize) -> Option<u32> {
@@ -241,6 +276,7 @@ impl Particles {
         self.slots.truncate(len);
         self.patch.truncate(len);
         self.twins.truncate(len);
+        self.periodic.truncate(len);
         self.keep_segments(len);
     }
 
@@ -250,6 +286,7 @@ impl Particles {
         let mut kept = self.segments.iter().map(is_kept);
         self.sides.retain(|_| kept.next().unwrap_or(false));
         self.segments.retain(is_kept);
+        self.opposite.iter_mut().for_each(|faces| faces.rows.retain(is_kept));
     }
 
     /// Returns, for each particle, the index of the seed from which its front grew.
@@ -301,6 +338,8 @@ impl Particles {
         self.twins.extend_from_slice(&others.twins[..len.min(others.twins.len())]);
         self.segments.extend_from_slice(&others.segments);
         self.sides.extend_from_slice(&others.sides);
+        self.opposite.clone_from(&others.opposite);
+        self.periodic.extend_from_slice(&others.periodic[..len.min(others.periodic.len())]);
         self.keep_segments(len);
     }
 
@@ -316,6 +355,8 @@ impl Particles {
         self.twins.clear();
         self.segments.clear();
         self.sides.clear();
+        self.opposite.clear();
+        self.periodic.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,

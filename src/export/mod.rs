@@ -71,9 +71,14 @@ pub struct Column {
     /// Type of the values.
     pub kind: ColumnKind,
     /// Whether the column is known only once the particles are measured.
+    #[serde(skip)]
     pub measured: bool,
     /// Whether the column is there only where the surface has creases.
+    #[serde(skip)]
     pub creases: bool,
+    /// Whether the column is there only where opposite faces of the box have the same particles.
+    #[serde(skip)]
+    pub periodic: bool,
     /// Returns the value of a particle, given by its index.
     #[serde(skip)]
     read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
@@ -128,7 +133,7 @@ fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
 type Read = fn(&Particles, &quality::Measurements, usize) -> CellValue;
 
 const fn float(name: &'static str, read: Read) -> Column {
-    Column { name, kind: ColumnKind::Float, measured: false, creases: false, read }
+    Column { name, kind: ColumnKind::Float, measured: false, creases: false, periodic: false, read }
 }
 
 /// The columns of PLY and CSV files, in their order.
@@ -181,12 +186,24 @@ pub const COLUMNS: &[Column] = &[
         creases: true,
         ..float("particle", |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
     },
+    // The particle that it is on the lowest faces of a cell: itself, but for the images on the opposite ones.
+    Column {
+        kind: ColumnKind::Uint,
+        creases: true,
+        periodic: true,
+        ..float("periodic", |particles, _, i| CellValue::Uint(particles.periodic[i]))
+    },
 ];
 
 /// The columns of a file: all, but those of measurements where nothing was measured, and those of patches where there are no creases.
 fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
     let (is_measured, is_creased) = (!measured.valence.is_empty(), !particles.patch.is_empty());
-    COLUMNS.iter().filter(move |column| (is_measured || !column.measured) && (is_creased || !column.creases))
+    let is_periodic = !particles.periodic.is_empty();
+    COLUMNS.iter().filter(move |column| {
+        (is_measured || !column.measured)
+            && (is_creased || !column.creases)
+            && (is_periodic || !column.periodic)
+    })
 }
 
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them: where it is empty, its columns are left

@@ -178,6 +178,32 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
     is_short.then(|| placeable(&Bounds::symmetric(half)))
 }
 
+/// A box of one period along every axis on which the surface of a field has one, and as wide as `bounds` along the others. Any such box
+/// holds all of the surface. This one has its corners away from the surface, where |f| is largest on a grid, and its faces away from
+/// planes of symmetry, which often touch the surface: creases are plain curves then.
+#[must_use]
+pub fn unit_cell(field: &mut dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
+    /// Places of the corner along each axis.
+    const SIDE: u32 = 8;
+    /// Share of the way between two places at which the first one is, by the golden ratio: planes of symmetry are at simple fractions.
+    const ASIDE: f64 = 0.382;
+    let periods = DVec3::from_array(periods.map(Option::unwrap_or_default));
+    let is_repeated = periods.cmpgt(DVec3::ZERO);
+    let first = DVec3::select(is_repeated, bounds.middle() - 0.5 * periods, bounds.lo());
+    let corner = |k: u32| {
+        let share = DVec3::new(k.into(), (k / SIDE).into(), (k / SIDE.pow(2)).into()) % f64::from(SIDE);
+        first + periods * ((share.floor() + ASIDE) / f64::from(SIDE))
+    };
+    let mut best = (first, -1.0);
+    for corner in (0..SIDE.pow(3)).map(corner) {
+        let (value, _) = field.value_and_gradient(corner);
+        if value.abs() > best.1 {
+            best = (corner, value.abs());
+        }
+    }
+    Bounds::new(best.0, DVec3::select(is_repeated, best.0 + periods, bounds.hi()))
+}
+
 /// The box, made larger around its middle until particles can be put in it.
 fn placeable(wanted: &Bounds) -> Bounds {
     let (middle, mut half) = (wanted.middle(), 0.5 * wanted.size());

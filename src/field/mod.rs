@@ -207,6 +207,21 @@ pub trait Field: Send {
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]
     }
+
+    /// The box that closes the solid f ≤ 0 as a cell, counted from the origin of the field; none by default. What its opposite faces cut
+    /// is the same along every axis that it repeats.
+    fn unit_cell(&self) -> Option<UnitCell> {
+        None
+    }
+}
+
+/// A box whose faces close a solid, so that copies of it beside each other are joined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitCell {
+    /// The box.
+    pub bounds: Bounds,
+    /// For each axis, whether the surface without the faces repeats after the width of the box.
+    pub repeats: [bool; 3],
 }
 
 /// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that is smaller. It is the best
@@ -327,6 +342,11 @@ macro_rules! forward_field {
             fn periods(&self) -> [Option<f64>; 3] {
                 let $this = self;
                 $field.periods()
+            }
+
+            fn unit_cell(&self) -> Option<$crate::field::UnitCell> {
+                let $this = self;
+                $field.unit_cell()
             }
         }
     };

@@ -1,7 +1,7 @@
 //! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in
 //! single precision, whatever units a formula is in.
 
-use super::{Bounded, Enclosure, Field, Jet};
+use super::{Bounded, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, Sym3, sort_numbers};
 use crate::slices::Work;
 use glam::{DVec3, Vec3};
@@ -158,6 +158,10 @@ impl Field for Scaled<'_> {
 
     fn periods(&self) -> [Option<f64>; 3] {
         self.field.periods()
+    }
+
+    fn unit_cell(&self) -> Option<UnitCell> {
+        self.field.unit_cell()
     }
 }
 

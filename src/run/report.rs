@@ -34,6 +34,8 @@ pub struct Report {
     pub volume: Option<f64>,
     /// Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one.
     pub smallest_angle: Option<f64>,
+    /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same.
+    pub pairs: Option<usize>,
     /// Particles with a child that fell outside of the box.
     pub border: usize,
     /// Why particles lie at the border of the box.
@@ -234,6 +236,7 @@ impl<F: Field> Run<F> {
             },
             volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
+            pairs: particles.pairs(),
             border,
             cut: self.cut().filter(|_| border > 0),
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),

@@ -5,6 +5,7 @@ use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
 use crate::math::{grouped, shortest_text};
 use crate::mesh::build::Triangulation;
+use crate::particles::Particles;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
 use crate::sampler::{
@@ -60,6 +61,13 @@ pub enum Warning {
     },
     /// A refinement was asked for, and the front stands.
     NotRefined(Refusal),
+    /// Opposite faces of a cell are not the same.
+    Unpaired {
+        /// The axis across the faces: 0, 1 or 2.
+        axis: usize,
+        /// Whether the surface repeats after the width of the box.
+        repeats: bool,
+    },
     /// Children could not be placed.
     Children {
         /// Number of children that found no surface at the right distance.
@@ -208,6 +216,16 @@ impl<F: Field> Run<F> {
         warnings
     }
 
+    /// The warning about the faces of a cell across an axis, if particles lie on them, and not the same ones.
+    fn unpaired(&self, axis: usize) -> Option<Warning> {
+        let cell = self.field.unit_cell()?;
+        let Particles { position, opposite, .. } = self.particles();
+        let faces = [cell.bounds.min[axis], cell.bounds.max[axis]].map(|at| at as f32);
+        let is_paired = opposite.iter().any(|faces| usize::from(faces.axis) == axis);
+        let is_reached = || position.iter().any(|p| faces.contains(&p[axis]));
+        (!is_paired && is_reached()).then_some(Warning::Unpaired { axis, repeats: cell.repeats[axis] })
+    }
+
     /// The warnings about the run. The places in `sampled` are coordinates of the field; `facing` is the number of particles that
     /// face another sheet.
     pub(super) fn warnings_of_run(&self, sampled: &Sampled, facing: usize) -> Vec<Warning> {
@@ -227,6 +245,8 @@ impl<F: Field> Run<F> {
         let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
         let origin = self.particles().origin;
         warnings.extend(counts.refusal.map(|refusal| Warning::NotRefined(refusal.counted_from_zero(origin))));
+        let unpaired = [0, 1, 2].map(|axis| self.unpaired(axis));
+        warnings.extend(unpaired.into_iter().flatten().filter(|_| stop_reason == Some(StopReason::Complete)));
         // Children of a coarse front are no trouble once its mesh has been checked and refined.
         let FateCounts { not_converged, undefined, .. } =
             if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
@@ -307,6 +327,15 @@ impl fmt::Display for Warning {
                  number changes by leaps."
             ),
             Self::NotRefined(refusal) => refusal.fmt(f),
+            Self::Unpaired { axis, repeats } => {
+                let reason = if *repeats {
+                    "the creases found on them differ. Where the surface runs through a corner or along an edge of the box, begin the box \
+                     elsewhere."
+                } else {
+                    "the box is not known to be a whole number of periods wide there."
+                };
+                write!(f, "Opposite faces across {} are closed, but not the same: {reason}", ["x", "y", "z"][*axis])
+            }
             Self::Children { not_converged, undefined } => {
                 let children = |count: u64| counted(count as usize, "child", "children");
                 let mut troubles = Vec::new();

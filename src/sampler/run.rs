@@ -559,6 +559,11 @@ impl Sampler {
     }
 
     fn begin_audit(&mut self, reason: StopReason) -> PhaseState {
+        if self.creases.repeat_faces(&mut self.output.particles, &mut self.output.corners) {
+            self.output.moved = true;
+            // They are those of the particles before.
+            self.tools.neighbours.clear();
+        }
         self.components.restart_audit();
         PhaseState::Audit(reason)
     }

@@ -466,6 +466,13 @@ const REPORT: &[ReportRow] = &[
         "Components of the graph of natural neighbours of the particles. It is that of the sample: a neck or a needle as thin as a particle may divide it. Parts that are joined only at a singular point count separately.",
     ),
     row(
+        "pairs",
+        "Periodic pairs",
+        ("Surface", "", 0),
+        ("", None),
+        "Pairs of particles on opposite faces of the box that are the same but for the shift.",
+    ),
+    row(
         "border",
         "Border particles",
         ("Surface", "", 0),

@@ -2,7 +2,7 @@
 //! surface of a formula; the solid that is made of the surface in it; and its creases.
 
 use super::{FieldAnswer, Session, Source};
-use crate::extent::{BoxFit, Extent};
+use crate::extent::{self, BoxFit, Extent};
 use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
@@ -35,6 +35,17 @@ pub enum BoxFaces {
     Closed,
 }
 
+/// What opposite faces of the box that close a solid have in common.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BoxCell {
+    /// Nothing: each face is sampled by itself.
+    #[default]
+    Lone,
+    /// The same particles and triangles, along every axis on which the surface repeats: see [`Formula::repeated_in`].
+    Periodic,
+}
+
 /// Settings that act before a run: the box, and the solid that is made of the surface of a formula. They mean nothing to a model from
 /// points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -44,6 +55,8 @@ pub struct SolidSettings {
     pub box_mode: BoxMode,
     /// What the faces of the box do.
     pub box_faces: BoxFaces,
+    /// What opposite faces of the box have in common, where they close the solid.
+    pub box_cell: BoxCell,
     /// Thickness of the sheet around the surface that is sampled in its place, in the units of the coordinates; 0 for the surface itself.
     /// See [`Formula::thickened`].
     pub thickness: f64,
@@ -81,6 +94,7 @@ impl SolidSettings {
             solid = solid.thickened(thickness);
         }
         match closing {
+            Some(bounds) if self.box_cell == BoxCell::Periodic => solid.repeated_in(bounds),
             Some(bounds) => solid.closed_by(bounds),
             None => solid,
         }
@@ -187,10 +201,17 @@ impl Session {
             clip = before.map_or(clip, |before| clip.joined(&before));
         }
         let is_closed = choice.box_faces == BoxFaces::Closed;
+        let is_cell = is_closed && choice.box_cell == BoxCell::Periodic;
+        if let Some(field) = field.filter(|_| is_cell && self.is_to_choose()) {
+            let mut solid = choice.made_of(field.clone(), None);
+            solid.set_origin(DVec3::ZERO);
+            clip = extent::unit_cell(&mut solid, field.surface_periods(), &clip);
+        }
         let (mut bounds, mut reach_in) = (clip, reach);
         if let Some(field) = field {
             let closing = Some(clip).filter(|_| is_closed);
-            if (field.thickness(), field.closing_box()) != (choice.sheet(), closing) {
+            let present = (field.thickness(), field.closing_box(), field.unit_cell().is_some());
+            if present != (choice.sheet(), closing, is_cell) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());
                 self.fitting.closed = Around::default();
                 self.fitting.creases = None;
@@ -220,8 +241,13 @@ impl Session {
         of_surface.map_or(self.own, |surface| self.fitting.choice.own_box(surface))
     }
 
+    /// Whether the user has left the box open.
+    fn is_to_choose(&self) -> bool {
+        self.fitting.choice.box_mode == BoxMode::Fit && !self.fitting.is_given
+    }
+
     /// Whether the box is to be fitted: not where it was given, nor around a surface of the gallery, which has its own.
     fn is_to_fit(&self) -> bool {
-        self.fitting.choice.box_mode == BoxMode::Fit && !self.fitting.is_given && self.surface.is_none()
+        self.is_to_choose() && self.surface.is_none()
     }
 }

@@ -9,7 +9,7 @@ mod setting;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Excess, Fault, FaultKind};
-pub use fitting::{BoxFaces, BoxMode, SolidSettings};
+pub use fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
 pub use record::{FileRecord, FileRequest};
 pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,

@@ -1,7 +1,7 @@
 //! The settings as they are shown: from this table the page builds a control for each, the command line an option, and the README a
 //! row. Defaults and ranges are those of [`Settings`].
 
-use super::fitting::{BoxFaces, BoxMode, SolidSettings};
+use super::fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};
 use core::ops::RangeInclusive;
 use serde::Serialize;
@@ -72,6 +72,7 @@ impl Setting {
         match self.name {
             "box_mode" => "box".to_owned(),
             "box_faces" => "closed".to_owned(),
+            "box_cell" => "periodic".to_owned(),
             "sampling" => "adaptive".to_owned(),
             "size_mode" => "count".to_owned(),
             "radius_share" => "radius".to_owned(),
@@ -244,6 +245,7 @@ const fn when(name: &'static str, value: &'static str) -> Condition {
     Condition { name, value, equal: true }
 }
 
+const CLOSED: Condition = when("box_faces", "closed");
 const UNIFORM: Condition = when("sampling", "uniform");
 const ADAPTIVE: Condition = when("sampling", "adaptive");
 const BY_RADIUS: Condition = when("size_mode", "radius");
@@ -267,6 +269,7 @@ macro_rules! choices {
 
 choices!(BOXES of BoxMode: Fit "fit" "Fit", Fixed "fixed" "Fixed");
 choices!(FACES of BoxFaces: Open "open" "Open", Closed "closed" "Closed");
+choices!(CELLS of BoxCell: Lone "lone" "Lone", Periodic "periodic" "Periodic");
 choices!(SAMPLINGS of Sampling: Uniform "uniform" "Uniform", Adaptive "adaptive" "Adaptive");
 choices!(SIZES of SizeMode: Radius "radius" "Radius", Count "count" "Count");
 choices!(LAWS of LawKind: ChordError "chord_error" "Chord error", MaxCurvature "max_curvature" "Largest curvature",
@@ -298,6 +301,16 @@ pub fn settings() -> Vec<Setting> {
             "Closed: the faces of the box close what they cut, the solid f ≤ 0 in the box, with sharp edges. Of formulas.",
             FACES,
         )),
+        Setting {
+            when: &[CLOSED],
+            ..of_box(choice(
+                "box_cell",
+                |_| BoxCell::default().into(),
+                "Cell",
+                "Periodic: opposite faces have the same particles and triangles, bit for bit but for the shift, along every axis on which the box is a whole number of periods wide. Of closed solids.",
+                CELLS,
+            ))
+        },
         Setting {
             min: *thicknesses.start(),
             max: *thicknesses.end(),

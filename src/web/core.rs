@@ -211,6 +211,11 @@ impl Core {
         self.column(&self.session.run.particles().patch, 0)
     }
 
+    /// The column [`Particles::periodic`].
+    pub fn periodic(&self) -> Vec<u32> {
+        self.column(&self.session.run.particles().periodic, 0)
+    }
+
     /// For each row, the first row of the same particle: one on a crease has a row on each side. Empty without creases.
     pub fn particle(&self) -> Vec<u32> {
         let particles = self.session.run.particles();

@@ -197,6 +197,7 @@ fn a_file_says_how_to_make_it_again() {
     for (arguments, name) in [
         (vec!["--formula", "x^4 + y^4 + z^4 = 1", "--count", "900"], "fitted.glb"),
         (vec!["--surface", "gyroid", "--thickness", "0.6", "--radius", "2%"], "sheet.glb"),
+        (vec!["--surface", "gyroid", "--closed", "--periodic", "--radius", "2%"], "cell.glb"),
     ] {
         let path = path(name);
         let made = sample(&[&arguments[..], &["--mesh", &path]].concat());
@@ -207,6 +208,28 @@ fn a_file_says_how_to_make_it_again() {
     sample(&["--surface", "sphere", "--mesh", &plain]);
     let message = fails(2, &["sample", "--like", &plain]);
     assert!(message.contains("holds no record"), "{message}");
+}
+
+#[test]
+fn a_unit_cell_says_which_particles_repeat() {
+    let path = file("cell.csv");
+    let text =
+        run_text(&["--formula", "cos x + cos y + cos z", "--closed", "--periodic", "--out"], "cell.csv");
+    assert!(text.contains("Periodic pairs") && !text.contains("warning"), "{text}");
+    let csv = std::fs::read_to_string(path).expect("the file was written");
+    assert_eq!(csv.lines().nth(1).and_then(|names| names.split(',').next_back()), Some("periodic"));
+    let closed = run_text(&["--formula", "x^2 + y^2 + z^2 = 1", "--closed", "--out"], "ball.csv");
+    assert!(!closed.contains("Periodic pairs"), "{closed}");
+
+    let cell = ["sample", "--closed", "--periodic", "--formula"];
+    let message = fails(2, &[&cell[..], &["x^2 + y^2 + z^2 = 1"]].concat());
+    assert!(message.contains("surfaces that repeat along x, y or z"), "{message}");
+    let message = fails(2, &[&cell[..], &["sin x + sin 2y = z", "--box", "3"]].concat());
+    assert!(
+        message.contains("a period of 6.283185307179586 along x, 3.141592653589793 along y"),
+        "{message}"
+    );
+    fails(2, &["sample", "--surface", "gyroid", "--periodic"]);
 }
 
 /// Runs `sample` with a file as the last argument; the text that it prints.

@@ -38,6 +38,7 @@ mod near_sheets;
 #[cfg(feature = "points")]
 mod paper;
 mod parity;
+mod periodic;
 #[cfg(feature = "points")]
 mod pointcloud;
 #[cfg(feature = "points")]

@@ -565,14 +565,18 @@ mod solids {
     use super::{request, run, sized};
     use marching_particles::math::Bounds;
     use marching_particles::sampler::{Settings, StopReason};
-    use marching_particles::session::{BoxFaces, BoxMode, FieldRequest, Session, SolidSettings};
+    use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FieldRequest, Session, SolidSettings};
 
     fn solid(box_faces: BoxFaces, thickness: f64) -> SolidSettings {
         SolidSettings { box_faces, thickness, ..SolidSettings::default() }
     }
 
-    const OPEN: SolidSettings =
-        SolidSettings { box_mode: BoxMode::Fit, box_faces: BoxFaces::Open, thickness: 0.0 };
+    const OPEN: SolidSettings = SolidSettings {
+        box_mode: BoxMode::Fit,
+        box_faces: BoxFaces::Open,
+        box_cell: BoxCell::Lone,
+        thickness: 0.0,
+    };
 
     /// A run of the session on a field, in which the box is found in slices of work, as the page has it.
     fn run_on(session: &mut Session, field: &str, choice: SolidSettings, settings: &Settings) -> Bounds {
@@ -595,6 +599,28 @@ mod solids {
             }
         };
         mesh.components.iter().map(|component| component.open_edges).sum()
+    }
+
+    #[test]
+    fn a_periodic_cell_is_one_period_unless_the_box_is_given() {
+        let settings = sized(2000);
+        let mut session = Session::new();
+        let periodic = SolidSettings { box_cell: BoxCell::Periodic, ..solid(BoxFaces::Closed, 0.0) };
+        let gyroid = r#"{"surface":"gyroid"}"#;
+        let cell = run_on(&mut session, gyroid, periodic, &settings);
+        let period = core::f64::consts::TAU;
+        assert!((cell.size() - period).abs().max_element() < 1e-9, "{cell:?}");
+        assert!(session.report().pairs.is_some_and(|pairs| pairs > 200));
+        assert_eq!(open_edges(&mut session), 0);
+        // Without the choice the box is that of the gallery, and its faces are sampled each by itself.
+        let closed = run_on(&mut session, gyroid, solid(BoxFaces::Closed, 0.0), &settings);
+        assert!(closed.size().min_element() > 1.5 * period && session.report().pairs.is_none());
+        // A box that is given stays, and the report says what does not repeat in it.
+        let given = r#"{"formula":"cos(x) + cos(y) + cos(z)","bounds":{"min":[-2,-2,-2],"max":[2,2,2]}}"#;
+        let own = run_on(&mut session, given, periodic, &settings);
+        assert_eq!(own, Bounds::cube(2.0));
+        let warnings = session.report().warnings.iter().map(ToString::to_string).collect::<String>();
+        assert!(warnings.contains("across x are closed, but not the same"), "{warnings}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use marching_particles::export::{Placement, Unit, UpAxis};
 use marching_particles::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
-use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
+use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -168,6 +168,12 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, conflicts_with = "points", help_heading = "Surface")]
     pub(crate) closed: bool,
 
+    /// The same particles and triangles on opposite faces of the box of --closed, bit for bit but for the shift, along every axis on
+    /// which it is a whole number of periods wide. Without --box, it is one period wide. The column `periodic` of ply and csv has the
+    /// pairs
+    #[arg(long, requires = "closed", help_heading = "Surface")]
+    pub(crate) periodic: bool,
+
     /// The box that closes the solid, where the solid and its box were read from a file.
     #[arg(skip)]
     pub(crate) faces: Option<Bounds>,
@@ -205,6 +211,7 @@ impl SampleArguments {
                 }
             }
             surface.closed |= record.solid.box_faces == BoxFaces::Closed;
+            surface.periodic |= record.solid.box_cell == BoxCell::Periodic;
             surface.thickness =
                 surface.thickness.or((record.solid.thickness > 0.0).then_some(record.solid.thickness));
         }
@@ -227,6 +234,7 @@ impl SurfaceArguments {
     pub(crate) fn solid(&self) -> SolidSettings {
         SolidSettings {
             box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
+            box_cell: if self.periodic { BoxCell::Periodic } else { BoxCell::Lone },
             thickness: self.thickness.unwrap_or(0.0),
             ..SolidSettings::default()
         }

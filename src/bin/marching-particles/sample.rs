@@ -11,10 +11,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export;
 use marching_particles::extent;
 use marching_particles::field::model::{self, ModelInfo};
+use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
+use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
     Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Method, Parameter, Phase,
     Reach, Run, Settings, StopReason, Warning, gallery,
@@ -282,7 +283,7 @@ fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> 
         }
         Some(BoxChoice::Fit) | None => own,
     };
-    let (formula, bounds, faces) = solid(formula, arguments, bounds);
+    let (formula, bounds, faces) = solid(formula, arguments, bounds)?;
     Ok(Chosen {
         name: surface.map(|surface| surface.id.to_owned()),
         formula: text.to_owned(),
@@ -301,17 +302,41 @@ fn solid(
     formula: Formula,
     arguments: &SurfaceArguments,
     bounds: Option<Bounds>,
-) -> (Formula, Option<Bounds>, Option<Bounds>) {
+) -> Result<(Formula, Option<Bounds>, Option<Bounds>), Failure> {
     let solid = arguments.solid();
     let mut formula = solid.made_of(formula, None);
     if solid.box_faces == BoxFaces::Open {
-        return (formula, bounds, None);
+        return Ok((formula, bounds, None));
     }
-    if let Some(faces) = arguments.faces {
-        return (solid.made_of(formula, Some(&faces)), bounds, Some(faces));
+    let is_like = arguments.faces.is_some();
+    let mut faces = arguments.faces.or(bounds).unwrap_or_else(|| extent::find(&mut formula).bounds);
+    let periods = formula.surface_periods();
+    let is_fitted = !is_like && !matches!(arguments.bounds, Some(BoxChoice::Fixed | BoxChoice::Given(_)));
+    if solid.box_cell == BoxCell::Periodic && is_fitted {
+        faces = extent::unit_cell(&mut formula, periods, &faces);
     }
-    let faces = bounds.unwrap_or_else(|| extent::find(&mut formula).bounds);
-    (solid.made_of(formula, Some(&faces)), None, Some(faces))
+    let formula = solid.made_of(formula, Some(&faces));
+    if formula.unit_cell().is_some_and(|cell| cell.repeats == [false; 3]) {
+        return Err(Failure::Usage(not_periodic(periods)));
+    }
+    Ok((formula, bounds.filter(|_| is_like), Some(faces)))
+}
+
+/// Why no two faces of a box are the same, for a surface of these periods.
+fn not_periodic(periods: [Option<f64>; 3]) -> String {
+    let known: Vec<String> = ["x", "y", "z"]
+        .iter()
+        .zip(periods)
+        .filter_map(|(axis, period)| Some(format!("{} along {axis}", shortest_text(period?))))
+        .collect();
+    if known.is_empty() {
+        return "--periodic is for surfaces that repeat along x, y or z, and this one is not known to"
+            .to_owned();
+    }
+    format!(
+        "--periodic takes a box that is a whole number of periods wide along x, y or z: the surface has a period of {}",
+        known.join(", ")
+    )
 }
 
 /// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.

@@ -57,7 +57,7 @@ pub use ast::{FUNCTIONS, FunctionInfo};
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 
-use super::{Bounded, Enclosure, Field, Jet};
+use super::{Bounded, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, Sym3};
 use crate::slices::Work;
 use ast::{COORDINATES, Constant, Equation, Function};
@@ -262,6 +262,21 @@ impl Formula {
         self.solid.closed = Some(*bounds);
         self.make_solid();
         self
+    }
+
+    /// [`Formula::closed_by`], and opposite faces of the box are to be the same along every axis on which it is a whole number of
+    /// [periods](Formula::surface_periods) wide: [`Field::unit_cell`] says which.
+    #[must_use]
+    pub fn repeated_in(mut self, bounds: &Bounds) -> Self {
+        self.solid.is_cell = true;
+        self.closed_by(bounds)
+    }
+
+    /// The period of the surface, which no box closes, along each axis: see [`Field::periods`].
+    #[must_use]
+    pub fn surface_periods(&self) -> [Option<f64>; 3] {
+        let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
+        [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
     }
 
     /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative where the distance from the surface
@@ -519,11 +534,14 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
 
 impl Field for Formula {
     fn periods(&self) -> [Option<f64>; 3] {
-        if self.solid.closed.is_some() {
-            return [None; 3];
-        }
-        let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
-        [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
+        if self.solid.closed.is_some() { [None; 3] } else { self.surface_periods() }
+    }
+
+    fn unit_cell(&self) -> Option<UnitCell> {
+        let bounds = self.solid.closed.filter(|_| self.solid.is_cell)?;
+        let (size, periods) = (bounds.size(), self.surface_periods());
+        let repeats = [0, 1, 2].map(|axis| periods[axis].is_some_and(|p| periods::is_whole(size[axis], p)));
+        Some(UnitCell { bounds: bounds.relative_to(self.origin()), repeats })
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {

@@ -37,6 +37,16 @@ pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> 
     }
 }
 
+/// Largest part of a width by which it may miss a whole number of periods: single precision, in which particles are kept, holds no
+/// more, and seven digits of a period are enough.
+const SLACK: f64 = 1e-6;
+
+/// Whether a width is a whole number of periods, of which 0 is that of what does not change.
+pub(super) fn is_whole(width: f64, period: f64) -> bool {
+    let whole = (width / period).round();
+    period == 0.0 || whole >= 1.0 && (whole * period - width).abs() <= SLACK * width
+}
+
 /// Finder of the dependence of expressions on one coordinate.
 struct PeriodFinder<'a> {
     axis: u8,

@@ -18,6 +18,8 @@ pub(super) struct Solid {
     pub(super) thickness: Option<f64>,
     /// The box whose faces close the solid.
     pub(super) closed: Option<Bounds>,
+    /// Whether that box is a [cell](crate::field::UnitCell).
+    pub(super) is_cell: bool,
 }
 
 impl Solid {

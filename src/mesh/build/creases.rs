@@ -1,6 +1,6 @@
 //! Particles on a surface with creases: each patch is a sheet of its own, which ends at its creases.
 
-use crate::particles::Particles;
+use crate::particles::{OppositeFaces, Particles};
 
 /// The rows of one patch, and its border.
 #[derive(Debug, Default)]
@@ -46,4 +46,22 @@ impl Sheet {
         }
         sheets
     }
+}
+
+/// Repeats what lies on the lower of two opposite faces of a cell on the upper one: triangles and the loops around holes, by rows of
+/// particles on these patches.
+pub(super) fn repeat(
+    triangles: &mut Vec<[u32; 3]>,
+    unfilled: &mut Vec<Vec<u32>>,
+    faces: &OppositeFaces,
+    patch: &[u32],
+) {
+    let mut rows = faces.rows.clone();
+    rows.sort_unstable();
+    let image = |row: u32| rows[rows.partition_point(|pair| pair[0] < row)][1];
+    let is_lower = |row: u32| patch[row as usize] == faces.patches[0];
+    let lower: Vec<[u32; 3]> = triangles.iter().copied().filter(|triangle| is_lower(triangle[0])).collect();
+    triangles.extend(lower.into_iter().map(|[a, b, c]| [a, c, b].map(image)));
+    let holes: Vec<Vec<u32>> = unfilled.iter().filter(|hole| is_lower(hole[0])).cloned().collect();
+    unfilled.extend(holes.into_iter().map(|hole| hole.into_iter().rev().map(image).collect()));
 }

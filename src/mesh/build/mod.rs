@@ -203,7 +203,10 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
     }
     let mut whole = Joined::default();
     let tips = Particles::tips(&particles.twins, &particles.segments);
-    for Sheet { rows, border } in Sheet::all(particles) {
+    let is_image = |row: u32| {
+        particles.opposite.iter().any(|faces| particles.is_on(row as usize, Some(faces.patches[1])))
+    };
+    for Sheet { rows, border } in Sheet::all(particles).into_iter().filter(|sheet| !is_image(sheet.rows[0])) {
         pause().await;
         let [position, normal] = [&particles.position, &particles.normal]
             .map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
@@ -215,6 +218,10 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
         whole.agreed += joined.agreed;
         whole.rounds = whole.rounds.max(joined.rounds);
+    }
+    for faces in &particles.opposite {
+        pause().await;
+        creases::repeat(&mut whole.triangles, &mut whole.unfilled, faces, &particles.patch);
     }
     whole.counted(particles.len(), &Particles::joints(&particles.twins, &particles.segments)).await
 }

@@ -1,10 +1,12 @@
 //! Particles on corners and along creases.
 
+use super::cell::{FacePair, Image};
 use super::ladder::CreaseLadder;
 use super::meeting::{FADED, Meeting};
 use super::{Crease, Creases};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
+use core::ops::Range;
 use glam::{DVec3, Vec3};
 
 /// A particle on a crease or a corner.
@@ -58,14 +60,29 @@ impl Creases {
         };
         let mut filled = CreaseParticles::default();
         for corner in &self.corners {
-            filled.list.push(CreaseParticle {
-                position: corner.position.as_vec3(),
-                radius: least(probe, corner.position, &corner.patches),
-                tangent: Vec3::ZERO,
-                patches: corner.patches.clone(),
-            });
+            let (position, radius) = match corner.image {
+                Some(Image { of, pair }) => {
+                    (self.faces[pair].repeated(filled.list[of].position), filled.list[of].radius)
+                }
+                None => {
+                    let radius = least(probe, corner.position, &corner.patches);
+                    (self.pinned(&corner.patches, corner.position.as_vec3()), radius)
+                }
+            };
+            let patches = corner.patches.clone();
+            filled.list.push(CreaseParticle { position, radius, tangent: Vec3::ZERO, patches });
         }
+        // The particles of each curve, in its order, and the points between them.
+        let mut ways: Vec<(Vec<u32>, Range<usize>)> = Vec::with_capacity(self.curves.len());
         for curve in &self.curves {
+            let start = filled.between.len();
+            if let Some(Image { of, pair }) = curve.image {
+                let (numbers, between) = &ways[of];
+                let numbers =
+                    self.repeat_curve(curve, &self.faces[pair], numbers, between.clone(), &mut filled);
+                ways.push((numbers, start..filled.between.len()));
+                continue;
+            }
             let mut points: Vec<CurvePoint> = Vec::with_capacity(curve.points.len() + 1);
             for &position in curve.points.iter().chain(curve.is_closed.then(|| &curve.points[0])) {
                 let radius = f64::from(least(probe, position, &curve.patches));
@@ -74,68 +91,115 @@ impl Creases {
                 });
                 points.push(CurvePoint { position, radius, room });
             }
-            fill_curve(probe, curve, &points, halvings, &mut filled);
+            let numbers = self.fill_curve(probe, curve, &points, halvings, &mut filled);
+            ways.push((numbers, start..filled.between.len()));
         }
         filled
     }
-}
 
-/// Fills a curve of these points, the last of which is the first one again if it is closed.
-fn fill_curve(
-    probe: &mut Probe,
-    curve: &Crease,
-    points: &[CurvePoint],
-    halvings: u32,
-    filled: &mut CreaseParticles,
-) {
-    let room = points[points.len() - 1].room;
-    // A closed curve of two particles would be a line there and back.
-    let least = if curve.is_closed { 3.0 } else { 1.0 };
-    let parts = room.round().max(least) as usize;
-    let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
-    let mut after = 1;
-    let fine = parts << halvings;
-    for k in 0..=fine {
-        let target = room * k as f64 / fine as f64;
-        while after + 1 < points.len() && points[after].room < target {
-            after += 1;
+    /// Repeats a curve with these particles on the opposite face of a cell. Returns the numbers of the images.
+    fn repeat_curve(
+        &self,
+        curve: &Crease,
+        pair: &FacePair,
+        numbers: &[u32],
+        between: Range<usize>,
+        filled: &mut CreaseParticles,
+    ) -> Vec<u32> {
+        let last = numbers.len() - 1;
+        let mut images: Vec<u32> = Vec::with_capacity(numbers.len());
+        for (k, &number) in numbers.iter().enumerate() {
+            let tangent = filled.list[number as usize].tangent;
+            let corner = match k {
+                0 => curve.corners[0],
+                k if k == last => curve.corners[1],
+                _ => None,
+            };
+            if let Some(corner) = corner {
+                filled.list[corner].tangent = tangent;
+                images.push(corner as u32);
+            } else if curve.is_closed && k == last {
+                images.push(images[0]);
+            } else {
+                images.push(filled.list.len() as u32);
+                let CreaseParticle { position, radius, .. } = filled.list[number as usize];
+                let (position, patches) = (pair.repeated(position), curve.patches.to_vec());
+                filled.list.push(CreaseParticle { position, radius, tangent, patches });
+            }
         }
-        let (a, b) = (points[after - 1], points[after]);
-        let tangent = (b.position - a.position).normalize_or_zero().as_vec3();
-        let is_end = k == 0 || k == fine;
-        let corner = if is_end { curve.corners[usize::from(k == fine)] } else { None };
-        if let Some(corner) = corner {
-            filled.list[corner].tangent = tangent;
-            numbers.push(corner as u32);
-            continue;
-        }
-        if curve.is_closed && k == fine {
-            numbers.push(numbers[0]);
-            continue;
-        }
-        let share = ((target - a.room) / (b.room - a.room)).clamp(0.0, 1.0);
-        let (place, radius) = (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
-        // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
-        let reach = a.position.distance(b.position);
-        let found = Meeting::of_branches(probe, curve.patches, place, reach, FADED).filter(|_| !is_end);
-        let position = found.map_or(place, |meeting| meeting.position).as_vec3();
-        if !k.is_multiple_of(1 << halvings) {
-            filled.between.push(position);
-            continue;
-        }
-        numbers.push(filled.list.len() as u32);
-        filled.list.push(CreaseParticle {
-            position,
-            radius: radius as f32,
-            tangent,
-            patches: curve.patches.to_vec(),
-        });
+        filled.between.extend_from_within(between.clone());
+        let start = filled.between.len() - between.len();
+        filled.between[start..].iter_mut().for_each(|p| *p = pair.repeated(*p));
+        filled.add_segments(&images, curve.sides);
+        images
     }
-    filled.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
-    filled.sides.resize(filled.segments.len(), curve.sides);
+
+    /// Fills a curve of these points, the last of which is the first one again if it is closed. Returns the numbers of its particles.
+    fn fill_curve(
+        &self,
+        probe: &mut Probe,
+        curve: &Crease,
+        points: &[CurvePoint],
+        halvings: u32,
+        filled: &mut CreaseParticles,
+    ) -> Vec<u32> {
+        let room = points[points.len() - 1].room;
+        // A closed curve of two particles would be a line there and back.
+        let least = if curve.is_closed { 3.0 } else { 1.0 };
+        let parts = room.round().max(least) as usize;
+        let mut numbers: Vec<u32> = Vec::with_capacity(parts + 1);
+        let mut after = 1;
+        let fine = parts << halvings;
+        for k in 0..=fine {
+            let target = room * k as f64 / fine as f64;
+            while after + 1 < points.len() && points[after].room < target {
+                after += 1;
+            }
+            let (a, b) = (points[after - 1], points[after]);
+            let tangent = (b.position - a.position).normalize_or_zero().as_vec3();
+            let is_end = k == 0 || k == fine;
+            let corner = if is_end { curve.corners[usize::from(k == fine)] } else { None };
+            if let Some(corner) = corner {
+                filled.list[corner].tangent = tangent;
+                numbers.push(corner as u32);
+                continue;
+            }
+            if curve.is_closed && k == fine {
+                numbers.push(numbers[0]);
+                continue;
+            }
+            let share = ((target - a.room) / (b.room - a.room)).clamp(0.0, 1.0);
+            let (place, radius) =
+                (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
+            // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
+            let reach = a.position.distance(b.position);
+            let found = Meeting::of_branches(probe, curve.patches, place, reach, FADED).filter(|_| !is_end);
+            let position = found.map_or(place, |meeting| meeting.position).as_vec3();
+            let position = self.pinned(&curve.patches, position);
+            if !k.is_multiple_of(1 << halvings) {
+                filled.between.push(position);
+                continue;
+            }
+            numbers.push(filled.list.len() as u32);
+            filled.list.push(CreaseParticle {
+                position,
+                radius: radius as f32,
+                tangent,
+                patches: curve.patches.to_vec(),
+            });
+        }
+        filled.add_segments(&numbers, curve.sides);
+        numbers
+    }
 }
 
 impl CreaseParticles {
+    /// Adds the segments between particles that follow each other, with the patches on their left and on their right.
+    fn add_segments(&mut self, numbers: &[u32], sides: [u32; 2]) {
+        self.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.sides.resize(self.segments.len(), sides);
+    }
+
     /// Adds a row for each patch of each particle, patch by patch, to columns that are empty. Returns a unit vector along the crease for
     /// each row.
     pub(in super::super) fn add_rows(&self, probe: &mut Probe, particles: &mut Particles) -> Vec<Vec3> {

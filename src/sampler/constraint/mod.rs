@@ -12,6 +12,7 @@
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
 //!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once.
 
+mod cell;
 mod fill;
 mod ladder;
 mod meeting;
@@ -23,6 +24,7 @@ mod trace;
 use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
+use cell::{FacePair, Image};
 use glam::{DVec3, Vec3};
 pub(super) use ladder::CreaseLadder;
 use meeting::{Meeting, SHARP};
@@ -43,6 +45,8 @@ pub(super) struct Crease {
     corners: [Option<usize>; 2],
     /// Whether the last point is followed by the first.
     is_closed: bool,
+    /// What it repeats on the opposite face of a cell.
+    image: Option<Image>,
 }
 
 /// A point at which creases end.
@@ -51,6 +55,8 @@ pub(super) struct Corner {
     position: DVec3,
     /// The patches that meet there, in ascending order.
     patches: Vec<u32>,
+    /// What it repeats on the opposite face of a cell.
+    image: Option<Image>,
 }
 
 /// The creases and corners of a surface in a box.
@@ -58,6 +64,8 @@ pub(super) struct Corner {
 pub(crate) struct Creases {
     curves: Vec<Crease>,
     corners: Vec<Corner>,
+    /// Opposite faces of a cell with the same creases.
+    faces: Vec<FacePair>,
     /// Number of evaluations that the search took.
     pub(super) evaluations: u64,
 }
@@ -88,6 +96,9 @@ impl Creases {
             }
         }
         creases.follow_from_corners(probe, bounds, step).await;
+        if let Some(cell) = probe.field.unit_cell() {
+            creases.repeat(probe, &cell, step);
+        }
         probe.select(None);
         creases.evaluations = probe.evaluations() - start;
         creases
@@ -98,7 +109,7 @@ impl Creases {
         /// Distance from the corner, in steps, at which the crease is looked for: ten times that within which corners are one.
         const ASIDE: f64 = 1e-2;
         let mut next = 0;
-        while let Some(Corner { position, patches }) = self.corners.get(next).cloned() {
+        while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
             next += 1;
             pause().await;
             for (k, &a) in patches.iter().enumerate() {
@@ -143,7 +154,7 @@ impl Creases {
     fn corner_at(&mut self, position: DVec3, patches: &[u32], slack: f64) -> usize {
         let known = self.corners.iter().position(|corner| corner.position.distance(position) <= slack);
         let index = known.unwrap_or_else(|| {
-            self.corners.push(Corner { position, patches: Vec::new() });
+            self.corners.push(Corner { position, patches: Vec::new(), image: None });
             self.corners.len() - 1
         });
         let own = &mut self.corners[index].patches;

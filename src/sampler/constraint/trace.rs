@@ -70,6 +70,7 @@ pub(super) fn follow<'a>(
             points,
             corners: [first, end],
             is_closed,
+            image: None,
         });
     })
 }

@@ -21,8 +21,8 @@ export const fateOf = (slots, k) => (slots >>> (SLOT_BITS * k)) & (FATES - 1);
 export const NO_LEVEL = 0xffffffff;
 
 /**
- * The columns of a report, one value per particle; `patch` and `particle` are empty without creases. A core has a
- * method of each name.
+ * The columns of a report, one value per particle; `patch` and `particle` are empty without creases, `periodic` unless
+ * opposite faces of the box are the same. A core has a method of each name.
  */
 export const MEASURED = /** @type {const} */ ([
   'valence',
@@ -32,6 +32,7 @@ export const MEASURED = /** @type {const} */ ([
   'component',
   'patch',
   'particle',
+  'periodic',
 ]);
 
 export class Columns {
@@ -80,6 +81,8 @@ export class Columns {
     this.patch = null;
     /** @type {Uint32Array | null} */
     this.particle = null;
+    /** The first row of the particle that it repeats from a lower face of a cell. @type {Uint32Array | null} */
+    this.periodic = null;
     /**
      * Principal curvatures of the first `curved` particles, two values each. They are requested from the core only
      * while they are shown.

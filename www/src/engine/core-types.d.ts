@@ -41,10 +41,6 @@ export type Column = {
   name: string,
   /** Type of the values. */
   kind: ColumnKind,
-  /** Whether the column is known only once the particles are measured. */
-  measured: boolean,
-  /** Whether the column is there only where the surface has creases. */
-  creases: boolean,
 };
 
 /** Type of the values of a column, by its name in PLY. */
@@ -1013,6 +1009,8 @@ export type Report = {
   volume: number | null,
   /** Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one. */
   smallest_angle: number | null,
+  /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same. */
+  pairs: number | null,
   /** Particles with a child that fell outside of the box. */
   border: number,
   /** Why particles lie at the border of the box. */

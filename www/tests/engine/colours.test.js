@@ -310,6 +310,7 @@ describe('colours of particles', () => {
       component: new Uint32Array(3),
       patch: new Uint32Array(0),
       particle: new Uint32Array(0),
+      periodic: new Uint32Array(0),
     });
     const ramp = PALETTES.light.sequential;
     const [first, middle, last] = [ramp[0], ramp[Math.round((ramp.length - 1) / 2)], ramp[ramp.length - 1]];

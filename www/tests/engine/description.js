@@ -25,7 +25,7 @@ const setting = (name, change) => ({
 });
 
 /** @param {string} name @param {Column['kind']} kind @returns {Column} */
-const column = (name, kind, measured = false, creases = false) => ({ name, kind, measured, creases });
+const column = (name, kind) => ({ name, kind });
 
 /** @type {Description} */
 export const description = {
@@ -81,12 +81,13 @@ export const description = {
     ...['nx', 'ny', 'nz', 'radius'].map((name) => column(name, 'float')),
     column('level', 'uint'),
     column('parent', 'int'),
-    column('valence', 'uchar', true),
-    column('nearest', 'float', true),
-    column('residual', 'float', true),
+    column('valence', 'uchar'),
+    column('nearest', 'float'),
+    column('residual', 'float'),
     column('singular', 'uchar'),
-    column('patch', 'uint', false, true),
-    column('particle', 'uint', false, true),
+    column('patch', 'uint'),
+    column('particle', 'uint'),
+    column('periodic', 'uint'),
   ],
   new_parameter: { name: '', label: '', value: 1, min: 0, max: 3, step: 0.01 },
   limits: {

@@ -228,6 +228,7 @@ export function fakeCore({
     energy: () => new Float32Array(count).fill(1),
     patch: () => new Uint32Array(0),
     particle: () => new Uint32Array(0),
+    periodic: () => new Uint32Array(0),
     // The loop leaves these to others.
     describe: () => {
       throw new Error('a core of a few lines does not describe itself');

@@ -85,6 +85,7 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
   component: new Uint32Array(n),
   patch: new Uint32Array(0),
   particle: new Uint32Array(0),
+  periodic: new Uint32Array(0),
 });
 
 /**

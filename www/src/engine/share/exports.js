@@ -4,6 +4,7 @@
  *
  * @module
  */
+import { MEASURED } from '../columns.js';
 import { NO_PARENT, SINGULAR } from '../core-numbers.js';
 
 /** @import { Columns, Description, FileRecord } from '../types.js' */
@@ -39,18 +40,17 @@ const READ = {
   singular: ({ slots }, i) => (slots[i] & SINGULAR ? 1 : 0),
   patch: ({ patch }, i) => patch?.[i],
   particle: ({ particle }, i) => particle?.[i],
+  periodic: ({ periodic }, i) => periodic?.[i],
 };
 
 /**
  * Columns whose values are known; some are known only after the particles were measured, and some only where there are
- * creases.
+ * creases or opposite faces are the same.
  * @param {Columns} columns
  * @param {readonly Column[]} all
  */
-const known = ({ valence, nearest, residual, patch, particle }, all) =>
-  all.filter(
-    ({ measured, creases }) => (!measured || (valence && nearest && residual)) && (!creases || (patch && particle)),
-  );
+const known = (columns, all) =>
+  all.filter(({ name }) => MEASURED.every((column) => column !== name || columns[column]));
 
 /** Size of a value in bytes, and the method that writes it, by the type of the column. */
 const BINARY = {

@@ -9,6 +9,8 @@ import { explain } from '../explain.js';
 const FACES = 'box_faces';
 const THICKNESS = 'thickness';
 const CLOSED = 'closed';
+const CELL = 'box_cell';
+const PERIODIC = 'periodic';
 
 /** @param {Engine} engine @param {Description} description */
 export function createSolid(engine, { settings }) {
@@ -17,19 +19,24 @@ export function createSolid(engine, { settings }) {
     const { label, help } = /** @type {SettingInfo} */ (settings.find((info) => info.name === name));
     return { title: label, text: help };
   };
-  const closed = h(
-    'label',
-    { class: 'check' },
-    h('input', {
-      type: 'checkbox',
-      prop: { checked: () => chosen.value[FACES] === CLOSED },
-      on: {
-        change: ({ currentTarget }) =>
-          currentTarget.checked ? engine.setSetting(FACES, CLOSED) : engine.resetSetting(FACES),
-      },
-    }),
-    'Closed',
-  );
+  const isClosed = () => chosen.value[FACES] === CLOSED;
+  /** A switch between a value of a setting and its default. */
+  const check = (/** @type {string} */ name, /** @type {string} */ value, /** @type {string} */ text) =>
+    h(
+      'label',
+      { class: 'check' },
+      h('input', {
+        type: 'checkbox',
+        prop: { checked: () => chosen.value[name] === value },
+        on: {
+          change: ({ currentTarget }) =>
+            currentTarget.checked ? engine.setSetting(name, value) : engine.resetSetting(name),
+        },
+      }),
+      text,
+    );
+  const closed = check(FACES, CLOSED, 'Closed');
+  const periodic = h('div', { hidden: () => !isClosed() }, check(CELL, PERIODIC, 'Periodic'));
   const wrong = signal('');
   const told = uniqueId('thickness');
   const box = h('input', {
@@ -70,6 +77,7 @@ export function createSolid(engine, { settings }) {
       'div',
       { class: 'section-head' },
       explain(closed, help, { side: 'above' }),
+      explain(periodic, () => ({ ...about(CELL), title: 'Periodic' }), { side: 'above' }),
       explain(thickness, () => about(THICKNESS), { side: 'above' }),
     ),
     h('p', { class: 'fault-line', id: told, role: 'alert', hidden: () => wrong.value === '' }, () => wrong.value),

@@ -70,7 +70,7 @@ export function surfaceKey(engine) {
   const values = parameters?.map(({ name, value }) => [name, value]);
   const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
   const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
-  const solid = [settingOf(engine, 'box_faces'), settingOf(engine, 'thickness')];
+  const solid = ['box_faces', 'box_cell', 'thickness'].map((name) => settingOf(engine, name));
   return JSON.stringify([kind, formula, values, bounds, surface, model, sizes, solid]);
 }
 

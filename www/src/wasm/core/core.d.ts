@@ -106,6 +106,10 @@ export class Core {
      */
     patch(): Uint32Array<ArrayBuffer>;
     /**
+     * The column [`Particles::periodic`].
+     */
+    periodic(): Uint32Array<ArrayBuffer>;
+    /**
      * Positions from particle `from` on, rounded to single precision.
      */
     positions(from: number): Float32Array<ArrayBuffer>;
