@@ -138,6 +138,12 @@ impl Topology {
         self.is_manifold() && self.borders.is_empty()
     }
 
+    /// Whether every edge has two triangles of equal orientation, so that they enclose a volume. They may touch each other at vertices.
+    #[must_use]
+    pub fn encloses(&self) -> bool {
+        self.crowded_edges.is_empty() && self.borders.is_empty()
+    }
+
     /// Sum of the Euler numbers of the components.
     #[must_use]
     pub fn euler(&self) -> i64 {

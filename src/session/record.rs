@@ -78,6 +78,9 @@ impl Session {
             Source::Formula(field) => (field.text().to_owned(), field.parameters(), None),
             Source::Points { info, .. } => (String::new(), [].as_slice(), Some(info.name.clone())),
         };
+        // A map that is collected at once is sorted, which brings a stable sort of 3 kB.
+        let mut values = BTreeMap::new();
+        values.extend(parameters.iter().map(|p| (p.name.clone(), p.value)));
         FileRecord {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             digest: String::new(),
@@ -85,7 +88,7 @@ impl Session {
             surface: self.surface.map(|surface| surface.id.to_owned()),
             model,
             formula,
-            parameters: parameters.iter().map(|p| (p.name.clone(), p.value)).collect(),
+            parameters: values,
             bounds: self.run.bounds(),
             faces: (self.fitting.choice.box_faces == BoxFaces::Closed).then_some(self.clip),
             solid: self.fitting.choice,

@@ -4,6 +4,7 @@ use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::DVec3;
 use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate_particles};
 use marching_particles::particles::Particles;
+use marching_particles::{Bounds, Formula, Settings, sample};
 
 /// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number and about this area, with every
 /// segment of a crease as an edge between two patches.
@@ -51,6 +52,24 @@ fn a_box_is_closed_with_its_edges() {
     }
     // Thinner than the spacing.
     assert_closed("plate", &cuboid([2.0, 1.5, 0.02], 0.1), 2, 1e-6);
+}
+
+#[test]
+fn no_chord_between_creases_is_of_two_patches() {
+    // Faces of the box that the surface nearly touches: three particles that follow each other there are a triangle of either.
+    let quarter = core::f64::consts::FRAC_PI_4;
+    let gyroid = Bounds { min: [-3.0 * quarter; 3], max: [5.0 * quarter; 3] };
+    let sheets = Bounds { min: [0.1623, -0.6704, -1.5473], max: [3.5162, 1.6861, 1.5419] };
+    for (text, bounds, count) in [
+        ("sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)", gyroid, 2900),
+        ("sin(2x) + cos(3y)sin(z) = z/2", sheets, 2500),
+    ] {
+        let solid = Formula::parse(text).expect("a formula").closed_by(&bounds);
+        let sample = sample(solid, &Settings::with_count(count)).expect("there is a surface");
+        let topology = &sample.mesh().topology;
+        assert!(topology.encloses(), "{text}: {:?} {:?}", topology.crowded_edges, topology.borders);
+        assert!(sample.volume().is_some_and(|volume| volume > 0.0), "{text}");
+    }
 }
 
 #[test]

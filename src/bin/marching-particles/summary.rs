@@ -156,7 +156,8 @@ fn figure(row: &ReportRow, value: Option<&Value>) -> String {
 /// A mesh in a line.
 fn mesh_line(mesh: &Mesh) -> String {
     let borders = match mesh.borders + mesh.holes {
-        0 => "closed".to_owned(),
+        0 if mesh.volume.is_some() => "closed".to_owned(),
+        0 => "not a manifold".to_owned(),
         loops => counted(loops, "border loop"),
     };
     let [triangles, components] = [(mesh.triangles, "triangle"), (mesh.components, "component")]

@@ -103,25 +103,22 @@ struct Tie {
 
 impl Ties {
     fn new(base: &mut Base, part: &Part, choices: &[Id], values: &[f64]) -> Self {
-        let mut roots: BTreeMap<Id, Vec<Id>> = BTreeMap::new();
+        let mut of_choice: BTreeMap<Id, Tie> = BTreeMap::new();
         for &id in choices {
             let tied = match base.graph.node(id) {
                 Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
                 Node::Binary(_, a, b) | Node::Smin(a, b, _) => vec![a, b, middle(&mut base.graph, a, b)],
                 _ => Vec::new(),
             };
-            let with = tied.into_iter().map(|tied| base.root_with(part, id, tied)).collect();
-            roots.insert(id, with);
+            let roots = tied.into_iter().map(|tied| base.root_with(part, id, tied)).collect();
+            of_choice.insert(id, Tie { roots, nodes: Vec::new() });
         }
         base.extend(values);
-        let own = |roots: &[Id]| {
-            let mut nodes = base.graph.needed_by(roots);
-            nodes.retain(|id| part.nodes.binary_search(id).is_err());
-            nodes
-        };
-        Self {
-            of_choice: roots.into_iter().map(|(id, roots)| (id, Tie { nodes: own(&roots), roots })).collect(),
+        for tie in of_choice.values_mut() {
+            tie.nodes = base.graph.needed_by(&tie.roots);
+            tie.nodes.retain(|id| part.nodes.binary_search(id).is_err());
         }
+        Self { of_choice }
     }
 }
 

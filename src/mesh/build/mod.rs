@@ -86,7 +86,8 @@ pub struct Triangulation {
 impl Triangulation {
     /// The triangulation that consists of `triangles` over the rows of particles, in slices of work. They must be an oriented manifold
     /// whose borders are borders of the surface.
-    pub(crate) async fn known(triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
+    pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
+        creases::separate(&mut triangles, particles);
         let agreed = triangles.len();
         Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &particles.twins).await
     }
@@ -97,7 +98,7 @@ impl Triangulation {
     pub fn volume(&self, particles: &Particles) -> Option<f64> {
         let at = |i: u32| particles.position[i as usize].as_dvec3();
         let of = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c))) / 6.0;
-        (!self.triangles.is_empty() && self.topology.is_closed()).then(|| self.triangles.iter().map(of).sum())
+        (!self.triangles.is_empty() && self.topology.encloses()).then(|| self.triangles.iter().map(of).sum())
     }
 
     /// Smallest angle of the triangles over these particles, in degrees, those at borders among them; 0 for one without an area. `None`
@@ -223,6 +224,8 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         pause().await;
         creases::repeat(&mut whole.triangles, &mut whole.unfilled, faces, &particles.patch);
     }
+    pause().await;
+    creases::separate(&mut whole.triangles, particles);
     whole.counted(particles.len(), &Particles::joints(&particles.twins, &particles.segments)).await
 }
 
