@@ -78,7 +78,7 @@ const ROOMS: [Room; 4] = [
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
             ("web/values", &["answer"]),
-            ("web/core", &["field", "export", "sampler", "session"]),
+            ("web/core", &["field", "particles", "export", "sampler", "session"]),
             ("web/points", &["field", "pointcloud"]),
             ("web/lesson", &["math", "field", "paper", "lesson", "session"]),
             ("web/render", &["render"]),

@@ -87,6 +87,8 @@ pub struct Chapter {
     pub fissions: u32,
     /// Particles that have died.
     pub deaths: u32,
+    /// Evaluations of the field in the run until the end of the chapter.
+    pub evaluations: u64,
     /// Whether the chapter is over.
     pub is_over: bool,
 }
@@ -103,6 +105,8 @@ pub struct LessonProgress {
     pub particles: u32,
     /// Evaluations of the field so far.
     pub evaluations: u64,
+    /// Pushes of one particle by another that were summed for a move so far.
+    pub interactions: u64,
     /// Relaxation steps, or iterations of a particle system, that are over.
     pub steps: u32,
     /// Whether a particle system has come to rest.
@@ -238,6 +242,7 @@ impl Lesson {
             events: self.events_so_far(),
             particles: self.course.run.particles.len() as u32,
             evaluations: self.course.run.surface.evaluations,
+            interactions: self.course.run.interactions,
             steps: self.course.run.steps,
             is_settled: self.course.cursor.quiet >= QUIET,
             is_capped: self.course.run.is_capped,
@@ -359,6 +364,7 @@ impl Lesson {
             largest_move: None,
             fissions: 0,
             deaths: 0,
+            evaluations: self.course.run.surface.evaluations,
             is_over: false,
         });
     }
@@ -398,6 +404,7 @@ impl Lesson {
         }
         chapter.events = log.len() as u32;
         chapter.after = after as u32;
+        chapter.evaluations = self.course.run.surface.evaluations;
         chapter.is_over = is_over;
     }
 

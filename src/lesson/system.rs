@@ -105,6 +105,7 @@ impl Course {
                 } else {
                     forces::interact(&mut self.dynamics, (i, own), (j, other));
                 }
+                self.run.interactions += 1;
             }
         }
     }

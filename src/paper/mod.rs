@@ -78,6 +78,8 @@ pub struct PaperRun<O> {
     pub(crate) is_capped: bool,
     /// Relaxation steps done.
     pub(crate) steps: u32,
+    /// Pushes of one particle by another that were summed for a move so far.
+    pub(crate) interactions: u64,
     /// Repulsion on each particle in the relaxation step under way, in the tangent plane.
     forces: Vec<DVec3>,
     /// Longest move in the step under way, in radii.
@@ -102,6 +104,7 @@ impl<O: Observer> PaperRun<O> {
             waiting: VecDeque::new(),
             is_capped: false,
             steps: 0,
+            interactions: 0,
             forces: Vec::new(),
             largest_move: 0.0,
             seen,

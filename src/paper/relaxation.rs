@@ -78,19 +78,20 @@ impl<O: Observer> PaperRun<O> {
 
     /// Begins a step: sums the repulsion on every particle where it is.
     pub(crate) fn begin_step(&mut self) {
-        let energy = self.sum_repulsion();
+        let (energy, pushes) = self.sum_repulsion();
+        self.interactions += pushes;
         self.largest_move = 0.0;
         self.seen.step_begins(self.steps + 1, step_size(&self.rules), energy);
     }
 
-    /// Fills the forces and returns the energy per particle.
+    /// Fills the forces and returns the energy per particle, and the number of pushes.
     ///
     /// # Differs from the paper
     ///
     /// Pairs on two sheets do not count.
-    fn sum_repulsion(&mut self) -> f64 {
+    fn sum_repulsion(&mut self) -> (f64, u64) {
         self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
-        let mut energy = 0.0;
+        let (mut energy, mut pushes) = (0.0, 0);
         let mut forces = core::mem::take(&mut self.forces);
         forces.clear();
         for i in 0..self.particles.len() as u32 {
@@ -99,12 +100,13 @@ impl<O: Observer> PaperRun<O> {
                 force += DVec3::from(push.force);
                 // Each pair is met twice.
                 energy += 0.5 * push.energy;
+                pushes += 1;
             }
             let normal = self.particles[i as usize].n();
             forces.push(force - normal * normal.dot(force));
         }
         self.forces = forces;
-        energy / self.particles.len() as f64
+        (energy / self.particles.len() as f64, pushes)
     }
 
     /// Returns the repulsion of a particle by each of its neighbours at their present positions.
@@ -147,7 +149,7 @@ impl<O: Observer> PaperRun<O> {
     /// Ends a step: the energy where the particles are now.
     pub(crate) fn end_step(&mut self) {
         self.steps += 1;
-        let energy = self.sum_repulsion();
+        let (energy, _) = self.sum_repulsion();
         self.seen.step_ends(self.steps, energy, self.largest_move);
     }
 }

@@ -133,6 +133,9 @@ pub struct Coverage {
     pub cover_local: f64,
     /// Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal.
     pub quant: f64,
+    /// Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
+    /// whose discs touch.
+    pub uncovered: f64,
     /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
     /// none has its middle in a wider one. None where `cover` is undefined.
     pub wide_holes: Option<usize>,
@@ -140,7 +143,7 @@ pub struct Coverage {
 
 impl Default for Coverage {
     fn default() -> Self {
-        Self { cover: NONE, cover_local: NONE, quant: NONE, wide_holes: None }
+        Self { cover: NONE, cover_local: NONE, quant: NONE, uncovered: NONE, wide_holes: None }
     }
 }
 

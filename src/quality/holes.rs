@@ -46,6 +46,8 @@ pub(super) struct Cover<'a> {
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
+    /// Radius of the disc of each point, in the order given; none if they are not known.
+    pub(super) discs: &'a [f32],
     /// Radius of a hole in the perfect lattice, d_hex/√3.
     pub(super) lattice: f32,
     /// Largest leash of a sample whose surroundings are gathered at once: farther ones hold too many points.
@@ -66,6 +68,14 @@ impl Cover<'_> {
     /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if there are no wanted radii.
     pub(super) fn ideal(&self, points: &[u32]) -> f32 {
         self.wanted.map_or(self.lattice, |wanted| wanted.hole_between(points))
+    }
+
+    /// Whether a sample lies outside the discs of the corners of its triangle.
+    fn is_bare(&self, p: Vec3, triangle: &[u32]) -> bool {
+        triangle.iter().all(|&i| {
+            let radius = self.discs.get(self.tree.origin[i as usize] as usize).copied().unwrap_or(f32::NAN);
+            self.tree.position[i as usize].distance_squared(p) > radius * radius
+        })
     }
 
     /// Returns the squared distance from `p` to the nearest of some points.
@@ -102,6 +112,8 @@ pub(super) struct HoleSearch {
     /// Sum of the squared distances of the random samples, and their number.
     sum_sq: f64,
     samples: usize,
+    /// Random samples outside the discs around them.
+    bare: usize,
     /// The wide holes, and those that were the largest when they were found.
     pub(super) found: Vec<Hole>,
 }
@@ -118,6 +130,11 @@ impl HoleSearch {
     /// Returns the mean squared distance of the random samples; NaN if there are none.
     pub(super) fn mean_sq(&self) -> f64 {
         self.sum_sq / self.samples as f64
+    }
+
+    /// Returns the share of the random samples that lies outside the discs; NaN if there are none.
+    pub(super) fn bare(&self) -> f64 {
+        self.bare as f64 / self.samples as f64
     }
 
     /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or relative to the ideal one.
@@ -155,6 +172,7 @@ impl HoleSearch {
                 self.widen(p, gap_sq, ideal_sq);
                 self.sum_sq += f64::from(gap_sq);
                 self.samples += 1;
+                self.bare += usize::from(cover.is_bare(p, triangle));
             }
         }
         batch.clear();
@@ -347,6 +365,7 @@ mod tests {
                 mesh: &mesh,
                 border: None,
                 wanted: None,
+                discs: &[],
                 lattice: 1.0,
                 wide: 1.0,
             };

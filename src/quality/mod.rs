@@ -263,8 +263,16 @@ async fn figures_of(
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
-        let cover =
-            Cover { tree: &points.tree, creases: &points.creases, mesh, border, wanted, lattice, wide };
+        let cover = Cover {
+            tree: &points.tree,
+            creases: &points.creases,
+            mesh,
+            border,
+            wanted,
+            discs: options.discs,
+            lattice,
+            wide,
+        };
         measured.holes = measure_holes(&cover, field, bounds, options, &mut figures).await;
     }
     DistinctFigures { figures, ..measured }
@@ -395,6 +403,9 @@ async fn measure_holes(
     }
     let mean_sq = search.mean_sq() * (1.0 - uncovered.share) + uncovered.sum_sq;
     figures.coverage.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
+    if !options.discs.is_empty() {
+        figures.coverage.uncovered = search.bare() * (1.0 - uncovered.share) + uncovered.share;
+    }
     search.found.extend(uncovered.found);
     let (wide, reported) = places::distinct(search.found).await;
     figures.coverage.wide_holes = Some(wide);

@@ -52,6 +52,8 @@ pub struct MeasureOptions<'a> {
     pub euler: Option<i64>,
     /// Wanted radii.
     pub sizes: Sizes<'a>,
+    /// Radius of the disc of each point, for [`Coverage::uncovered`](super::figures::Coverage::uncovered); without them it is NaN.
+    pub discs: &'a [f32],
     /// The patches, where the surface has creases. Each column is then one of rows.
     pub patches: Patches<'a>,
     /// Smallest number of random samples for [`Coverage::quant`](super::figures::Coverage::quant). There is at least one for each
@@ -68,6 +70,7 @@ impl Default for MeasureOptions<'_> {
             area: None,
             euler: None,
             sizes: Sizes::None,
+            discs: &[],
             patches: Patches::default(),
             samples: 65_536,
             seed: 0,

@@ -68,7 +68,7 @@ impl ParticleCopy {
     }
 
     /// [`quality::measure`], a slice at a time.
-    async fn measure(
+    pub(super) async fn measure(
         &self,
         field: &mut dyn Field,
         bounds: &Bounds,
@@ -80,7 +80,8 @@ impl ParticleCopy {
         };
         let Self { patch, twins, segments, sides, .. } = self;
         let patches = quality::Patches { patch, twins, segments, sides };
-        let options = quality::MeasureOptions { sizes, patches, ..quality::MeasureOptions::default() };
+        let discs = &self.radius;
+        let options = quality::MeasureOptions { sizes, discs, patches, ..quality::MeasureOptions::default() };
         quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
     }
 }

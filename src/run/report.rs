@@ -7,7 +7,7 @@ use crate::field::Field;
 use crate::math::Forest;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
-use crate::sampler::{Blur, FateCounts, Sampled, Search, StopReason};
+use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
 use crate::slices;
 use glam::Vec3;
 use serde::{Serialize, Serializer};
@@ -184,6 +184,22 @@ impl<F: Field> Run<F> {
         let measured = slices::advance(self.measuring.work.as_mut()?.as_mut(), budget)?;
         self.measuring.work = None;
         Some(self.take(measured))
+    }
+
+    /// Measures particles that something else has placed on the surface, one row each, and keeps that as the last measurement. Sizes
+    /// are what [`Sampling`] says; positions are counted from the origin of the run's own particles.
+    pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
+        self.measuring.stop();
+        let bounds = self.local_bounds();
+        let placed = ParticleCopy::of(placed);
+        self.measuring.measured = slices::complete(placed.measure(&mut self.field, &bounds, sampling));
+        let measured = &self.measuring.measured;
+        Measures {
+            quality: (!measured.valence.is_empty()).then_some(measured.figures),
+            quality_before: None,
+            nearest_histogram: measured.histogram.clone(),
+            places: measured.places.clone(),
+        }
     }
 
     /// Keeps the measurements and returns the report.

@@ -3,7 +3,8 @@
 use super::values::{answer, to_js};
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
-use crate::sampler::Settings;
+use crate::particles::Particles;
+use crate::sampler::{Sampling, Settings};
 use crate::session::{
     Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
 };
@@ -24,6 +25,7 @@ const TYPES: &str = r"import type {
   MeshAnswer,
   Progress,
   FileRecord,
+  Measures,
   Report,
   SolvedModel,
   Start,
@@ -194,6 +196,27 @@ impl Core {
     #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
     pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
         self.session.measure(budget).map(|report| to_js(&report))
+    }
+
+    /// Measures particles that something else has placed on the present surface, vectors of three floats: `Measures`. The columns of
+    /// the last report are then theirs.
+    #[wasm_bindgen(unchecked_return_type = "Measures")]
+    pub fn measure_placed(
+        &mut self,
+        positions: &[f32],
+        normals: &[f32],
+        radii: &[f32],
+        is_adaptive: bool,
+    ) -> JsValue {
+        let vectors = |floats: &[f32]| floats.as_chunks().0.iter().copied().map(Vec3::from_array).collect();
+        let placed = Particles {
+            position: vectors(positions),
+            normal: vectors(normals),
+            radius: radii.to_vec(),
+            ..Particles::default()
+        };
+        let sampling = if is_adaptive { Sampling::Adaptive } else { Sampling::Uniform };
+        to_js(&self.session.run.measure_placed(&placed, sampling))
     }
 
     /// Natural neighbours per particle, as of the last report.

@@ -121,9 +121,13 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     let (points, bounds) = lattice(HEXAGONAL, scale, half);
     let cell = scale * scale * HEXAGONAL[1];
     let normals = vec![Vec3::Z; points.len()];
-    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &with_area(points.len(), cell));
+    let discs = vec![(0.5 * scale) as f32; points.len()];
+    let options = MeasureOptions { discs: &discs, ..with_area(points.len(), cell) };
+    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
     let f = report.figures;
     println!("{f:#?}");
+    // Discs that touch cover π/(2√3) of the plane.
+    close("uncovered", f.coverage.uncovered, 1.0 - core::f64::consts::PI / 12.0_f64.sqrt(), 3e-3);
     close("d_hex", f.d_hex, scale, 1e-9);
     close("area", f.area, cell * points.len() as f64, 1e-9);
     close("err_max", f.accuracy.err_max, 0.0, 0.0);

@@ -725,3 +725,19 @@ mod solids {
         assert_eq!(run(&mut session, &sized(500), u32::MAX), StopReason::Constant);
     }
 }
+
+#[test]
+fn particles_placed_elsewhere_are_measured_as_those_of_a_run_are() {
+    for settings in [Settings::with_count(1_500), Settings::with_count(1_500).adaptive()] {
+        let mut session = Session::new();
+        session.start(&settings).unwrap();
+        while session.run.step(10_000).stop_reason.is_none() {}
+        let report = session.report();
+        let mut meter = Session::new();
+        let placed = meter.run.measure_placed(session.run.particles(), settings.sampling);
+        // Undefined figures are NaN, which equals nothing.
+        assert_eq!(format!("{:?}", placed.quality), format!("{:?}", report.measures.quality), "{settings:?}");
+        assert_eq!(placed.places, report.measures.places);
+        assert!(placed.quality.is_some_and(|figures| figures.coverage.uncovered < 0.2));
+    }
+}

@@ -75,8 +75,9 @@ const MAY_USE = {
   engine: ['engine'],
   // Drawings of the lesson, for every page that shows them.
   figures: ['ui/*', ...ENGINE_FACE],
-  // The lesson's page stands beside the first: it has its own runs and draws with the painter of the engine.
-  learn: ['figures', 'ui/*', 'engine/lesson', 'engine/view', ...ENGINE_FACE],
+  // The lesson's page stands beside the first: it has its own runs, which the sampler's meter measures, and draws with the
+  // painter of the engine.
+  learn: ['figures', 'ui/*', 'engine/lesson', 'engine/sampling/meter', 'engine/view', ...ENGINE_FACE],
   // Shared parts of the interface; the panels' folders do not know each other.
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],

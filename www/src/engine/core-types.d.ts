@@ -232,6 +232,9 @@ export type Figures = {
   cover_local: number,
   /** Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal. */
   quant: number,
+  /** Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
+  * whose discs touch. */
+  uncovered: number,
   /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
   * none has its middle in a wider one. None where `cover` is undefined. */
   wide_holes: number | null,
@@ -390,6 +393,8 @@ export type LessonChapter = {
   fissions: number,
   /** Particles that have died. */
   deaths: number,
+  /** Evaluations of the field in the run until the end of the chapter. */
+  evaluations: number,
   /** Whether the chapter is over. */
   is_over: boolean, } & ({ "kind": "level",
   /** Number of the front. */
@@ -687,6 +692,8 @@ export type LessonProgress = {
   particles: number,
   /** Evaluations of the field so far. */
   evaluations: number,
+  /** Pushes of one particle by another that were summed for a move so far. */
+  interactions: number,
   /** Relaxation steps, or iterations of a particle system, that are over. */
   steps: number,
   /** Whether a particle system has come to rest. */
@@ -813,6 +820,18 @@ export type MathNode = {
 
 /** Element of MathML Core with text. */
 export type MathToken = "mi" | "mn" | "mo";
+
+/** Figures of quality of a run. */
+export type Measures = {
+  /** Quality of the present particles; none if there are none, or where they were not measured. */
+  quality: Figures | null,
+  /** Quality of the particles after the front, before the relaxation; none where nothing was relaxed. */
+  quality_before: Figures | null,
+  /** Nearest-neighbour distances over the ideal ones; in an adaptive run, over the diameters of the particles. */
+  nearest_histogram: Histogram,
+  /** The crowded pairs and wide holes of the present particles. */
+  places: Places,
+};
 
 /** A formula in which every mistake of a kind is corrected. */
 export type Mended = {

@@ -35,6 +35,8 @@ export type CoreProgress = import('./core-types.js').Progress;
 export type StopReason = CoreProgress['stop_reason'];
 /** The figures of a finished run. */
 export type CoreReport = import('./core-types.js').Report;
+/** The figures of quality of some particles. */
+export type Measures = import('./core-types.js').Measures;
 /** Requests for a mesh file, and what is told of the particles in files. */
 export type FileRequest = import('./core-types.js').FileRequest;
 export type FileRecord = import('./core-types.js').FileRecord;

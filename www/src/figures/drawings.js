@@ -2,7 +2,7 @@
 
 import { dot } from '../engine/vector.js';
 import { s } from '../ui/dom.js';
-import { formatCount } from '../ui/format.js';
+import { formatCount, formatFixed } from '../ui/format.js';
 import { inPlane, scaledBy, slotPlace } from './geometry.js';
 import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
@@ -195,12 +195,21 @@ export function lens({ subject, place }, profile, child) {
   );
 }
 
+/** From here on, in radii, a landing beside the plane is named: its cross is then seen off the curve. */
+const ASIDE = 0.02;
+
+/** Says that Newton's method has left the plane of a drawing, if it has. @param {Profile} profile */
+export const asideWords = ({ newtonAside }) =>
+  newtonAside > ASIDE ? `, ${formatFixed(newtonAside, 2)} r beside this plane: the cross is its shadow` : '';
+
 /** @param {Opened} opened @param {Profile} profile @param {Child} child */
 function profileWords({ subject }, profile, child) {
   const words = [`The plane of slot ${child.slot} from the side: the surface and the circle of radius 2r`];
   if (child.iterates.length > 0) words.push(`${formatCount(child.iterates.length)} places tried on the circle`);
   if (child.landed) words.push(`the child lands ${inRadii(child.landed.distance, subject.radius)} from the particle`);
   if (isSearched(child) && profile.newtonDistance !== null)
-    words.push(`Newton’s method would land ${inRadii(profile.newtonDistance, subject.radius)} away`);
+    words.push(
+      `Newton’s method would land ${inRadii(profile.newtonDistance, subject.radius)} away${asideWords(profile)}`,
+    );
   return words.join('; ');
 }

@@ -2,7 +2,7 @@
  * Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots.
  */
 import { NO_PARENT } from '../engine/core-numbers.js';
-import { distance, triple, unit, vec } from '../engine/vector.js';
+import { along, cross, distance, dot, triple, unit, vec } from '../engine/vector.js';
 import { inPlane, lensOf } from './geometry.js';
 import { momentAt } from './moment.js';
 
@@ -79,6 +79,7 @@ async function profile(client, { place, normal, radius }, { start, iterates, lan
     section,
     newton,
     newtonDistance: last && lands ? distance(last.position, place) : null,
+    newtonAside: last && lands ? Math.abs(dot(along(last.position, place, -1), cross(direction, normal))) / radius : 0,
     lens,
   };
 }

@@ -45,6 +45,8 @@ export interface Profile {
   section: Float32Array;
   newton: LessonIterate[];
   newtonDistance: number | null;
+  /** how far the landing lies beside the plane that is drawn, in radii */
+  newtonAside: number;
   lens: { centre: Point; half: number; section: Float32Array } | null;
 }
 /** A particle with its events, and what its drawings show. */

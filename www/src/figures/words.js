@@ -102,11 +102,11 @@ export function tell({ event, slot, children, evaluations }, subject) {
         ? 'Its tangent plane is laid. A seed has no parent, so slot 0 points anywhere; the others follow every 60°.'
         : `Its tangent plane is laid. Slot 0 points to its parent, ${particleOf(subject.parent)}; the others follow every 60°.`;
     case 'slot':
-      return `Child ${event.slot} starts on the circle of radius 2r around the particle, at ${theta(0)} = ${inDegrees(event.theta_rad)}.`;
+      return `The child of slot ${event.slot} starts on the circle of radius 2r around the particle, at ${theta(0)} = ${inDegrees(event.theta_rad)}.`;
     case 'iterate':
       return tellIterate(event);
     case 'landed':
-      return `Child ${event.slot} lands on the surface, ${inRadii(event.distance, radius)} from its parent.`;
+      return `The child of slot ${event.slot} lands on the surface, ${inRadii(event.distance, radius)} from its parent.`;
     case 'gathered': {
       const { length } = event.neighbours;
       const near = `${plural(length, 'particle')} within ${inRadii(event.reach, radius, 0)}`;
@@ -119,7 +119,7 @@ export function tell({ event, slot, children, evaluations }, subject) {
         ? `The front of another seed is met at ${particleOf(event.particle)}.`
         : `The front meets itself at ${particleOf(event.particle)}, out of step.`;
     case 'added':
-      return `A new particle, number ${formatCount(event.particle)}, is added where child ${slot} landed. It waits its turn.`;
+      return `A new particle, number ${formatCount(event.particle)}, is added where the child of slot ${slot} landed. It waits its turn.`;
     case 'fate':
       return tellFate(event);
     case 'arc':
@@ -145,13 +145,13 @@ function tellIterate({ slot, step, theta_rad: angle, value, bracket_rad: bracket
   const between = bracket
     ? ` f changes its sign between ${inDegrees(bracket[0])} and ${inDegrees(bracket[1])}, and the search stays there.`
     : '';
-  return `Child ${slot} at ${where}: f = ${formatSignificant(value, 3)}.${between}`;
+  return `The child of slot ${slot} at ${where}: f = ${formatSignificant(value, 3)}.${between}`;
 }
 
 /** @param {Extract<LessonEvent, {type: 'compared'}>} event @param {number} radius */
 function tellComparison({ slot, against, distance, limit, corresponds }, radius) {
-  if (against === null || distance === null) return `Child ${slot} has no particle of its sheet near it.`;
-  const far = `Child ${slot} is ${inRadii(distance, radius)} from ${particleOf(against)}, its nearest.`;
+  if (against === null || distance === null) return `The child of slot ${slot} has no particle of its sheet near it.`;
+  const far = `The child of slot ${slot} is ${inRadii(distance, radius)} from ${particleOf(against)}, its nearest.`;
   const bound = inRadii(limit, radius, 2);
   return corresponds
     ? `${far} That is within ${bound}: the two correspond.`
@@ -175,16 +175,16 @@ function tellPush(event, radius) {
     }
     case 'start':
       return event.tangent === null
-        ? `Child ${event.slot} starts on the circle of its parent. There its radius would be ${inRadii(event.radius, radius)}.`
-        : `Child ${event.slot} starts beside the last one, towards the point I on that one’s circle. There its radius would be ${inRadii(event.radius, radius)}.`;
+        ? `The child of slot ${event.slot} starts on the circle of its parent. There its radius would be ${inRadii(event.radius, radius)}.`
+        : `The child of slot ${event.slot} starts beside the last one, towards the point I on that one’s circle. There its radius would be ${inRadii(event.radius, radius)}.`;
     case 'push':
-      return `Child ${event.slot} is pushed away from its parent, to where its radius is ${inRadii(event.radius, radius)}.`;
+      return `The child of slot ${event.slot} is pushed away from its parent, to where its radius is ${inRadii(event.radius, radius)}.`;
     case 'push_on_circle':
       return event.overlap > 0
-        ? `Child ${event.slot} is pushed along the circle. It still overlaps another by ${formatFixed(100 * event.overlap, 1)} %.`
-        : `Child ${event.slot} is pushed along the circle. It overlaps none any more.`;
+        ? `The child of slot ${event.slot} is pushed along the circle. It still overlaps another by ${formatFixed(100 * event.overlap, 1)} %.`
+        : `The child of slot ${event.slot} is pushed along the circle. It overlaps none any more.`;
     case 'room': {
-      const angles = `Child ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free.`;
+      const angles = `The child of slot ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free.`;
       return event.fits ? `${angles} There is room.` : `${angles} There is no room: this space is done.`;
     }
   }
@@ -197,19 +197,19 @@ function tellFate({ slot, fate, particle }) {
     case 'parent':
       return `Slot 0 holds the parent, ${other}.`;
     case 'added':
-      return `Child ${slot} became ${other}.`;
+      return `The child of slot ${slot} became ${other}.`;
     case 'matched':
       return particle === null
-        ? `Child ${slot} has no room and is not added.`
-        : `Child ${slot} matched ${other}, so nothing is added.`;
+        ? `The child of slot ${slot} has no room and is not added.`
+        : `The child of slot ${slot} matched ${other}, so nothing is added.`;
     case 'outside':
-      return `Child ${slot} lies outside the box and is left out.`;
+      return `The child of slot ${slot} lies outside the box and is left out.`;
     case 'not_converged':
-      return `Child ${slot} found no point of the surface on its circle and is left out.`;
+      return `The child of slot ${slot} found no point of the surface on its circle and is left out.`;
     case 'undefined':
-      return `f is undefined where child ${slot} was looked for. It is left out.`;
+      return `f is undefined where the child of slot ${slot} was looked for. It is left out.`;
     case 'capped':
-      return `Child ${slot} is left out: the run has reached its limit on particles.`;
+      return `The child of slot ${slot} is left out: the run has reached its limit on particles.`;
     default:
       return '';
   }
@@ -258,12 +258,12 @@ function brief(event) {
 }
 
 /**
- * The place on the range, such as "Level 3 of 21, particle 47, child 2: matched particle 31".
+ * The place on the range, such as "Level 3 of 21, particle 47, slot 2: matched particle 31".
  * @param {Moment} moment @param {Subject} subject
  */
 export function valueText({ event, slot, isNow }, { level, levels, particle }) {
   const of = levels === undefined ? '' : ` of ${formatCount(levels)}`;
-  const child = isNow && slot !== null && !(event.type === 'fate' && event.fate === 'parent') ? `, child ${slot}` : '';
+  const child = isNow && slot !== null && !(event.type === 'fate' && event.fate === 'parent') ? `, slot ${slot}` : '';
   return `Level ${formatCount(level)}${of}, particle ${formatCount(particle)}${child}: ${brief(event)}`;
 }
 

@@ -8,20 +8,20 @@ import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
 import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
-import { figuresOf } from './pair.js';
+import { namedFigures } from './score.js';
 import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.js';
 import { WHAT_IFS } from './whatifs.js';
 
-/** @import { Control, Lab, LabRun, Setup, Stops, Task, Work } from './types.js' */
+/** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
 
-/** A run as plain numbers. @param {string} label @param {LabRun} run */
-const recordOf = (label, run) => ({
+/** A run as plain numbers. @param {string} label @param {LabRun} run @param {Score} [score] */
+const recordOf = (label, run, score) => ({
   label,
   settings: run.settings,
   radius: run.radius,
   particles: run.progress.particles,
   evaluations: run.progress.evaluations,
-  figures: Object.fromEntries(figuresOf(run)),
+  figures: score ? namedFigures(score) : null,
   new_per_level: ringsOf(run.placed),
   fates_per_level: run.chapters.filter(({ kind }) => kind === 'level').map(({ fates }) => fates),
   energy_per_step: run.chapters.filter(({ kind }) => kind === 'relaxation').map(({ energy }) => energy),
@@ -38,8 +38,9 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     const own = uniqueId('answer');
     return { question, box: h('textarea', { id: own, class: 'answer-box', rows: 3 }), id: own };
   });
-  const save = (/** @type {'json' | 'csv'} */ format) => {
+  const save = async (/** @type {'json' | 'csv'} */ format) => {
     const { pair } = bench;
+    await pair.settled;
     const labels = [bench.setup().left, bench.setup().right];
     /** @type {Work} */
     const work = {
@@ -47,7 +48,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
       surface,
       answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
       predictions: stops.predictions(),
-      runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run)),
+      runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run, pair.scores?.[k])),
     };
     const text = format === 'json' ? `${JSON.stringify(work, null, 2)}\n` : tableOf(work);
     const type = format === 'json' ? 'application/json' : 'text/csv;charset=utf-8';
@@ -64,8 +65,8 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     h(
       'div',
       { class: 'controls' },
-      button({ class: 'primary', press: () => save('json') }, 'Save as JSON'),
-      button({ press: () => save('csv') }, 'Save as CSV'),
+      button({ class: 'primary', press: () => void save('json') }, 'Save as JSON'),
+      button({ press: () => void save('csv') }, 'Save as CSV'),
       h('span', { class: 'quiet' }, 'With your answers, your predictions and both runs. Nothing is sent.'),
     ),
   );

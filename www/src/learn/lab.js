@@ -3,11 +3,12 @@
  * own while its events may still be asked for, and a run that is only looked at leaves its particles and frees the
  * worker.
  */
+import { Meter } from '../engine/sampling/meter.js';
 import { RESIDUAL } from '../figures/particle.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
- * @import { LessonClient } from '../engine/types.js'
+ * @import { LessonClient, LessonParticles } from '../engine/types.js'
  * @import { FormulaSurface } from '../ui/types.js'
  * @import { LabRun } from './types.js'
  */
@@ -36,6 +37,10 @@ export class NoSurface extends Error {}
 
 export class Lab {
   #open;
+  #meter = new Meter();
+
+  /** @type {WeakMap<LessonParticles, ReturnType<Meter['measure']>>} */
+  #measures = new WeakMap();
 
   /** @type {Map<string, Promise<LabRun>>} */
   #runs;
@@ -99,6 +104,20 @@ export class Lab {
   }
 
   /**
+   * Measures particles by the meter of the sampler's report. `isAdaptive`: each against its own size.
+   * @param {LessonParticles} particles @param {boolean} isAdaptive
+   */
+  measure(particles, isAdaptive) {
+    const { formula, parameters, bounds } = this.surface;
+    const measures =
+      this.#measures.get(particles) ??
+      this.#meter.measure({ formula, declare: parameters, bounds }, particles, isAdaptive);
+    this.#measures.set(particles, measures);
+    measures.catch(() => this.#measures.delete(particles));
+    return measures;
+  }
+
+  /**
    * Returns a run, which is made once for the same settings.
    * @param {Partial<LessonSettings>} change  of the usual settings
    * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius
@@ -140,9 +159,10 @@ export class Lab {
     try {
       const progress = await client.start(this.surface, settings);
       const chapters = await client.ask('chapters', { first: 0 });
-      const rest = chapters.find(({ kind }) => kind === 'relaxation');
+      const front = chapters.filter(({ kind }) => kind !== 'relaxation');
+      const rest = chapters[front.length];
       const placed = await client.ask('seek', { event: rest?.first_event ?? Infinity });
-      const placing = await evaluationsOf(client, rest?.first_event ?? progress.events, progress.evaluations);
+      const placing = front.at(-1)?.evaluations ?? 0;
       const end = await client.ask('seek', { event: Infinity });
       if (end.radii.length === 0) throw new NoSurface('The formula has no surface in its box.');
       return { client, settings, radius, chapters, progress, placed, end, placing };
@@ -153,20 +173,4 @@ export class Lab {
       if (!keep) client.close();
     }
   }
-}
-
-/**
- * Events that are looked at for the last particle that was done: more than one particle and the filling of gaps have.
- */
-const LOOK_BACK = 400;
-
-/**
- * Evaluations of f before an event: what the last particle that was done says.
- * @param {LessonClient} client @param {number} event @param {number} fallback
- */
-async function evaluationsOf(client, event, fallback) {
-  const first = Math.max(0, event - LOOK_BACK);
-  const events = await client.ask('events', { first, count: event - first });
-  const done = events.findLast(({ type }) => type === 'done');
-  return done?.type === 'done' ? done.evaluations : fallback;
 }

@@ -1,15 +1,15 @@
 /** Two runs side by side, seen by one camera. */
 import { triple } from '../engine/vector.js';
 import { fill, h } from '../ui/dom.js';
-import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
-import { spread } from '../ui/neighbours.js';
-import { tableOf } from '../ui/table.js';
+import { formatFixed, formatSignificant } from '../ui/format.js';
 import { reasonOf } from './figure.js';
 import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
+import { scoreOf } from './score.js';
+import { createScorecard } from './scorecard.js';
 
-/** @import { Colouring, Lab, LabRun, Side } from './types.js' */
+/** @import { Colouring, Lab, LabRun, Score, ScorePlace, Side } from './types.js' */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
@@ -49,35 +49,9 @@ function legendOf(colouring, [least, most]) {
   }
 }
 
-/** A mean and its deviation, to three decimals. @param {{ mean: number, deviation: number }} values */
-const around = ({ mean, deviation }) =>
-  `${formatFixed(mean, 3)} ± ${formatFixed(Math.round(deviation * 1000) / 1000, 3)}`;
-
-/** Returns the figures of a run that are compared. @param {LabRun} run */
-export function figuresOf(run) {
-  const { particles, evaluations } = run.progress;
-  const nearest = spread(nearestDistances(run.end));
-  const isEven = run.settings.sampling !== 'adaptive';
-  const unit = isEven ? 'in 2r' : 'over the sum of both radii';
-  /** @type {[string, string][]} */
-  const figures = [
-    ['Particles', formatCount(particles)],
-    ['Evaluations of f for each', formatSignificant(evaluations / Math.max(1, particles), 3)],
-    [`Nearest neighbour, ${unit}`, around(nearest)],
-    [`Closest pair, ${unit}`, formatFixed(nearest.least, 3)],
-  ];
-  if (isEven) figures.push(['Distance to the parent, in 2r', around(spread(parentDistances(run.placed, run.radius)))]);
-  return figures;
-}
-
-/** @param {readonly [Side, Side]} sides @param {readonly [LabRun, LabRun]} runs */
-function comparisonOf(sides, runs) {
-  const [left, right] = runs.map(figuresOf);
-  // A run with one size has more figures. Beside a run with many sizes, only the figures of both are compared.
-  const names = left.length < right.length ? left : right;
-  const rows = names.map(([name], k) => [name, left[k][1], right[k][1]]);
-  return tableOf({ class: 'compare', head: ['', ...sides.map((side) => side.label)], rows });
-}
+/** The score of a run at its end. @param {Lab} lab @param {LabRun} run */
+const scoreAtEnd = (lab, { end, progress, settings }) =>
+  scoreOf(lab, end, { evaluations: progress.evaluations, isAdaptive: settings.sampling === 'adaptive' });
 
 /**
  * @param {Lab} lab @param {{ bare?: boolean }} [how]  `bare`: pictures alone, since figures would tell which is which
@@ -94,7 +68,7 @@ export function createPair(lab, { bare = false } = {}) {
   }
   const captions = pictures.map(() => h('figcaption', null));
   const legend = h('div');
-  const table = h('div', { class: 'compare-box' });
+  const scorecard = createScorecard(pointOut);
   const status = h('p', { class: 'figure-status', role: 'status' });
   const element = h(
     'div',
@@ -106,20 +80,37 @@ export function createPair(lab, { bare = false } = {}) {
     ),
     status,
     legend,
-    bare ? null : table,
+    bare ? null : scorecard.element,
   );
+  /**
+   * Turns both to a place, and rings it in the picture that has it.
+   * @param {ScorePlace | null} place @param {number} side
+   */
+  function pointOut(place, side) {
+    for (const [k, picture] of pictures.entries()) picture.ring(k === side ? place : null);
+    if (place) orbit.turnTo(place.normal);
+  }
   let asked = 0;
   return {
     element,
     /** @type {readonly [LabRun, LabRun] | null} */
     runs: null,
+    /** Fulfilled once what is shown is measured. */
+    settled: Promise.resolve(),
+    /** The scores of the runs, once they are measured. @type {readonly Score[] | null} */
+    scores: null,
     /** Tells where a particle is pressed; null for no one. @param {((place: number[]) => void) | null} onPick */
     pickWith(onPick) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
     /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
-    async show(sides, colouring) {
+    show(sides, colouring) {
+      this.settled = this.compare(sides, colouring);
+      return this.settled;
+    },
+    /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
+    async compare(sides, colouring) {
       asked += 1;
       const mine = asked;
       status.textContent = 'Running both';
@@ -128,7 +119,9 @@ export function createPair(lab, { bare = false } = {}) {
         const right = await sides[1].make(lab);
         if (mine !== asked) return;
         this.runs = [left, right];
+        this.scores = null;
         orbit.fitTo(left.end);
+        if (mine === 1) orbit.faceFront(left.placed);
         const all = [...left.end.radii, ...right.end.radii];
         /** @type {[number, number]} */
         const radii = [Math.min(...all), Math.max(...all)];
@@ -137,7 +130,16 @@ export function createPair(lab, { bare = false } = {}) {
           captions[k].textContent = sides[k].label;
         }
         if (!bare) fill(legend, legendOf(colouring, radii));
-        fill(table, comparisonOf(sides, this.runs));
+        pointOut(null, 0);
+        status.textContent = bare ? '' : 'Measuring both';
+        if (bare) return;
+        const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];
+        if (mine !== asked) return;
+        this.scores = scores;
+        scorecard.tell(
+          sides.map(({ label }) => label),
+          scores,
+        );
         status.textContent = '';
       } catch (error) {
         if (mine === asked) status.textContent = reasonOf(error);

@@ -3,7 +3,7 @@
 import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
-import { draw, footOf } from '../ui/chart.js';
+import { draw, footOf, scaleOf } from '../ui/chart.js';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
@@ -86,7 +86,10 @@ export function createChart({ hidden, chart, label, words, press = () => {} }) {
   return h(
     'div',
     { class: 'chart', hidden },
-    h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => draw(chart())),
+    h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => [
+      draw(chart()),
+      h('span', { class: 'plot-most', 'aria-hidden': 'true' }, scaleOf(chart())),
+    ]),
     h('div', { class: 'plot-foot', 'aria-hidden': 'true' }, () => footOf(chart())),
     h('p', { class: 'figure-count' }, words),
   );

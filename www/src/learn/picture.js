@@ -4,15 +4,17 @@
  */
 import { signal } from '@preact/signals-core';
 import { ballOf, Camera, projected, viewOf } from '../engine/view/camera.js';
+import { anglesOf } from '../engine/view/facing.js';
 import { rgbFromPacked } from '../engine/view/oklab.js';
 import { Painter } from '../engine/view/painter.js';
 import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
-import { endsWith, h, live } from '../ui/dom.js';
+import { endsWith, h, live, reducedMotion } from '../ui/dom.js';
+import { bodyOf, frontNormal, shareFacing } from './front.js';
 
 /**
  * @import { Bounds, LessonParticles, Signal } from '../engine/types.js'
  * @import { Palette, View } from '../engine/view/types.js'
- * @import { Mark, Scene } from './types.js'
+ * @import { Mark, Scene, ScorePlace } from './types.js'
  */
 
 const KEY_STEP_RAD = 0.14;
@@ -21,6 +23,8 @@ const KEY_ZOOM = 1.2;
 const DRAG_RAD = 3.4;
 /** A press that moves by less, in pixels, points at something. */
 const PRESS_PX = 5;
+/** The camera follows a level of which a smaller share faces it. */
+const IN_SIGHT = 0.35;
 /** Canvas pixels for a page pixel. */
 const FINENESS = 2;
 
@@ -41,13 +45,13 @@ addEventListener('afterprint', () => {
 /** A camera that one or several pictures share. */
 export class Orbit {
   #home;
+  #frame = 0;
 
   /** @param {Bounds} bounds */
   constructor(bounds) {
     this.ball = ballOf(bounds);
     this.camera = new Camera();
-    this.camera.calm = true;
-    this.#home = { ...this.camera.state };
+    this.#home = { yaw: this.camera.state.yaw, pitch: this.camera.state.pitch };
     this.camera.fit(this.ball, true);
     /** Counts the changes. */
     this.turned = signal(0);
@@ -55,8 +59,40 @@ export class Orbit {
 
   /** @param {(camera: Camera) => void} act */
   change(act) {
+    this.camera.rest();
     act(this.camera);
     this.turned.value += 1;
+  }
+
+  /** Turns to a side of the surface. @param {readonly number[]} normal  of that side */
+  turnTo(normal) {
+    this.camera.calm = reducedMotion();
+    this.camera.turnTo(anglesOf(normal, this.camera.state.yaw));
+    let lastMs = performance.now();
+    const frame = (/** @type {number} */ nowMs) => {
+      const goesOn = this.camera.step(Math.max(0, nowMs - lastMs) / 1000);
+      lastMs = nowMs;
+      this.turned.value += 1;
+      this.#frame = goesOn ? requestAnimationFrame(frame) : 0;
+    };
+    cancelAnimationFrame(this.#frame);
+    frame(lastMs);
+  }
+
+  /** Looks at the side on which the front begins, also after a reset. @param {LessonParticles} particles */
+  faceFront(particles) {
+    this.#home = anglesOf(frontNormal(particles, this.ball));
+    this.reset();
+  }
+
+  /**
+   * Follows the front: turns to the discs of a level that face away.
+   * @param {LessonParticles} particles @param {number} level
+   */
+  follow(particles, level) {
+    const { eye } = viewOf(this.camera.state, 1, 1, this.ball);
+    if (shareFacing(particles, eye, level, level) < IN_SIGHT)
+      this.turnTo(frontNormal(particles, this.ball, level, level));
   }
 
   /** Fits the particles instead of the box, once they are known. @param {LessonParticles} particles */
@@ -79,7 +115,7 @@ export class Orbit {
 
   reset() {
     this.change((camera) => {
-      camera.set(this.#home);
+      camera.set({ ...camera.state, ...this.#home });
       camera.fit(this.ball, true);
     });
   }
@@ -105,6 +141,8 @@ export class Picture {
     this.#onPick = null;
     /** @type {Signal<Scene | null>} */
     this.scene = signal(null);
+    /** What is ringed. @type {Signal<ScorePlace | null>} */
+    this.ringed = signal(null);
     this.#canvas = h('canvas', { class: 'picture-canvas' });
     this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.#canvas);
     this.pickWith(onPick ?? null);
@@ -116,7 +154,7 @@ export class Picture {
     observer.observe(this.element);
     endsWith(this.element, () => observer.disconnect());
     live(this.element, () => {
-      void [this.scene.value, this.#size.value, this.orbit.turned.value, isDark.value];
+      void [this.scene.value, this.ringed.value, this.#size.value, this.orbit.turned.value, isDark.value];
       // Printing does not wait for a frame.
       if (printing.value) this.#draw();
       else this.#ask();
@@ -149,6 +187,11 @@ export class Picture {
     this.scene.value = scene;
   }
 
+  /** Rings a place; null: none. @param {ScorePlace | null} place */
+  ring(place) {
+    this.ringed.value = place;
+  }
+
   #view() {
     const { width, height } = this.#size.peek();
     return viewOf(this.orbit.camera.state, width, height, this.orbit.ball);
@@ -165,14 +208,19 @@ export class Picture {
     const [w, high] = [width * FINENESS, height * FINENESS];
     if (painter.width !== w || painter.height !== high) painter.resize(w, high);
     const { positions, normals, radii, levels } = particles;
-    painter.write(0, positions, normals, radii, levels, scene.colours(palette), -Infinity);
-    painter.set_count(scene.count ?? radii.length);
+    const body = bodyOf(scene.body ?? particles);
+    const under = body.radii.length;
+    painter.write(0, body.positions, body.normals, body.radii, body.levels, paleOf(palette, under), -Infinity);
+    painter.write(under, positions, normals, radii, levels, scene.colours(palette), -Infinity);
+    painter.set_count(under + (scene.count ?? radii.length));
     painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
     const view = this.#view();
     painter.set_view(view.packed);
     // The ground is left out, so that the picture stands on that of the page or of the paper.
     painter.draw(0, true);
-    this.#drawMarks(painter.context, scene.marks ?? [], view);
+    const { places = [], normal = [], radius = 0 } = this.ringed.peek() ?? {};
+    const rings = places.map((place) => ({ place, normal, radius, kind: /** @type {const} */ ('ring') }));
+    this.#drawMarks(painter.context, [...(scene.marks ?? []), ...rings], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }
 
@@ -206,7 +254,8 @@ export class Picture {
     const view = this.#view();
     let best = null;
     let nearest = Infinity;
-    for (let i = 0; i < (scene.count ?? radii.length); i += 1) {
+    // One that is not drawn yet is a place, too.
+    for (let i = 0; i < radii.length; i += 1) {
       const place = positions.subarray(3 * i, 3 * i + 3);
       const at = projected(view, place);
       if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
@@ -275,6 +324,16 @@ export class Picture {
 
 /** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */
 const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye[k] - place[k]) * normal[k], 0) > 0;
+
+/**
+ * Colours of the body below the discs: halfway from a plain one to the ground.
+ * @param {Palette} palette @param {number} count
+ */
+function paleOf({ plain, ground }, count) {
+  const [from, to] = [rgbFromPacked(plain), rgbFromPacked(ground)];
+  const bytes = from.map((value, k) => Math.round(127.5 * (value + to[k])));
+  return new Uint32Array(count).fill(((255 << 24) | (bytes[2] << 16) | (bytes[1] << 8) | bytes[0]) >>> 0);
+}
 
 /** Colours by generation level. @param {LessonParticles} particles */
 export const byLevel = ({ levels }) =>

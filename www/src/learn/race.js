@@ -5,15 +5,15 @@ import { kindOf } from '../engine/lesson/client.js';
 import { opponentOf, Race } from '../engine/lesson/race.js';
 import { button } from '../ui/button.js';
 import { fill, h, s } from '../ui/dom.js';
-import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
-import { spread } from '../ui/neighbours.js';
-import { tableOf } from '../ui/table.js';
+import { formatCount, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
 import { reasonOf } from './figure.js';
 import { USUAL } from './lab.js';
 import { nearestDistances } from './measure.js';
 import { createSelect } from './parts.js';
 import { byValue, Orbit, Picture } from './picture.js';
+import { scoreOf } from './score.js';
+import { createScorecard } from './scorecard.js';
 
 /**
  * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
@@ -172,6 +172,7 @@ class Course {
       // The race may have been given up or paused during the run.
       if (isOver()) return;
       orbit.fitTo(end);
+      orbit.faceFront(end);
       const done = own.start(this.#lab.surface, [settings, opponentOf(settings)]);
       if (this.isPaused.peek()) own.pause();
       await done;
@@ -179,8 +180,23 @@ class Course {
       if (isOver()) return;
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
       const ratio = own.lanes[1].workMs / own.lanes[0].workMs;
-      fill(this.result, resultOf(names, own.lanes, ends), marksOf(kind, ratio));
+      const scorecard = createScorecard((place, side) => {
+        for (const [k, { picture }] of lanes.entries()) picture.ring(k === side ? place : null);
+        if (place) orbit.turnTo(place.normal);
+      });
+      fill(this.result, scorecard.element, marksOf(kind, ratio));
       this.stop();
+      this.status.value = 'Measuring both';
+      const scores = [];
+      for (const [k, { progress }] of own.lanes.entries())
+        scores.push(
+          await scoreOf(this.#lab, ends[k], {
+            evaluations: progress?.evaluations ?? 0,
+            isAdaptive: kind === 'adaptive',
+          }),
+        );
+      scorecard.tell(names, scores);
+      if (!this.race.peek()) this.status.value = '';
     } catch (error) {
       if (isOver() || kindOf(error) === 'given_up') return;
       this.stop();
@@ -207,28 +223,6 @@ function raceOn(lanes) {
     },
   });
   return race;
-}
-
-/** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly LessonParticles[]} ends */
-function resultOf(names, lanes, ends) {
-  const even = ends.map((particles) => spread(nearestDistances(particles)));
-  const of = (/** @type {(k: number) => string} */ write) => [0, 1].map(write);
-  const progress = lanes.map((lane) => lane.progress);
-  const rows = [
-    ['Seconds of work', ...of((k) => formatSeconds(lanes[k].workMs / 1000))],
-    ['Particles', ...of((k) => formatCount(ends[k].radii.length))],
-    ['Rounds', ...of((k) => formatCount(progress[k]?.steps))],
-    [
-      'Evaluations of f for each',
-      ...of((k) => formatSignificant((progress[k]?.evaluations ?? 0) / Math.max(1, ends[k].radii.length), 3)),
-    ],
-    [
-      'Nearest neighbour, over the sum of the radii',
-      ...of((k) => `${formatFixed(even[k].mean, 3)} ± ${formatFixed(even[k].deviation, 3)}`),
-    ],
-    ['Closest pair, likewise', ...of((k) => formatFixed(even[k].least, 3))],
-  ];
-  return tableOf({ class: 'compare', head: ['', ...names], rows });
 }
 
 /** Returns the place of a ratio on the axis, 0 to 1. @param {number} ratio */

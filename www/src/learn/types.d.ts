@@ -39,9 +39,17 @@ export interface Prediction {
 export type Guessed = { stop: string; question: string; guess: string | number | null; answer: string };
 /** A place that is marked, if its side is in view. */
 export type Mark = { place: ArrayLike<number>; normal: ArrayLike<number>; radius: number; kind: 'ring' | 'cross' };
+/** What a run costs: for each particle, and in rounds. `others`: particles of the other method. */
+export interface Cost {
+  particles: number;
+  others: number;
+  rows: { name: string; evaluations: number; pushes: number; rounds: number }[];
+}
 /** The content of a picture. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
 export interface Scene {
   particles: LessonParticles;
+  /** those that the pale body below the discs is made of; else the same */
+  body?: LessonParticles;
   count?: number;
   colours: (palette: Palette) => Uint32Array;
   marks?: readonly Mark[];
@@ -60,6 +68,18 @@ export interface LabRun {
   placed: LessonParticles;
   end: LessonParticles;
   placing: number;
+}
+/** A hole or a pair: its middle or its two particles. `radius`: of the hole, or of a particle. */
+export type ScorePlace = { places: readonly (readonly number[])[]; radius: number; normal: readonly number[] };
+/** The figures that are compared; null where one is undefined. */
+export type ScoreFigures = Record<'six' | 'hole' | 'uncovered' | 'pair' | 'count' | 'evaluations', number | null>;
+export type Score = ScoreFigures & { places: { hole: ScorePlace | null; pair: ScorePlace | null } };
+/** One of them. `best`: the value that is best. */
+export interface ScoreRow {
+  key: keyof ScoreFigures;
+  name: string;
+  best: number;
+  write: (value: number) => string;
 }
 /** The colouring of the two pictures. */
 export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';

@@ -145,7 +145,7 @@ export const WHAT_IFS = [
     look: 'A hole that is wide enough for a particle can be given one before the relaxation.',
     colouring: 'nearest',
     ...setting('gaps', [
-      ['leave', 'Left'],
+      ['leave', 'Left open'],
       ['fill', 'Filled'],
     ]),
   },

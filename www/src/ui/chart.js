@@ -10,18 +10,11 @@ import { formatCount } from './format.js';
 /** Sums of a stack at each place. @param {Drawn['rows']} rows */
 const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
 
-/** Ends of the scale. @param {Drawn} chart @returns {[number, number]} */
-function endsOf({ kind, rows }) {
-  const values = sums(rows);
-  const most = Math.max(...values, 1e-12);
-  if (kind === 'bars') return [0, most];
-  const least = Math.min(...values);
-  // A line that does not change lies in the middle.
-  return most > least ? [least, most] : [0, 2 * most];
-}
+/** The end of the scale, which begins at 0: what falls by a tenth is drawn so. @param {Drawn} chart */
+const mostOf = ({ rows, guide = [] }) => Math.max(...sums(rows), ...guide, 1e-12);
 
 /** The largest value in words. @param {Drawn} chart */
-export const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
+export const scaleOf = (chart) => chart.format(mostOf(chart));
 
 /** Returns the line below a chart: its first and last place, and its fates if they are several. @param {Drawn} chart */
 export function footOf({ rows, first, ends: named }) {
@@ -34,15 +27,15 @@ export function footOf({ rows, first, ends: named }) {
 
 /** @param {Drawn} chart */
 export function draw(chart) {
-  const { kind, rows, first, at, ideal } = chart;
+  const { kind, rows, first, at, ideal, guide = [] } = chart;
   const places = rows[0].counts.length;
-  const [low, high] = endsOf(chart);
-  const y = (/** @type {number} */ value) => +(1 - 0.94 * ((value - low) / (high - low))).toFixed(4);
+  const high = mostOf(chart);
+  const y = (/** @type {number} */ value) => +(1 - 0.94 * (value / high)).toFixed(4);
   const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
   if (at !== null && at >= first && at < first + places)
     svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));
   if (kind === 'line') {
-    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${(0.06 + 0.9 * y(value)).toFixed(4)}`);
+    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${y(value)}`);
     svg.append(s('path', { class: 'chart-line', d: `M${points.join('L')}` }));
     svg.append(s('path', { class: 'chart-dots', d: points.map((point) => `M${point}h0`).join('') }));
     return svg;
@@ -56,6 +49,10 @@ export function draw(chart) {
     });
     svg.append(s('path', { class: `fate-${fate}`, d: d.join('') }));
   }
+  if (guide.length > 0)
+    svg.append(
+      s('path', { class: 'chart-ideal', d: `M${guide.map((value, k) => `${k + 0.5} ${y(value)}`).join('L')}` }),
+    );
   if (ideal !== undefined) svg.append(s('path', { class: 'chart-ideal', d: `M${ideal * places} 0V1` }));
   return svg;
 }

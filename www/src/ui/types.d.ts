@@ -145,6 +145,8 @@ export interface Drawn {
   format: (value: number) => string;
   /** what stands below its ends, in place of the numbers of the places */
   ends?: string[];
+  /** values of a dashed line, from the first place on */
+  guide?: readonly number[];
   /** where the ideal is, as a share of the width */
   ideal?: number;
 }

@@ -195,6 +195,9 @@ export function fakeCore({
       return column(from, 2, Float32Array);
     },
     component: () => new Uint32Array(count),
+    measure_placed: () => {
+      throw new Error('not here');
+    },
     /** @param {number} budget */
     measure(budget) {
       calls.push('measure');

@@ -15,6 +15,7 @@ const progressOf = (events, done = false) => ({
   events,
   particles: 1,
   evaluations: events,
+  interactions: 0,
   is_capped: false,
   is_settled: false,
   steps: 0,

@@ -2,6 +2,7 @@
 import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.js';
 import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
+import { bestOf, ROWS, scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
 import { seedAt } from '../../src/learn/whatifs.js';
@@ -166,4 +167,37 @@ test('a table of the work quotes what needs it and starts no formula', () => {
     'run 1,new_per_level,"[1,6]"',
     '',
   ]);
+});
+
+test('of two figures the better one is marked, unless they are written alike', () => {
+  const row = (/** @type {string} */ key) => ROWS.filter((known) => known.key === key)[0];
+  expect(bestOf([0.894, 0.739], row('six'))).toBe(0);
+  expect(bestOf([1.23, 1.17], row('hole'))).toBe(1);
+  expect(bestOf([1.08, 0.97], row('count'))).toBe(1);
+  expect(bestOf([0.7141, 0.7139], row('pair'))).toBe(-1);
+  expect(bestOf([null, 13], row('evaluations'))).toBe(-1);
+});
+
+test('a score is of the report’s own figures, of particles of many sizes of those against each size', async () => {
+  const quality = { six: 0.9, cover: 1.2, cover_local: 1.3, uncovered: 0.1, rho: 0.8, overlap_min: 0.7, area: 4 };
+  const places = {
+    holes: [{ position: [0.9, 0, 0], radius: 0.4, ratio: 1.2 }],
+    pairs: [{ particles: [0, 2], ratio: 0.8 }],
+  };
+  const lab = /** @type {any} */ ({ measure: async () => ({ quality, places }) });
+  const some = particles([
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+  ]);
+  const even = await scoreOf(lab, some, { evaluations: 30, isAdaptive: false });
+  expect(even).toMatchObject({ six: 0.9, hole: 1.2, uncovered: 0.1, pair: 0.8, evaluations: 10 });
+  // Three hexagons around discs of radius 0.5 on an area of 4.
+  expect(even.count).toBeCloseTo((3 * 2 * Math.sqrt(3) * 0.25) / 4);
+  expect(even.places.hole).toMatchObject({ places: [[0.9, 0, 0]], radius: 0.4, normal: [1, 0, 0] });
+  expect(even.places.pair?.places).toEqual([
+    [0, 0, 0],
+    [0, 1, 0],
+  ]);
+  expect(await scoreOf(lab, some, { evaluations: 30, isAdaptive: true })).toMatchObject({ hole: 1.3, pair: 0.7 });
 });

@@ -117,7 +117,14 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   await bench.getByLabel('What changes').selectOption('law');
   await bench.getByLabel('Right', { exact: true }).selectOption('one_size');
   await expect(bench.getByRole('columnheader', { name: 'One size for all' })).toBeVisible({ timeout: 60_000 });
-  await expect(bench.getByRole('row', { name: /^Nearest neighbour, over the sum of both radii/ })).toBeVisible();
+  // The press on a hole turns both pictures to it.
+  const turned = await fingerprint(left);
+  await bench
+    .getByRole('row', { name: /^Largest hole/ })
+    .getByRole('button')
+    .last()
+    .click();
+  await expect.poll(() => fingerprint(left)).not.toBe(turned);
   await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
   // A card shows what the paper says and what the program does.
   await page.getByRole('button', { name: 'Show both: Who comes next' }).click();

@@ -77,7 +77,7 @@ test('a particle is followed by the keyboard; words, drawings, algorithm and tra
     await page.keyboard.press('ArrowLeft');
     await expect(range(page)).toHaveAttribute(
       'aria-valuetext',
-      /^Level 0 of \d+, particle 0, child 5: added particle 6$/,
+      /^Level 0 of \d+, particle 0, slot 5: added particle 6$/,
     );
     await expect(panel(page).locator('.algorithm [aria-current=step]')).toHaveText(
       'otherwise add it, and let it wait its turn',
@@ -95,7 +95,7 @@ test('a particle is followed by the keyboard; words, drawings, algorithm and tra
     ]);
     const text = await readFile(await file.path(), 'utf8');
     expect(text).toContain('Surface: x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, a = 1, b = 0.7, c = 0.5');
-    expect(text).toContain('A new particle, number 6, is added where child 5 landed.');
+    expect(text).toContain('A new particle, number 6, is added where the child of slot 5 landed.');
     expect(text.match(/lands on the surface, 2\.000 r from its parent/g)).toHaveLength(6);
   });
 
@@ -114,7 +114,7 @@ test('a particle is followed by the keyboard; words, drawings, algorithm and tra
     const told = panel(page).locator('.follow-told');
     for (let k = 0; k < 80 && !/are free/.test((await told.textContent()) ?? ''); k += 1)
       await page.keyboard.press('ArrowRight');
-    await expect(told).toHaveText(/^Child 1 takes φ = [\d.]+°; τ = [\d.]+° are free\. There is/);
+    await expect(told).toHaveText(/^The child of slot 1 takes φ = [\d.]+°; τ = [\d.]+° are free\. There is/);
     await expect(panel(page).locator('.drawing .taken')).toBeVisible();
     await expect(panel(page).locator('.drawing .free')).toBeVisible();
     expect(await panel(page).locator('.drawing .step').count()).toBeGreaterThan(2);
@@ -248,7 +248,7 @@ test('the place is part of the link, and one that is not there leads to the near
   await page.keyboard.press('Shift+ArrowRight');
   await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 1: taken/);
   for (const key of ['ArrowRight', 'ArrowRight']) await page.keyboard.press(key);
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, child 1: starts/);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, slot 1: starts/);
   const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   expect(JSON.parse(Buffer.from(new URL(link).hash.split('.')[2], 'base64url').toString()).view).toMatchObject({
     grain: 'event',
@@ -258,7 +258,7 @@ test('the place is part of the link, and one that is not there leads to the near
   await expect(undo).toHaveAttribute('aria-disabled', 'true');
   await page.goto('about:blank');
   await open(page, { width: 1280, height: 800, hash: new URL(link).hash });
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, child 1: starts/);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, slot 1: starts/);
   await expect(page.getByRole('radio', { name: 'Event' })).toBeChecked();
   const far = Buffer.from(JSON.stringify({ view: { grain: 'event', follow: [999999, 3] } })).toString('base64url');
   await page.goto('about:blank');

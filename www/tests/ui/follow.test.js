@@ -114,16 +114,16 @@ describe('the moment of an event', () => {
 
 describe('the words', () => {
   test('name level, particle, child and what happens', () => {
-    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3 of 21, particle 47, child 2: matched particle 31');
+    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3 of 21, particle 47, slot 2: matched particle 31');
     expect(valueText(momentAt(events, 0), subject)).toBe('Level 3 of 21, particle 47: taken from the queue');
-    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3 of 21, particle 47, child 1: θ₁ = −0.72°');
+    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3 of 21, particle 47, slot 1: θ₁ = −0.72°');
     expect(valueText(momentAt(events, 9), subject)).toBe('Level 3 of 21, particle 47: parent particle 20');
-    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3 of 21, particle 47, child 1: added as particle 74');
+    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3 of 21, particle 47, slot 1: added as particle 74');
   });
 
   test('tell each event with its lengths in radii', () => {
     expect(told(1)).toContain('Slot 0 points to its parent, particle 20');
-    expect(told(5)).toBe('Child 1 lands on the surface, 2.000\u00a0r from its parent.');
+    expect(told(5)).toBe('The child of slot 1 lands on the surface, 2.000\u00a0r from its parent.');
     expect(told(4)).toContain('f changes its sign between −5.73° and 5.73°');
     expect(told(8)).toBe('1 particle within 4\u00a0r: the children are compared with it.');
     expect(told(10)).toContain('2.000\u00a0r from particle 31, its nearest. That is more than 1.40\u00a0r');
@@ -259,10 +259,10 @@ describe('an adaptive particle', () => {
       expect(lineOf(event, ADAPTIVE), event.type).toBeGreaterThanOrEqual(0);
     }
     const say = (/** @type {number} */ at) => tell(momentAt(sized, at), parent);
-    expect(say(8)).toBe('Child 1 takes φ = 60.0°; τ = 180.0° are free. There is room.');
+    expect(say(8)).toBe('The child of slot 1 takes φ = 60.0°; τ = 180.0° are free. There is room.');
     expect(say(7)).toContain('It overlaps none any more.');
     expect(say(13)).toContain('There is no room');
-    expect(say(14)).toBe('Child 2 has no room and is not added.');
+    expect(say(14)).toBe('The child of slot 2 has no room and is not added.');
   });
 
   test('has discs at their true distances, and arcs of their width', () => {

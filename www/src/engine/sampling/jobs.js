@@ -9,7 +9,7 @@
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FieldAnswer } from '../types.js'
- * @import { FromWorker, Job, SampleJob } from './types.js'
+ * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
  */
 
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
@@ -24,6 +24,19 @@ function setField(core, { field, points }) {
   if (!points) return core.set_field(field);
   const { info, bounds } = points.info;
   return core.set_points(points.field, { info, bounds: field.bounds ?? bounds });
+}
+
+/**
+ * Measures particles that something else has placed. The core takes their field, so it must be one that samples
+ * nothing.
+ * @param {Core} core @param {Extract<ToWorker, {type: 'measure'}>} question
+ * @returns {FromWorker}
+ */
+export function measured(core, { request, field, placed: { positions, normals, radii }, isAdaptive }) {
+  const answer = core.set_field(field);
+  if (!answer.ok) return { type: 'measured', request, error: answer.error };
+  const measures = core.measure_placed(positions, normals, radii, isAdaptive);
+  return { type: 'measured', request, measures: { ...measures, energy: core.energy(), valence: core.valence() } };
 }
 
 export class Jobs {

@@ -9,11 +9,13 @@ import type {
   CoreProgress,
   Description,
   FieldAnswer,
+  FieldFault,
   FieldOk,
   FieldRequest,
   Figures,
   FileRecord,
   FileRequest,
+  Measures,
   Report,
   Seconds,
   Settings,
@@ -46,7 +48,8 @@ export type Job = SampleJob | RelaxJob;
  * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it
  * is sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page
  * draws a mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the
- * mesh as a file, once no job is left. The first message is `core`, or `no_core` if the core could not be loaded.
+ * mesh as a file, once no job is left. `measure` measures particles that the sampler has not placed: a worker that is
+ * asked has no jobs. The first message is `core`, or `no_core` if the core could not be loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
@@ -55,9 +58,14 @@ export type ToWorker =
   | { type: 'curvature'; on: boolean }
   | { type: 'mesh'; on: boolean }
   | { type: 'export'; request: number; file: Partial<FileRequest> }
+  | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
   | { type: 'drawn'; id: number }
   | { type: 'provoke'; fault: Fault };
+/** Particles that the sampler has not placed: vectors of three floats. */
+export type PlacedColumns = { positions: Float32Array; normals: Float32Array; radii: Float32Array };
+/** Figures, places and columns as those of a report. */
+export type PlacedMeasures = Measures & { energy: Float32Array; valence: Uint8Array };
 /** Faults that tests provoke. */
 export type Fault = 'panic' | 'hang' | 'overflow';
 /**
@@ -109,6 +117,8 @@ export type FromWorker =
   | DoneMessage
   | ReportMessage
   | { type: 'file'; request: number; bytes: Uint8Array<ArrayBuffer> | null }
+  | { type: 'measured'; request: number; measures: PlacedMeasures }
+  | { type: 'measured'; request: number; error: FieldFault }
   | { type: 'crashed'; id: number; message: string; stack: string };
 /**
  * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the

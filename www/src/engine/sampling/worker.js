@@ -7,7 +7,7 @@
 import init, { Core } from '../../wasm/core/core.js';
 import { crashWords } from '../bundle/crash.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
-import { Jobs } from './jobs.js';
+import { Jobs, measured } from './jobs.js';
 import { join, write } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
@@ -36,6 +36,8 @@ let curvature = false;
 let mesh = false;
 /** Files that the page waits for. @type {Extract<ToWorker, {type: 'export'}>[]} */
 const files = [];
+/** Particles of others that wait to be measured. @type {Extract<ToWorker, {type: 'measure'}>[]} */
+const placed = [];
 let pumping = false;
 let dead = false;
 const crashOf = crashWords();
@@ -117,11 +119,16 @@ async function pump() {
 }
 
 /**
- * Makes the mesh or a file that the page has asked for since the last job.
+ * Measures what others have placed, or makes the mesh or a file that the page has asked for since the last job.
  * @param {Core} ours
  * @returns whether there was anything to do
  */
 async function serve(ours) {
+  const question = placed.shift();
+  if (question) {
+    post(measured(ours, question));
+    return true;
+  }
   const { held } = memory;
   const isDrawn = mesh && held > 0 && memory.meshed !== held;
   if (!isDrawn && files.length === 0) return false;
@@ -177,6 +184,10 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'export':
       files.push(data);
+      void pump();
+      break;
+    case 'measure':
+      placed.push(data);
       void pump();
       break;
     case 'stop':

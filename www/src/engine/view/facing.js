@@ -20,8 +20,16 @@ const STEEPEST_RAD = 0.9;
  */
 export function facing({ yaw, pitch }, [x, y, z]) {
   const seen = x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
-  if (!(seen < FACING)) return null;
-  // The rotation takes the shorter way.
+  return seen < FACING ? anglesOf([x, y, z], yaw) : null;
+}
+
+/**
+ * Returns the camera angles that face a normal.
+ * @param {Iterable<number>} normal  of length 1
+ * @param {number} [yaw]  present one: the rotation takes the shorter way, and from straight above none
+ * @returns {Angles}
+ */
+export function anglesOf([x, y, z], yaw = 0) {
   const way = Math.hypot(x, y) > 1e-3 ? Math.atan2(y, x) - yaw : 0;
   return {
     yaw: yaw + Math.atan2(Math.sin(way), Math.cos(way)),

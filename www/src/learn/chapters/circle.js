@@ -1,5 +1,5 @@
 /** The search on the circle and Newton's method, side by side in the plane of one slot. */
-import { lens, profileOf } from '../../figures/drawings.js';
+import { asideWords, lens, profileOf } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { inRadii, tell } from '../../figures/words.js';
@@ -52,7 +52,8 @@ export async function circle({ lab, stops }) {
     told.textContent = tell(moment, subject);
     fill(box, profileOf(opened, { ...shown, newtonDistance: isOpen ? shown.newtonDistance : null }, child));
     const enlarged = isOpen ? lens(opened, shown, child) : null;
-    const newton = shown.newtonDistance === null ? 'no landing' : inRadii(shown.newtonDistance, subject.radius);
+    const newton =
+      shown.newtonDistance === null ? 'no landing' : inRadii(shown.newtonDistance, subject.radius) + asideWords(shown);
     fill(
       side,
       told,

@@ -1,58 +1,84 @@
-/** The chapter on the cost of placing and of relaxing, in evaluations of f. */
+/** The chapter on the cost of placing, of relaxing and of the other method: in evaluations, in pushes and in rounds. */
 import { h } from '../../ui/dom.js';
 import { formatCount, formatSignificant } from '../../ui/format.js';
 
-/** @import { Context, Lab } from '../types.js' */
+/** @import { Context, Cost, Lab } from '../types.js' */
 
-/** Steps of Witkin and Heckbert's system for 10,633 particles on an ellipsoid, as Table 1 of the paper has it. */
-const STEPS_OF_TABLE_1 = 373;
-
-/** @param {Lab} lab */
+/**
+ * What this page counts: placing, ten steps, and the whole run of the other method.
+ * @param {Lab} lab
+ * @returns {Promise<Cost>}
+ */
 export async function costOf(lab) {
   const { progress, placing } = await lab.run({}, { keep: true });
-  const { particles, evaluations } = progress;
-  return { particles, placing, resting: evaluations - placing };
+  const other = await lab.run({ method: 'witkin_heckbert', radius_max: 0 });
+  const { particles, evaluations, interactions, steps } = progress;
+  const share = (/** @type {number} */ count, /** @type {number} */ of) => count / Math.max(1, of);
+  return {
+    particles,
+    others: other.progress.particles,
+    rows: [
+      { name: 'Placing, once', evaluations: share(placing, particles), pushes: 0, rounds: 0 },
+      {
+        name: 'Relaxation after it',
+        evaluations: share(evaluations - placing, particles),
+        pushes: share(interactions, particles),
+        rounds: steps,
+      },
+      {
+        name: 'Witkin and Heckbert’s system',
+        evaluations: share(other.progress.evaluations, other.progress.particles),
+        pushes: share(other.progress.interactions, other.progress.particles),
+        rounds: other.progress.steps,
+      },
+    ],
+  };
 }
 
 /** A table with bars in its cells. @param {Context} context */
 export async function cost({ lab, stops }) {
-  const { particles, placing, resting } = await costOf(await lab);
-  const rows = [
-    { name: 'Placing, once', value: placing, kind: 'own' },
-    { name: 'Ten steps of relaxation', value: resting, kind: 'own' },
-    {
-      name: `${formatCount(STEPS_OF_TABLE_1)} steps, as the paper counts for Witkin and Heckbert’s system`,
-      value: (resting / 10) * STEPS_OF_TABLE_1,
-      kind: 'other',
-    },
-  ];
-  const most = Math.max(...rows.map(({ value }) => value));
+  const { particles, others, rows } = await costOf(await lab);
+  const kinds = /** @type {const} */ ([
+    ['evaluations', 'Evaluations of f for each particle'],
+    ['pushes', 'Pushes summed for each particle'],
+    ['rounds', 'Rounds'],
+  ]);
+  const most = kinds.map(([kind]) => Math.max(1e-9, ...rows.map((row) => row[kind])));
+  const cell = (/** @type {number} */ value, /** @type {number} */ of) =>
+    h(
+      'td',
+      null,
+      h('span', { class: 'cost-number' }, formatSignificant(value, 3)),
+      h('span', { class: 'cost-bar', style: { width: `${(100 * value) / of}%` } }),
+    );
+  const isOpen = () => stops.isOpen('predict-cost');
   const table = h(
     'table',
-    { class: 'cost', hidden: () => !stops.isOpen('predict-cost') },
-    h('caption', null, `Evaluations of f for each of ${formatCount(particles)} particles`),
+    { class: 'cost', hidden: () => !isOpen() },
+    h('caption', null, `Here: ${formatCount(particles)} particles of the front, ${formatCount(others)} of the system`),
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        h('td'),
+        kinds.map(([, name]) => h('th', { scope: 'col' }, name)),
+      ),
+    ),
     h(
       'tbody',
       null,
-      rows.map(({ name, value, kind }) =>
+      rows.map((row) =>
         h(
           'tr',
           null,
-          h('th', { scope: 'row' }, name),
-          h(
-            'td',
-            { class: 'cost-cell' },
-            h('span', { class: 'cost-bar', data: { kind }, style: { width: `${(100 * value) / most}%` } }),
-          ),
-          h('td', null, formatSignificant(value / particles, 3)),
+          h('th', { scope: 'row' }, row.name),
+          kinds.map(([kind], k) => cell(row[kind], most[k])),
         ),
       ),
     ),
   );
-  const waiting = h(
-    'p',
-    { class: 'figure-count', hidden: () => stops.isOpen('predict-cost') },
-    'The bars come with the answer.',
-  );
+  const waiting = h('p', { class: 'figure-count', hidden: isOpen }, 'The bars come with the answer.');
   return [table, waiting];
 }

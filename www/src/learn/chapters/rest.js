@@ -1,32 +1,31 @@
 /** The chapter on the seams where rings meet, and on ten relaxation steps. */
 import { triple } from '../../engine/vector.js';
-import { h, live } from '../../ui/dom.js';
+import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
-import { spread } from '../../ui/neighbours.js';
+import { reasonOf } from '../figure.js';
 import { energiesOf, nearestDistances } from '../measure.js';
 import { createChart, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
+import { placesOf, scoreOf } from '../score.js';
+import { createScorecard } from '../scorecard.js';
 
 /** @import { Context, Lab, LabRun, Mark } from '../types.js' */
 
 const STEP_MS = 400;
-/** Colours span this range of distances, in 2r. */
+/** Colours span this range of distances, in 2r, and of energies, over the ideal one. */
 const [NEAR, FAR] = [0.7, 1.15];
+const [CALM, CROWDED] = [0.7, 1.6];
+/** A pair nearer than this share of 2r is too close. */
+const CLOSE = 0.85;
+/** The share of the particles that the front has placed when the widest hole is asked for. */
+const QUARTER = 0.25;
 
-/**
- * The widest hole that the fronts leave: the particle beside it, where the filling of gaps looks.
- * @param {Lab} lab
- */
+/** The widest hole that the fronts leave, and the particle beside it; null where none is measured. @param {Lab} lab */
 export async function widestHole(lab) {
-  const run = await lab.run({ gaps: 'fill', relax_steps: 0 }, { keep: true });
-  const filling = run.chapters.find(({ kind }) => kind === 'filling');
-  if (!filling) return null;
-  const events = await run.client.ask('events', { first: filling.first_event, count: filling.events });
-  let widest = { particle: -1, width: 0 };
-  for (const event of events)
-    if (event.type === 'gap' && event.width !== null && event.width > widest.width)
-      widest = { particle: event.particle, width: event.width };
-  return widest.particle < 0 ? null : { ...widest, radius: run.radius, run };
+  const run = await lab.run({}, { keep: true });
+  const { places } = await lab.measure(run.placed, false);
+  const { hole, beside } = placesOf(run.placed, places);
+  return hole && { hole, particle: beside, radius: run.radius, run };
 }
 
 /** Particles whose front met itself or another one out of step. @param {LabRun} run */
@@ -45,9 +44,13 @@ async function seamsOf({ client, chapters }) {
 export async function seams({ lab, stops }) {
   const own = await lab;
   const run = await own.run({}, { keep: true });
-  const [hole, met] = [await widestHole(own), await seamsOf(run)];
+  // The body of another run, whose particles tell nothing of where this one leaves a hole.
+  const { placed: body } = await own.run({ seed: 1, relax_steps: 0 });
+  const [met, { energy, valence }] = [await seamsOf(run), await own.measure(run.placed, false)];
+  const widest = await widestHole(own);
   const orbit = new Orbit(own.surface.bounds);
   orbit.fitTo(run.placed);
+  orbit.faceFront(run.placed);
   const picture = new Picture(orbit, {
     name: 'The particles as they were placed, before any relaxation',
     onPick: (particle) => stops.pick('predict-hole', particle),
@@ -55,32 +58,42 @@ export async function seams({ lab, stops }) {
   const show = h('input', { type: 'checkbox' });
   const box = h('label', { class: 'check' }, show, 'Mark where rings met out of step');
   const words = h('p', { class: 'figure-count' });
+  const scale = createScale('Energy, over that of an ideal place', formatFixed(CALM, 1), formatFixed(CROWDED, 1));
   const count = run.placed.radii.length;
+  const nearest = nearestDistances(run.placed);
+  const close = [...nearest.keys()].filter((i) => nearest[i] < CLOSE);
+  const inLattice = close.filter((i) => valence[i] === 6 && !met.has(i));
   const rings = byLevel(run.placed);
+  const energies = byValue(energy, CALM, CROWDED);
   const marked = byMark(count, (i) => met.has(i));
+  let wasOpen = false;
   const draw = () => {
     const isOpen = stops.isOpen('predict-hole');
     const picked = stops.picked('predict-hole');
     /** @type {Mark[]} */
     const marks = [];
-    const mark = (/** @type {number} */ i, /** @type {'ring' | 'cross'} */ kind) =>
+    if (picked !== null)
       marks.push({
-        place: triple(run.placed.positions, i),
-        normal: triple(run.placed.normals, i),
+        place: triple(run.placed.positions, picked),
+        normal: triple(run.placed.normals, picked),
         radius: run.radius,
-        kind,
+        kind: 'cross',
       });
-    if (picked !== null) mark(picked, 'cross');
-    if (isOpen && hole && hole.particle < count) mark(hole.particle, 'ring');
-    picture.show({ particles: run.placed, colours: isOpen && show.checked ? marked : rings, marks });
-    box.hidden = !isOpen;
+    const colours = !isOpen ? rings : show.checked ? marked : energies;
+    picture.show({ particles: run.placed, body, count: isOpen ? count : Math.round(QUARTER * count), colours, marks });
+    if (isOpen && !wasOpen && widest) {
+      picture.ring(widest.hole);
+      orbit.turnTo(widest.hole.normal);
+    }
+    wasOpen = isOpen;
+    box.hidden = scale.hidden = !isOpen;
     words.textContent = isOpen
-      ? `${formatCount(met.size)} of ${formatCount(count)} particles lie where rings met out of step.`
-      : 'Turn the picture and press a particle: that is your prediction.';
+      ? `${formatCount(close.length)} of ${formatCount(count)} particles are nearer than ${formatFixed(CLOSE, 2)} · 2r to another: ${formatCount(close.length - inLattice.length)} along seams, ${formatCount(inLattice.length)} in unbroken lattice, squeezed where it bends.`
+      : 'A quarter of the front is there. Turn the picture and press a place: that is your prediction.';
   };
   show.addEventListener('change', draw);
   live(box, draw);
-  return [picture.element, h('div', { class: 'controls' }, box, words)];
+  return [picture.element, h('div', { class: 'controls' }, box, words), scale];
 }
 
 /** @param {Context} context */
@@ -92,25 +105,55 @@ export async function rest({ lab, stops }) {
   const states = [run.placed];
   for (const { first_event: first, events } of steps)
     states.push(await run.client.ask('seek', { event: first + events }));
-  const distances = states.map((state) => nearestDistances(state));
-  const colours = distances.map((values) => byValue(values, NEAR, FAR));
+  const colours = states.map((state) => byValue(nearestDistances(state), NEAR, FAR));
   const orbit = new Orbit(own.surface.bounds);
   orbit.fitTo(run.end);
+  orbit.faceFront(run.placed);
   const picture = new Picture(orbit, { name: 'The particles, coloured by the distance to the nearest one' });
   const words = h('p', { class: 'figure-count' });
+  /** The step that is beside the placing in the scorecard. */
+  const last = states.length - 1;
+  const scorecard = createScorecard((place, side) => {
+    if (place) range.set(side === 0 ? 0 : scored);
+    picture.ring(place);
+    if (place) orbit.turnTo(place.normal);
+  });
+  let scored = last;
+  const scoreAt = (/** @type {number} */ step) =>
+    scoreOf(own, states[step], {
+      evaluations: step === 0 ? run.placing : steps[step - 1].evaluations,
+      isAdaptive: false,
+    });
+  async function score(/** @type {number} */ step) {
+    scored = step;
+    const scores = [await scoreAt(0), await scoreAt(step)];
+    if (step === scored) scorecard.tell(['As placed', `After step ${formatCount(step)}`], scores);
+  }
   const show = (/** @type {number} */ step) => {
+    picture.ring(null);
     picture.show({ particles: states[step], colours: colours[step] });
-    const { mean, deviation } = spread(distances[step]);
-    words.textContent = `Nearest neighbour at ${formatFixed(mean, 3)} · 2r on average, ± ${formatFixed(deviation, 3)}.`;
+    const { largest_move: move } = steps[step - 1] ?? {};
+    words.textContent =
+      move == null
+        ? 'As they were placed.'
+        : `The longest move of step ${formatCount(step)}: ${formatSignificant(move, 2)} r.`;
   };
   const range = createRange({
     name: 'Step',
-    max: states.length - 1,
-    say: (step) => (step === 0 ? 'before the first' : `${formatCount(step)} of ${formatCount(states.length - 1)}`),
-    change: show,
+    max: last,
+    say: (step) => (step === 0 ? 'before the first' : `${formatCount(step)} of ${formatCount(last)}`),
+    change: (step) => {
+      show(step);
+      if (step > 0 && stops.isOpen('predict-rest')) void score(step);
+    },
   });
   show(0);
-  const play = createPlay(range, { label: 'Relax', totalMs: STEP_MS * (states.length - 1) });
+  const box = h('div', { hidden: () => !stops.isOpen('predict-rest') }, scorecard.element);
+  live(box, () => {
+    if (stops.isOpen('predict-rest'))
+      score(last).catch((error) => fill(scorecard.element, h('p', { class: 'figure-status' }, reasonOf(error))));
+  });
+  const play = createPlay(range, { label: 'Relax', totalMs: STEP_MS * last });
   const energy = (/** @type {number} */ value) => formatSignificant(value, 3);
   const chart = createChart({
     hidden: () => !stops.isOpen('predict-rest'),
@@ -122,12 +165,13 @@ export async function rest({ lab, stops }) {
       format: energy,
     }),
     label: `Energy per particle: ${energies.map(energy).join(', ')}`,
-    words: `Energy per particle: ${energy(energies[0])} before the first step, ${energy(energies[energies.length - 1])} after the last.`,
+    words: `Energy per particle: ${energy(energies[0])} before the first step, ${energy(energies[energies.length - 1])} after the last. The scale begins at 0.`,
   });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
     createScale('Distance to the nearest, in 2r', formatFixed(NEAR, 2), formatFixed(FAR, 2)),
+    box,
     chart,
   ];
 }

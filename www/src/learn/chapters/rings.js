@@ -38,6 +38,7 @@ async function growth({ lab }, /** @type {string} */ name) {
   const { placed } = await (await lab).run({}, { keep: true });
   const orbit = new Orbit((await lab).surface.bounds);
   orbit.fitTo(placed);
+  orbit.faceFront(placed);
   const counts = countsOf(placed);
   const picture = new Picture(orbit, { name });
   const range = createRange({
@@ -50,9 +51,12 @@ async function growth({ lab }, /** @type {string} */ name) {
   /** @param {number} level */
   function show(level) {
     const particles = upTo(placed, level);
-    picture.show({ particles, colours: byLevel(particles) });
+    picture.show({ particles, body: placed, colours: byLevel(particles) });
+    if (isMounted) orbit.follow(placed, level);
   }
+  let isMounted = false;
   show(counts.length - 1);
+  isMounted = true;
   const play = createPlay(range, { label: 'Grow', totalMs: GROWTH_MS });
   return { placed, counts, picture, range, play, show };
 }
@@ -84,6 +88,9 @@ export async function rings(context) {
     chart: () => ({
       kind: 'bars',
       rows: [{ fate: 'new', name: 'new particles', counts: sizes }],
+      // As far as the bars reach.
+      guide: sizes.map((_, level) => 6 * level).filter((flat) => flat <= Math.max(...sizes)),
+      ends: ['level 0', 'dashed: on a plane, 6k', `level ${formatCount(sizes.length - 1)}`],
       first: 0,
       at: range.place.value,
       format: formatCount,

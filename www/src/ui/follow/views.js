@@ -2,7 +2,7 @@
  * The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm.
  */
 import { adaptivePlane } from '../../figures/adaptive.js';
-import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
+import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { isAdaptive } from '../../figures/moment.js';
 import { fateShape } from '../../figures/svg.js';
 import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
@@ -119,7 +119,7 @@ function profileView(opened, moment) {
     ? MISSING
     : profile.newtonDistance === null
       ? 'no landing'
-      : inRadii(profile.newtonDistance, subject.radius, 4);
+      : inRadii(profile.newtonDistance, subject.radius, 4) + asideWords(profile);
   return [
     profileOf(opened, profile, child),
     h(

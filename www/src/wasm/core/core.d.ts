@@ -10,6 +10,7 @@ import type {
     MeshAnswer,
     Progress,
     FileRecord,
+    Measures,
     Report,
     SolvedModel,
     Start,
@@ -76,6 +77,11 @@ export class Core {
      * Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
      */
     measure(budget: number): Report | undefined;
+    /**
+     * Measures particles that something else has placed on the present surface, vectors of three floats: `Measures`. The columns of
+     * the last report are then theirs.
+     */
+    measure_placed(positions: Float32Array | number[], normals: Float32Array | number[], radii: Float32Array | number[], is_adaptive: boolean): Measures;
     /**
      * The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is
      * complete, undefined before; null for another extension or if it is too large.

@@ -1,0 +1,89 @@
+/** Where the front is, for the camera, and the pale body that hides the backs of the discs behind. */
+
+import { along, dot, size, triple, unit } from '../engine/vector.js';
+import { axes, fitDistance } from '../engine/view/camera.js';
+import { anglesOf } from '../engine/view/facing.js';
+
+/**
+ * @import { LessonParticles } from '../engine/types.js'
+ * @import { Ball } from '../engine/view/types.js'
+ */
+
+/** The first view shows the discs of so many levels around the seed. */
+export const FIRST_LEVELS = 5;
+/** Size and depth of the discs of the body, in radii: they close the holes of a lattice and lie below the particles. */
+const COVERING = 1.4;
+const DEPTH = 0.25;
+/** So many directions are 5° apart. */
+const DIRECTIONS = 1500;
+
+/**
+ * The particles of the first front on some levels.
+ * @param {LessonParticles} particles @param {number} from @param {number} to
+ */
+const onLevels = ({ levels, fronts }, from, to) =>
+  [...levels.keys()].filter((i) => fronts[i] === 0 && levels[i] >= from && levels[i] <= to);
+
+/** Directions all around, as even as a spiral is. @type {readonly (readonly number[])[]} */
+const AROUND = Array.from({ length: DIRECTIONS }, (_, k) => {
+  const z = 1 - (2 * k + 1) / DIRECTIONS;
+  const turn = k * Math.PI * (3 - Math.sqrt(5));
+  const far = Math.sqrt(1 - z * z);
+  return [far * Math.cos(turn), far * Math.sin(turn), z];
+});
+
+/**
+ * The direction from which most discs of some levels of the first front are seen: that of their mean normal, unless
+ * another is better.
+ * @param {LessonParticles} particles @param {Ball} ball  that the camera is fitted to
+ * @param {number} [from] @param {number} [to]
+ * @returns {readonly number[]}
+ */
+export function frontNormal(particles, { centre, radius }, from = 0, to = FIRST_LEVELS) {
+  const chosen = onLevels(particles, from, to);
+  const sum = chosen.reduce((total, i) => along(total, triple(particles.normals, i), 1), [0, 0, 0]);
+  const mean = size(sum) > 0 ? unit(sum) : AROUND[0];
+  const seen = (/** @type {readonly number[]} */ way) => {
+    // The camera does not look from straight above or below.
+    const { forward } = axes(anglesOf(way));
+    return facingOf(particles, along(centre, forward, -fitDistance(radius)), chosen);
+  };
+  const first = { way: mean, count: seen(mean) };
+  if (first.count === chosen.length) return mean;
+  return AROUND.reduce((best, way) => {
+    const count = seen(way);
+    return count > best.count ? { way, count } : best;
+  }, first).way;
+}
+
+/**
+ * The number of some discs that face the eye.
+ * @param {LessonParticles} particles @param {readonly number[]} eye @param {readonly number[]} chosen
+ */
+const facingOf = ({ positions, normals }, eye, chosen) =>
+  chosen.filter((i) => dot(along(eye, triple(positions, i), -1), triple(normals, i)) > 0).length;
+
+/**
+ * The share of the discs on some levels of the first front that face the eye; 1 if there are none.
+ * @param {LessonParticles} particles @param {readonly number[]} eye @param {number} from @param {number} to
+ */
+export function shareFacing(particles, eye, from, to) {
+  const all = onLevels(particles, from, to);
+  return all.length > 0 ? facingOf(particles, eye, all) / all.length : 1;
+}
+
+/** @type {WeakMap<LessonParticles, Pick<LessonParticles, 'positions' | 'normals' | 'radii' | 'levels'>>} */
+const bodies = new WeakMap();
+
+/** The discs of a body below particles, without gaps. @param {LessonParticles} particles */
+export function bodyOf(particles) {
+  const { positions, normals, radii, levels } = particles;
+  const body = bodies.get(particles) ?? {
+    positions: positions.map((value, k) => value - DEPTH * radii[Math.floor(k / 3)] * normals[k]),
+    normals,
+    radii: radii.map((radius) => COVERING * radius),
+    levels,
+  };
+  bodies.set(particles, body);
+  return body;
+}
