@@ -3,7 +3,7 @@
 
 use super::SLICE;
 use super::patch::{Gap, NONE, Patch, quarter_turns};
-use crate::math::tangent_frame;
+use crate::math::{sort_by_key, tangent_frame};
 use crate::slices::pause;
 use glam::Vec3;
 
@@ -24,7 +24,8 @@ impl Rim {
         edges.dedup();
         // The ends of the edges at each vertex: those that lead to it, and those that lead from it.
         let mut ends: Vec<[u32; 3]> = edges.iter().flat_map(|&[a, b]| [[a, NONE, b], [b, a, NONE]]).collect();
-        ends.sort_unstable();
+        sort_by_key(&mut ends, |end| end[2].into());
+        sort_by_key(&mut ends, |end| u64::from(end[0]) << 32 | u64::from(end[1]));
         let mut ways = Vec::new();
         for at in ends.chunk_by(|one, other| one[0] == other[0]) {
             let v = at[0][0];

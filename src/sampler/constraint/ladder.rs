@@ -1,6 +1,7 @@
 //! Particles on creases and tips, level by level: at each level of a refinement another one halves the way between two that follow each
 //! other along a crease.
 
+use crate::math::sort_by_key;
 use crate::particles::Particles;
 use glam::Vec3;
 
@@ -53,7 +54,7 @@ impl CreaseLadder {
             }
             half /= 2;
         }
-        ladder.middles.sort_unstable();
+        sort_by_key(&mut ladder.middles, |&([a, b], _)| u64::from(a) << 32 | u64::from(b));
         ladder
     }
 

@@ -177,6 +177,10 @@ test('PLY and CSV hold every particle', async () => {
   p.engine.setFormula('max(abs(x), abs(y), abs(z)) = 1');
   const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[1].split(',');
   await eventually(creased).toEqual(all.filter((name) => name !== 'periodic'));
+  p.engine.setFormula('cos(x) + cos(y) + cos(z) = 0');
+  p.engine.setSetting('box_faces', 'closed');
+  p.engine.setSetting('box_cell', 'periodic');
+  await eventually(creased).toEqual(all);
 });
 
 for (const [device, userAgent] of /** @type {const} */ ([
