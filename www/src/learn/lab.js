@@ -3,11 +3,11 @@
  * own while its events may still be asked for, and a run that is only looked at leaves its particles and frees the
  * worker.
  */
-import { Meter } from '../engine/sampling/meter.js';
 import { RESIDUAL } from '../figures/particle.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
+ * @import { Meter } from '../engine/sampling/meter.js'
  * @import { LessonClient, LessonParticles } from '../engine/types.js'
  * @import { FormulaSurface } from '../ui/types.js'
  * @import { LabRun } from './types.js'
@@ -37,7 +37,7 @@ export class NoSurface extends Error {}
 
 export class Lab {
   #open;
-  #meter = new Meter();
+  #meter;
 
   /** @type {WeakMap<LessonParticles, ReturnType<Meter['measure']>>} */
   #measures = new WeakMap();
@@ -54,10 +54,11 @@ export class Lab {
    */
   #last;
 
-  /** @param {FormulaSurface} surface @param {() => Promise<LessonClient>} open */
-  constructor(surface, open) {
+  /** @param {FormulaSurface} surface @param {() => Promise<LessonClient>} open @param {Meter} meter */
+  constructor(surface, open, meter) {
     this.surface = surface;
     this.#open = open;
+    this.#meter = meter;
     this.#runs = new Map();
     this.#radii = new Map();
     this.#last = Promise.resolve();

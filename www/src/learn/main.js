@@ -1,6 +1,7 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
 import { kindOf, LessonClient } from '../engine/lesson/client.js';
+import { Meter } from '../engine/sampling/meter.js';
 import { button } from '../ui/button.js';
 import { byId, query, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
@@ -24,13 +25,14 @@ import { setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
 const address = readAddress(location.hash);
 const subject = subjectOf(address.parts.surface);
 const open = async () => new LessonClient();
+const meter = new Meter();
 const notice = byId('notice');
 const stops = new Stops();
 
 /** Tries the learner's surface; where it has no particles, the ellipsoid stands in. */
 async function openLab() {
-  if (!subject.isOwn) return new Lab(subject.surface, open);
-  const own = new Lab(subject.surface, open);
+  if (!subject.isOwn) return new Lab(subject.surface, open, meter);
+  const own = new Lab(subject.surface, open, meter);
   try {
     await own.radiusFor(PARTICLES);
     return own;
@@ -40,7 +42,7 @@ async function openLab() {
     const stand = subjectOf(undefined).surface;
     notice.textContent = `${error instanceof Error ? error.message : error} The figures show an ellipsoid.`;
     byId('surface-name').textContent = 'an ellipsoid';
-    return new Lab(stand, open);
+    return new Lab(stand, open, meter);
   }
 }
 

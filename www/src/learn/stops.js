@@ -42,7 +42,29 @@ export function mountStops({ stops, others, onBench, say }) {
     if (isBench) showBench(found.stop.slice(STOP.length + 1));
     const target = isBench ? STOP : found.stop;
     if (isPresenting) presenter.show(target);
-    else document.getElementById(target)?.scrollIntoView({ block: 'start' });
+    else settleOn(document.getElementById(target));
+  }
+
+  let leave = new AbortController();
+  /**
+   * Brings a stop to the top, again whenever a figure above it changes its height, until the reader acts.
+   * @param {HTMLElement | null} target
+   */
+  function settleOn(target) {
+    leave.abort();
+    leave = new AbortController();
+    const { signal } = leave;
+    if (!target) return;
+    target.scrollIntoView({ block: 'start' });
+    let isFirst = true;
+    const observer = new ResizeObserver(() => {
+      if (!isFirst) target.scrollIntoView({ block: 'start', behavior: 'instant' });
+      isFirst = false;
+    });
+    observer.observe(document.body);
+    signal.addEventListener('abort', () => observer.disconnect());
+    for (const act of ['wheel', 'touchstart', 'pointerdown', 'keydown'])
+      addEventListener(act, () => leave.abort(), { signal, passive: true });
   }
 
   // A link of the page names only a stop. The other parts of the address stay in it.

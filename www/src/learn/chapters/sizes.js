@@ -21,7 +21,10 @@ export async function sizes({ lab, stops }) {
   let isFirst = true;
   const show = async (/** @type {Law} */ law) => {
     const run = await adaptiveRun(own, law);
-    if (isFirst) orbit.fitTo(run.end);
+    if (isFirst) {
+      orbit.fitTo(run.end);
+      orbit.faceFront(run.end);
+    }
     isFirst = false;
     const { radii } = run.end;
     const [low, high] = [Math.min(...radii), Math.max(...radii)];
