@@ -4,6 +4,7 @@
  */
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
+import { kept } from '../ui/remembered.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
 import { lockParts } from './locks.js';
@@ -27,6 +28,9 @@ const recordOf = (label, run, score) => ({
   energy_per_step: run.chapters.filter(({ kind }) => kind === 'relaxation').map(({ energy }) => energy),
 });
 
+/** A name of a file from some words: their letters and digits. @param {readonly string[]} words */
+const fileName = (words) => words.flatMap((word) => word.match(/[\p{L}\p{N}]+/gu) ?? []).join('-') || 'assignment';
+
 /**
  * Puts the assignment before the first chapter.
  * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: Stops }} context
@@ -38,6 +42,15 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     const own = uniqueId('answer');
     return { question, box: h('textarea', { id: own, class: 'answer-box', rows: 3 }), id: own };
   });
+  const [name, group] = ['Your name', 'Class'].map((label) => ({
+    label,
+    box: h('input', { class: 'box wide', id: uniqueId('learner'), autocomplete: 'off' }),
+  }));
+  // What is typed is there again after the page was closed, for this assignment in this browser.
+  const boxes = [name.box, group.box, ...answers.map(({ box }) => box)];
+  const { text, keep } = kept(`assignment.${packTask(task)}`);
+  for (const [k, value] of text.split('\0').entries()) if (boxes[k]) boxes[k].value = value;
+  host.addEventListener('input', () => keep(boxes.map(({ value }) => value).join('\0')));
   const save = async (/** @type {'json' | 'csv'} */ format) => {
     const { pair } = bench;
     await pair.settled;
@@ -46,19 +59,22 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     const work = {
       assignment: task.title,
       surface,
+      name: name.box.value,
+      group: group.box.value,
       answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
       predictions: stops.predictions(),
       runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run, pair.scores?.[k])),
     };
     const text = format === 'json' ? `${JSON.stringify(work, null, 2)}\n` : tableOf(work);
     const type = format === 'json' ? 'application/json' : 'text/csv;charset=utf-8';
-    download(new Blob([text], { type }), `assignment.${format}`);
+    download(new Blob([text], { type }), `${fileName([task.title, group.box.value, name.box.value])}.${format}`);
   };
   fill(
     host,
     h('h2', { id }, task.title || 'Assignment'),
     task.locks.length > 0 ? h('p', { class: 'quiet' }, lockedWords(task.locks)) : null,
     benchHost,
+    [name, group].map(({ label, box }) => h('div', { class: 'answer-row' }, h('label', { for: box.id }, label), box)),
     answers.map(({ question, box, id: own }) =>
       h('div', { class: 'answer-row' }, h('label', { for: own }, question), box),
     ),
@@ -67,7 +83,11 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
       { class: 'controls' },
       button({ class: 'primary', press: () => void save('json') }, 'Save as JSON'),
       button({ press: () => void save('csv') }, 'Save as CSV'),
-      h('span', { class: 'quiet' }, 'With your answers, your predictions and both runs. Nothing is sent.'),
+      h(
+        'span',
+        { class: 'quiet' },
+        'With your answers, your predictions and both runs. Nothing is sent; this browser keeps what you type.',
+      ),
     ),
   );
   host.setAttribute('aria-labelledby', id);

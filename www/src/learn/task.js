@@ -66,18 +66,42 @@ function cell(value) {
   return /[",\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
-/** The work as a table of three columns: part, name, value. @param {Work} work */
-export function tableOf({ assignment, surface, answers, predictions, runs }) {
+/**
+ * A record as rows of a name, a number and one value: those of a list are numbered, as levels and steps are.
+ * @param {object} record
+ * @returns {unknown[][]}
+ */
+const flat = (record) =>
+  Object.entries(record).flatMap(([name, value]) => {
+    if (typeof value !== 'object' || value === null) return [[name, '', value]];
+    return Object.entries(value).flatMap(([key, own]) => {
+      const [inner, number] = Array.isArray(value)
+        ? [name, Number(key)]
+        : [`${name}: ${key}`, /** @type {const} */ ('')];
+      if (typeof own !== 'object' || own === null) return [[inner, number, own]];
+      return Object.entries(own).map(([last, one]) => [`${inner}: ${last}`, number, one]);
+    });
+  });
+
+/**
+ * The work as a table with one value in a row: of an answer, a setting, a figure, a level or a step.
+ * @param {Work} work
+ */
+export function tableOf({ assignment, surface, name: learner, group, answers, predictions, runs }) {
   const rows = [
-    ['part', 'name', 'value'],
-    ['assignment', 'title', assignment],
-    ['assignment', 'surface', surface],
-    ...answers.map(({ question, answer }) => ['answer', question, answer]),
-    ...predictions.flatMap(({ question, guess, answer }) => [
-      ['prediction', question, guess],
-      ['run', question, answer],
+    ['part', 'name', 'number', 'value'],
+    ...Object.entries({ title: assignment, surface, name: learner, class: group }).map((pair) => [
+      'assignment',
+      pair[0],
+      '',
+      pair[1],
     ]),
-    ...runs.flatMap((run, k) => Object.entries(run).map(([name, value]) => [`run ${k + 1}`, name, value])),
+    ...answers.map(({ question, answer }) => ['answer', question, '', answer]),
+    ...predictions.flatMap(({ question, guess, answer }) => [
+      ['prediction', question, '', guess],
+      ['run', question, '', answer],
+    ]),
+    ...runs.flatMap((run, k) => flat(run).map((row) => [`run ${k + 1}`, ...row])),
   ];
   return `${rows.map((row) => row.map(cell).join(',')).join('\r\n')}\r\n`;
 }

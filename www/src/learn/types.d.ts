@@ -89,6 +89,9 @@ export type Task = { title: string; setup: Setup; locks: Control[]; questions: s
 export type Work = {
   assignment: string;
   surface: string;
+  name: string;
+  /** the class */
+  group: string;
   answers: { question: string; answer: string }[];
   predictions: Guessed[];
   runs: object[];

@@ -162,7 +162,14 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   // The figures that decide: the larger tolerance leaves the larger hole.
   const holes = work.runs.map((/** @type {any} */ { figures }) => figures['Largest hole, over the ideal']);
   expect(holes[0]).toBeLessThan(holes[1]);
-  expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,"The left one, ""clearly""."');
+  expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,,"The left one, ""clearly""."');
+  // A reload loses nothing, and the file bears the name.
+  await task.getByLabel('Your name').fill('Ada L.');
+  await page.reload();
+  await expect(task.getByLabel('Which run has closer pairs?')).toHaveValue('The left one, "clearly".');
+  const button = task.getByRole('button', { name: 'Save as JSON' });
+  const [file] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  expect(file.suggestedFilename()).toBe('Seams-Ada-L.json');
   clean();
 });
 
