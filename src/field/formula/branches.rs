@@ -24,9 +24,9 @@ const MAX_LISTED: usize = 64;
 /// Maximum number of branches whose numbers do not depend on the order in which they are met: as many as eight choices have.
 const MAX_NUMBERED: usize = 256;
 
-/// What decides a choice.
+/// Condition by which a choice takes one of its operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Condition {
+pub(super) enum ChoiceCondition {
     /// The first node is at most the second.
     AtMost(Id, Id),
     /// The node is at least 0.
@@ -35,13 +35,13 @@ pub(super) enum Condition {
 
 /// Role of a node in the walk from f to the operands that are taken: it has a condition, which takes one of them, or takes all.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Role {
-    /// All operands count.
+pub(super) enum NodeRole {
+    /// The node is no choice: it takes all of its operands.
     Plain,
     /// A power of the absolute value of this node, smooth as it is.
     Raised(Id),
     /// One thing where the condition holds, another elsewhere.
-    Choice(Condition),
+    Choice(ChoiceCondition),
 }
 
 /// The operand of a choice that counts where its condition holds, or elsewhere; none if its value is a number there.
@@ -49,13 +49,12 @@ pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
     match choice {
         Node::Binary(_, a, b) | Node::Smin(a, b, _) => Some(if holds { a } else { b }),
         Node::Unary(Unary::Abs, u) => Some(u),
-        Node::IfLe(_, _, value) => holds.then_some(value),
-        Node::IfGt(_, _, value) => (!holds).then_some(value),
+        Node::If(at_most, _, _, value) => (holds == at_most).then_some(value),
         _ => None,
     }
 }
 
-/// Where a condition holds.
+/// Part of a box, or of a point, in which a condition holds.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Holds {
     Always,
@@ -63,7 +62,7 @@ pub(super) enum Holds {
     Somewhere,
 }
 
-impl Condition {
+impl ChoiceCondition {
     fn at_point(self, value: impl Fn(Id) -> f64) -> Holds {
         let holds = match self {
             Self::AtMost(a, b) => value(a) <= value(b),
@@ -91,13 +90,13 @@ impl Condition {
 
 /// f, or what has become of it once choices have taken sides.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct BranchPart {
     pub(super) root: Id,
     /// The nodes that the root needs, in the order of the graph.
     pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
-    /// The part for each way in which the conditions hold or do not, in the order of [`Walk`].
+    /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`].
     taken: BTreeMap<Vec<bool>, usize>,
     /// The branch compiled, once it has been selected.
     compiled: Option<Box<Compiled>>,
@@ -105,19 +104,19 @@ pub(super) struct Part {
 
 /// A walk over the nodes of a part from its root, through the operands that are taken.
 #[derive(Clone, Debug, Default)]
-struct Walk {
+struct BranchWalk {
     /// Number of nodes that are still to be visited.
     left: usize,
     /// Whether each node is on the way; false for all at the end.
     needed: Vec<bool>,
     /// The conditions of the choices on the way.
-    conditions: Vec<Condition>,
+    conditions: Vec<ChoiceCondition>,
     /// Whether each condition holds.
     holds: Vec<bool>,
 }
 
-impl Walk {
-    fn begin(&mut self, part: &Part, graph: &Graph) {
+impl BranchWalk {
+    fn begin(&mut self, part: &BranchPart, graph: &Graph) {
         self.needed.resize(graph.len(), false);
         self.needed[part.root as usize] = true;
         self.left = part.nodes.len();
@@ -131,7 +130,7 @@ impl Walk {
         &mut self,
         nodes: &[Id],
         base: &Base,
-        mut decide: impl FnMut(Condition) -> Holds,
+        mut decide: impl FnMut(ChoiceCondition) -> Holds,
         mut visit: impl FnMut(Id, bool),
         forks: &mut Vec<Self>,
     ) {
@@ -142,7 +141,7 @@ impl Walk {
                 continue;
             }
             let mut holds = true;
-            if let Role::Choice(condition) = base.roles[id as usize] {
+            if let NodeRole::Choice(condition) = base.roles[id as usize] {
                 holds = match self.conditions.iter().position(|&known| known == condition) {
                     Some(known) => self.holds[known],
                     None => {
@@ -162,9 +161,9 @@ impl Walk {
             visit(id, holds);
             let mut need = |operand: Id| self.needed[operand as usize] = true;
             match base.roles[id as usize] {
-                Role::Plain => base.graph.node(id).operands(need),
-                Role::Raised(u) => need(u),
-                Role::Choice(_) => taken(base.graph.node(id), holds).into_iter().for_each(need),
+                NodeRole::Plain => base.graph.node(id).operands(need),
+                NodeRole::Raised(u) => need(u),
+                NodeRole::Choice(_) => taken(base.graph.node(id), holds).into_iter().for_each(need),
             }
             self.needed[id as usize] = false;
             self.left -= 1;
@@ -176,7 +175,7 @@ impl Walk {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Base {
     pub(super) graph: Graph,
-    pub(super) roles: Vec<Role>,
+    pub(super) roles: Vec<NodeRole>,
     /// Choices that make no crease, and are none therefore, ascending.
     smooth: Vec<Id>,
     /// Values of the nodes that depend on no coordinate; NaN for the others.
@@ -197,28 +196,36 @@ impl Base {
                 _ => None,
             };
             let role = match node {
-                _ if is_uniform || self.smooth.binary_search(&id).is_ok() => Role::Plain,
-                Node::Binary(Binary::Min, a, b) => Role::Choice(Condition::AtMost(a, b)),
-                Node::Binary(Binary::Max, a, b) => Role::Choice(Condition::AtMost(b, a)),
-                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => Role::Choice(Condition::AtMost(a, b)),
-                Node::Unary(Unary::Abs, u) => Role::Choice(Condition::NotNegative(u)),
+                _ if is_uniform || self.smooth.binary_search(&id).is_ok() => NodeRole::Plain,
+                Node::Binary(Binary::Min, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(a, b)),
+                Node::Binary(Binary::Max, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(b, a)),
+                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => {
+                    NodeRole::Choice(ChoiceCondition::AtMost(a, b))
+                }
+                Node::Unary(Unary::Abs, u) => NodeRole::Choice(ChoiceCondition::NotNegative(u)),
                 // The slopes of minima, maxima and absolute values.
-                Node::IfLe(a, b, _) | Node::IfGt(a, b, _) => Role::Choice(Condition::AtMost(a, b)),
+                Node::If(_, a, b, _) => NodeRole::Choice(ChoiceCondition::AtMost(a, b)),
                 Node::Unary(Unary::Sign, u) if self.graph.find(Node::Unary(Unary::Abs, u)).is_some() => {
-                    Role::Choice(Condition::NotNegative(u))
+                    NodeRole::Choice(ChoiceCondition::NotNegative(u))
                 }
-                Node::Power(a, n) if n > 1 => magnitude(a).map_or(Role::Plain, Role::Raised),
+                Node::Power(a, n) if n > 1 => magnitude(a).map_or(NodeRole::Plain, NodeRole::Raised),
                 Node::Binary(Binary::Pow, a, b) if uniform(b) > 1.0 => {
-                    magnitude(a).map_or(Role::Plain, Role::Raised)
+                    magnitude(a).map_or(NodeRole::Plain, NodeRole::Raised)
                 }
-                _ => Role::Plain,
+                _ => NodeRole::Plain,
             };
             self.roles.push(role);
         }
     }
 
     /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says.
-    fn specialised(&mut self, part: &Part, holds: &[bool], values: &[f64], walk: &mut Walk) -> Id {
+    fn specialised(
+        &mut self,
+        part: &BranchPart,
+        holds: &[bool],
+        values: &[f64],
+        walk: &mut BranchWalk,
+    ) -> Id {
         let (mut way, mut rest) = (Vec::new(), holds.iter());
         let next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
         walk.begin(part, &self.graph);
@@ -229,17 +236,17 @@ impl Base {
             let new = |id: Id| map[id as usize];
             let node = graph.node(id);
             map[id as usize] = match (self.roles[id as usize], node) {
-                (Role::Plain, _) => graph.built(node.mapped(new)),
-                (Role::Raised(u), _) => {
+                (NodeRole::Plain, _) => graph.built(node.mapped(new)),
+                (NodeRole::Raised(u), _) => {
                     let (u, size) = (new(u), graph.find(Node::Unary(Unary::Abs, u)));
                     let new_size = graph.unary(Unary::Abs, u);
                     // The exponent depends on no coordinate and stays.
                     graph.built(node.mapped(|operand| if Some(operand) == size { new_size } else { operand }))
                 }
-                (Role::Choice(_), Node::Unary(Unary::Sign, _)) => {
+                (NodeRole::Choice(_), Node::Unary(Unary::Sign, _)) => {
                     graph.constant(if holds { 1.0 } else { -1.0 })
                 }
-                (Role::Choice(_), _) => match taken(node, holds).map(new) {
+                (NodeRole::Choice(_), _) => match taken(node, holds).map(new) {
                     Some(u) if !holds && matches!(node, Node::Unary(..)) => graph.neg(u),
                     Some(operand) => operand,
                     None => graph.constant(0.0),
@@ -257,7 +264,7 @@ impl Base {
 pub(super) struct Branches {
     pub(super) base: Base,
     /// f, then what has become of it.
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<BranchPart>,
     /// The part of each root.
     by_root: BTreeMap<Id, usize>,
     /// The part of each branch, by its number.
@@ -266,16 +273,17 @@ pub(super) struct Branches {
     selected: Option<usize>,
     /// The branches of the surface in a box, if it was found that some meet in creases there.
     pub(super) creased: Vec<u32>,
-    walk: Walk,
+    walk: BranchWalk,
     /// Roles with the parameters before, kept for their memory.
-    before: Vec<Role>,
+    before: Vec<NodeRole>,
     doubles: Vec<f64>,
     ranges: Vec<Range>,
 }
 
 impl Branches {
-    /// The branches of node `root` of `graph`, with these values of the parameters. They are looked for when first asked for.
-    pub(super) fn new((graph, root): (&Graph, Id), values: &[f64]) -> Self {
+    /// The branches of a function, with these values of the parameters. They are looked for when first asked for.
+    pub(super) fn new(f: &Compiled, values: &[f64]) -> Self {
+        let (graph, root) = (&f.graph, f.root);
         let mut branches = Self::default();
         let is_choice = |&id: &Id| {
             let node = graph.node(id);
@@ -286,12 +294,12 @@ impl Branches {
             may_choose && !graph.is_uniform(id)
         };
         if graph.needed_by(&[root]).iter().any(is_choice) {
-            branches.begin((graph, root), values, &[]);
+            branches.begin(graph, root, values, &[]);
         }
         branches
     }
 
-    fn begin(&mut self, (graph, root): (&Graph, Id), values: &[f64], smooth: &[Id]) {
+    fn begin(&mut self, graph: &Graph, root: Id, values: &[f64], smooth: &[Id]) {
         let (graph, root) = graph.part(root);
         *self = Self { base: Base { graph, smooth: smooth.to_vec(), ..Base::default() }, ..Self::default() };
         self.base.extend(values);
@@ -302,7 +310,7 @@ impl Branches {
     pub(super) fn begin_again(&mut self, values: &[f64], smooth: &[Id]) {
         if let Some(root) = self.parts.first().map(|part| part.root) {
             let graph = core::mem::take(&mut self.base.graph);
-            self.begin((&graph, root), values, smooth);
+            self.begin(&graph, root, values, smooth);
         }
     }
 
@@ -311,7 +319,7 @@ impl Branches {
         if let Some(&known) = self.by_root.get(&root) {
             return known;
         }
-        let part = Part {
+        let part = BranchPart {
             root,
             nodes: self.base.graph.needed_by(&[root]),
             number: None,
@@ -347,9 +355,14 @@ impl Branches {
     }
 
     /// The ways in which the conditions of part `of` hold or do not, at most `limit`, those that hold first.
-    fn ways(&self, of: usize, limit: usize, mut decide: impl FnMut(Condition) -> Holds) -> Vec<Vec<bool>> {
+    fn ways(
+        &self,
+        of: usize,
+        limit: usize,
+        mut decide: impl FnMut(ChoiceCondition) -> Holds,
+    ) -> Vec<Vec<bool>> {
         let part = &self.parts[of];
-        let mut first = Walk::default();
+        let mut first = BranchWalk::default();
         first.begin(part, &self.base.graph);
         let (mut open, mut found) = (vec![first], Vec::new());
         while found.len() < limit
@@ -393,7 +406,7 @@ impl Branches {
             }
             self.base.graph.evaluate(&part.nodes, values, p, &mut self.doubles);
             self.walk.begin(part, &self.base.graph);
-            let decide = |condition: Condition| condition.at_point(|id| self.doubles[id as usize]);
+            let decide = |condition: ChoiceCondition| condition.at_point(|id| self.doubles[id as usize]);
             self.walk.run(&part.nodes, &self.base, decide, |_, _| {}, &mut Vec::new());
             let holds = core::mem::take(&mut self.walk.holds);
             at = self.taken(at, &holds, values);
@@ -514,7 +527,7 @@ impl Branches {
         }
     }
 
-    /// What is to be evaluated: the branch that is selected, or `whole`, f.
+    /// The compiled function that is to be evaluated: the branch that is selected, or else `whole`, f.
     pub(super) fn active<'a>(&'a mut self, whole: &'a mut Compiled) -> &'a mut Compiled {
         self.selected.and_then(|index| self.parts[index].compiled.as_deref_mut()).unwrap_or(whole)
     }

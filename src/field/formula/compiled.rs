@@ -16,8 +16,9 @@ use glam::DVec3;
 /// text needs neither.
 #[derive(Clone, Debug)]
 pub(super) struct Compiled {
-    graph: Graph,
-    root: Id,
+    pub(super) graph: Graph,
+    /// Node of f.
+    pub(super) root: Id,
     gradient: [Id; 3],
     /// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), once it is compiled.
     hessian: [Id; 6],
@@ -80,11 +81,6 @@ impl Compiled {
         };
         compiled.set_parameters(values);
         compiled
-    }
-
-    /// The graph, in which the node of f is the second.
-    pub(super) fn graph(&self) -> (&Graph, Id) {
-        (&self.graph, self.root)
     }
 
     /// Whether f is the same everywhere for any values of the parameters.
@@ -151,7 +147,7 @@ impl Compiled {
         &self,
         values: &[f64],
         p: DVec3,
-        scratch: &mut Vec<scalar::Order<0>>,
+        scratch: &mut Vec<scalar::ForwardJet<0>>,
     ) -> (f64, DVec3) {
         scalar::jets(&self.graph, self.root, values, p, scratch);
         scratch[self.root as usize].first_order()

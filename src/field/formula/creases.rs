@@ -7,7 +7,7 @@
 //! operands vanish, and the gradients on both sides of it are compared. Around the choices that crease the surface smaller cells are
 //! looked at, in which the creases are then followed.
 
-use super::branches::{Base, Branches, Condition, Holds, Part, Role, taken};
+use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, taken};
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::{interval, scalar};
@@ -35,10 +35,10 @@ const LEAST_JUMP: f64 = 0.01;
 /// the box.
 const STEP: f64 = 1e-6;
 
-/// What the surface is where a choice is tied.
+/// Kind of the surface where the operands of a choice are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    /// It is smooth.
+enum TieKind {
+    /// The surface is smooth there.
     Seam,
     /// The gradient jumps, or the tie is the surface itself, where nothing can be said.
     Crease,
@@ -46,7 +46,7 @@ enum Kind {
 
 /// How far a choice counts for f in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Reach {
+enum TieReach {
     /// Another choice or the box leave it out.
     Nowhere,
     /// Only blends leave it out.
@@ -55,7 +55,7 @@ enum Reach {
 }
 
 /// A cell, with the choices that are in question there.
-struct Cell {
+struct TieCell {
     bounds: Bounds,
     depth: u32,
     choices: Vec<Id>,
@@ -67,15 +67,15 @@ impl Branches {
     pub(super) async fn find_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         self.begin_again(values, &[]);
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return Vec::new() };
-        let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], Role::Choice(_));
+        let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = Ties::new(&mut self.base, part, &choices, values);
-        let search = Search { base: &self.base, part, ties, values, bounds };
+        let search = TieSearch { base: &self.base, part, ties, values, bounds };
         let kinds = search.kinds(&choices).await;
         let creasing: Vec<Id> =
-            kinds.iter().filter(|(_, kind)| **kind == Kind::Crease).map(|(&id, _)| id).collect();
+            kinds.iter().filter(|(_, kind)| **kind == TieKind::Crease).map(|(&id, _)| id).collect();
         let cells = search.cells(&creasing, width).await;
-        let smooth = |id: &Id| creasing.is_empty() || kinds.get(id) == Some(&Kind::Seam);
+        let smooth = |id: &Id| creasing.is_empty() || kinds.get(id) == Some(&TieKind::Seam);
         let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
         self.begin_again(values, &smooth);
         if !creasing.is_empty() {
@@ -93,7 +93,7 @@ struct Ties {
     of_choice: BTreeMap<Id, Tie>,
 }
 
-/// Those of one choice.
+/// The tie functions of one choice, see [`Ties`].
 struct Tie {
     /// f with the first operand in the place of the choice, with the second one, and with what is half of their sum.
     roots: Vec<Id>,
@@ -102,7 +102,7 @@ struct Tie {
 }
 
 impl Ties {
-    fn new(base: &mut Base, part: &Part, choices: &[Id], values: &[f64]) -> Self {
+    fn new(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -> Self {
         let mut of_choice: BTreeMap<Id, Tie> = BTreeMap::new();
         for &id in choices {
             let tied = match base.graph.node(id) {
@@ -125,7 +125,7 @@ impl Ties {
 impl Base {
     /// The root of a part with another node in the place of a choice. Of choices above it that hang on this one alone, the operand that
     /// leads to it is taken.
-    fn root_with(&mut self, part: &Part, choice: Id, other: Id) -> Id {
+    fn root_with(&mut self, part: &BranchPart, choice: Id, other: Id) -> Id {
         let mut uses = vec![0_u32; self.graph.len()];
         part.nodes.iter().for_each(|&id| self.graph.node(id).operands(|operand| uses[operand as usize] += 1));
         let mut map: Vec<Id> = (0..self.graph.len() as Id).collect();
@@ -140,7 +140,7 @@ impl Base {
             let Some(&operand) = changed.first() else { continue };
             let is_way = last == Some(operand) && uses[operand as usize] == 1;
             last = is_way.then_some(id);
-            let is_one_of_two = matches!(self.roles[id as usize], Role::Choice(_))
+            let is_one_of_two = matches!(self.roles[id as usize], NodeRole::Choice(_))
                 && matches!(node, Node::Binary(..) | Node::Smin(..));
             map[id as usize] =
                 if is_way && is_one_of_two { new(operand) } else { self.graph.built(node.mapped(new)) };
@@ -170,35 +170,35 @@ fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
     sum
 }
 
-/// Scratch memory of a search.
+/// Memory that the cells of a search use again.
 #[derive(Default)]
-struct Scratch {
+struct TieScratch {
     ranges: Vec<interval::Range>,
-    reaches: Vec<Reach>,
+    reaches: Vec<TieReach>,
 }
 
-/// A search of a box.
-struct Search<'a> {
+/// A search of a box for the places of the surface where choices are tied.
+struct TieSearch<'a> {
     base: &'a Base,
-    part: &'a Part,
+    part: &'a BranchPart,
     ties: Ties,
     values: &'a [f64],
     bounds: &'a Bounds,
 }
 
-impl Search<'_> {
+impl TieSearch<'_> {
     /// The kind of each of the `choices` that is tied somewhere on the surface: it makes a seam or a crease there.
-    async fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, Kind> {
+    async fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, TieKind> {
         let mut kinds = BTreeMap::new();
-        let mut open = vec![Cell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
-        let (mut scratch, mut jets, mut left) = (Scratch::default(), Vec::new(), MAX_CELLS);
+        let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
+        let (mut scratch, mut jets, mut left) = (TieScratch::default(), Vec::new(), MAX_CELLS);
         while let Some(mut cell) = open.pop() {
-            cell.choices.retain(|id| kinds.get(id) != Some(&Kind::Crease));
+            cell.choices.retain(|id| kinds.get(id) != Some(&TieKind::Crease));
             if cell.choices.is_empty() {
                 continue;
             }
             if left == 0 {
-                kinds.extend(cell.choices.into_iter().map(|id| (id, Kind::Crease)));
+                kinds.extend(cell.choices.into_iter().map(|id| (id, TieKind::Crease)));
                 continue;
             }
             left -= 1;
@@ -210,19 +210,19 @@ impl Search<'_> {
                     return true;
                 }
                 let kind = match reach {
-                    Reach::Reached => self.kind(*id, &cell.bounds, &mut scratch, &mut jets),
-                    Reach::Blended | Reach::Nowhere => Some(Kind::Seam),
+                    TieReach::Reached => self.kind(*id, &cell.bounds, &mut scratch, &mut jets),
+                    TieReach::Blended | TieReach::Nowhere => Some(TieKind::Seam),
                 };
                 if kind.is_none() && cell.depth < DEEPEST {
                     return true;
                 }
-                let known = kinds.entry(*id).or_insert(Kind::Seam);
-                *known = (*known).max(kind.unwrap_or(Kind::Crease));
+                let known = kinds.entry(*id).or_insert(TieKind::Seam);
+                *known = (*known).max(kind.unwrap_or(TieKind::Crease));
                 false
             });
             if !cell.choices.is_empty() {
                 for half in halves(&cell.bounds) {
-                    open.push(Cell { bounds: half, depth: cell.depth + 1, choices: cell.choices.clone() });
+                    open.push(TieCell { bounds: half, depth: cell.depth + 1, choices: cell.choices.clone() });
                 }
             }
         }
@@ -231,7 +231,7 @@ impl Search<'_> {
 
     /// Cells no wider than `width`, but for those at the end of a long search, in which one of these choices may be tied on the surface.
     async fn cells(&self, creasing: &[Id], width: f64) -> Vec<Bounds> {
-        let (mut scratch, mut found) = (Scratch::default(), Vec::new());
+        let (mut scratch, mut found) = (TieScratch::default(), Vec::new());
         let mut open = if creasing.is_empty() { Vec::new() } else { vec![*self.bounds] };
         let mut left = MOST_VISITED;
         while let Some(cell) = open.pop() {
@@ -242,8 +242,8 @@ impl Search<'_> {
             left -= 1;
             pause().await;
             let open_to = self.open_to(&cell, creasing, &mut scratch);
-            let is_tied = |&(id, reach): &(Id, Reach)| {
-                reach == Reach::Reached && self.may_be_tied(id, &cell, &mut scratch.ranges)
+            let is_tied = |&(id, reach): &(Id, TieReach)| {
+                reach == TieReach::Reached && self.may_be_tied(id, &cell, &mut scratch.ranges)
             };
             if open_to.iter().any(is_tied) {
                 if cell.size().max_element() > width {
@@ -257,8 +257,8 @@ impl Search<'_> {
         found
     }
 
-    /// Those of the `choices` that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
-    fn tied(&self, cell: &Bounds, choices: &[Id], scratch: &mut Scratch) -> Vec<(Id, Reach)> {
+    /// The choices, out of `choices`, that may be tied somewhere in the cell, with their reach; none if f has no zero in it.
+    fn tied(&self, cell: &Bounds, choices: &[Id], scratch: &mut TieScratch) -> Vec<(Id, TieReach)> {
         let mut open_to = self.open_to(cell, choices, scratch);
         open_to.retain(|&(id, _)| self.may_be_tied(id, cell, &mut scratch.ranges));
         open_to
@@ -271,11 +271,11 @@ impl Search<'_> {
         !roots.iter().any(|&root| ranges[root as usize].is_nonzero())
     }
 
-    /// Those of the `choices` whose operands may be equal somewhere in the cell and of which f depends there, with their reach; none if f
-    /// has no zero in it.
-    fn open_to(&self, cell: &Bounds, choices: &[Id], scratch: &mut Scratch) -> Vec<(Id, Reach)> {
+    /// The choices, out of `choices`, whose operands may be equal somewhere in the cell and on which f depends there, with their reach;
+    /// none if f has no zero in it.
+    fn open_to(&self, cell: &Bounds, choices: &[Id], scratch: &mut TieScratch) -> Vec<(Id, TieReach)> {
         let (base, part) = (self.base, self.part);
-        let Scratch { ranges, reaches, .. } = scratch;
+        let TieScratch { ranges, reaches, .. } = scratch;
         interval::bounds(&base.graph, &part.nodes, self.values, cell, ranges);
         let range = |id: Id| ranges[id as usize];
         let mut open_to = Vec::new();
@@ -283,17 +283,17 @@ impl Search<'_> {
             return open_to;
         }
         reaches.clear();
-        reaches.resize(part.root as usize + 1, Reach::Nowhere);
-        reaches[part.root as usize] = Reach::Reached;
+        reaches.resize(part.root as usize + 1, TieReach::Nowhere);
+        reaches[part.root as usize] = TieReach::Reached;
         for &id in part.nodes.iter().rev().filter(|&&id| !base.graph.is_uniform(id)) {
             let reach = reaches[id as usize];
-            if reach == Reach::Nowhere {
+            if reach == TieReach::Nowhere {
                 continue;
             }
             let (role, node) = (base.roles[id as usize], base.graph.node(id));
-            let mut need = |id: Id, reach: Reach| reaches[id as usize] = reaches[id as usize].max(reach);
+            let mut need = |id: Id, reach: TieReach| reaches[id as usize] = reaches[id as usize].max(reach);
             match (role, node) {
-                (Role::Choice(condition), _) => {
+                (NodeRole::Choice(condition), _) => {
                     let holds = condition.in_box(range);
                     if holds == Holds::Somewhere && choices.contains(&id) {
                         open_to.push((id, reach));
@@ -305,46 +305,46 @@ impl Search<'_> {
                             .for_each(|id| need(id, reach));
                     }
                 }
-                (Role::Raised(u), _) => need(u, reach),
+                (NodeRole::Raised(u), _) => need(u, reach),
                 // Where the operands differ by more than the width, the blend is one of them.
-                (Role::Plain, Node::Smin(a, b, k)) => {
+                (NodeRole::Plain, Node::Smin(a, b, k)) => {
                     let width = range(k).bounds.hi.max(MIN_BLEND_WIDTH);
                     let is_far_below = |a: Id, b: Id| range(a).bounds.hi + width < range(b).bounds.lo;
-                    need(a, if is_far_below(b, a) { Reach::Blended } else { reach });
-                    need(b, if is_far_below(a, b) { Reach::Blended } else { reach });
+                    need(a, if is_far_below(b, a) { TieReach::Blended } else { reach });
+                    need(b, if is_far_below(a, b) { TieReach::Blended } else { reach });
                     need(k, reach);
                 }
-                (Role::Plain, _) => node.operands(|operand| need(operand, reach)),
+                (NodeRole::Plain, _) => node.operands(|operand| need(operand, reach)),
             }
         }
         open_to
     }
 
-    /// What the surface is at a place near the cell at which choice `id` is tied; none if no such place is found.
+    /// Kind of the surface at a place near the cell where choice `id` is tied; none if no such place is found.
     fn kind(
         &self,
         id: Id,
         cell: &Bounds,
-        scratch: &mut Scratch,
-        jets: &mut Vec<scalar::Order<0>>,
-    ) -> Option<Kind> {
+        scratch: &mut TieScratch,
+        jets: &mut Vec<scalar::ForwardJet<0>>,
+    ) -> Option<TieKind> {
         // Enough for Newton's method, which doubles the digits with each step, from a start that is not too bad.
         const STEPS: usize = 12;
         let graph = &self.base.graph;
         // A place that is farther away is found from another cell.
         let reach = 2.0 * cell.diagonal();
         let size = self.bounds.diagonal();
-        let Role::Choice(condition) = self.base.roles[id as usize] else { return None };
+        let NodeRole::Choice(condition) = self.base.roles[id as usize] else { return None };
         // f and the difference of the operands, which are below f in the graph, each with its gradient.
         let mut at = |p: DVec3| {
             scalar::jets(graph, self.part.root, self.values, p, jets);
             let of = |id: Id| jets[id as usize].first_order();
             let tie = match condition {
-                Condition::AtMost(a, b) => {
+                ChoiceCondition::AtMost(a, b) => {
                     let ((a, of_a), (b, of_b)) = (of(a), of(b));
                     (a - b, of_a - of_b)
                 }
-                Condition::NotNegative(u) => of(u),
+                ChoiceCondition::NotNegative(u) => of(u),
             };
             (of(self.part.root), tie)
         };
@@ -360,7 +360,7 @@ impl Search<'_> {
                 if determinant.is_nan() || determinant <= 1e-6 * gg * hh {
                     let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
                     if is_near(f, gg) && is_near(t, hh) {
-                        return Some(Kind::Crease);
+                        return Some(TieKind::Crease);
                     }
                     break;
                 }
@@ -375,15 +375,15 @@ impl Search<'_> {
                     continue;
                 }
                 let around = Bounds::new(p - STEP * size, p + STEP * size);
-                if !self.bounds.holds(p) || self.tied(&around, &[id], scratch) != [(id, Reach::Reached)] {
+                if !self.bounds.holds(p) || self.tied(&around, &[id], scratch) != [(id, TieReach::Reached)] {
                     break;
                 }
                 let across = h * (STEP * size / hh.sqrt());
                 let [one, other] = [p + across, p - across].map(|p| at(p).0.1);
                 if (one - other).length() > LEAST_JUMP * one.length().max(other.length()) {
-                    return Some(Kind::Crease);
+                    return Some(TieKind::Crease);
                 }
-                best = Some(Kind::Seam);
+                best = Some(TieKind::Seam);
                 break;
             }
         }

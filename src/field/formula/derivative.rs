@@ -37,17 +37,14 @@ pub(super) fn hessian(graph: &mut Graph, gradient: [Id; 3]) -> [Id; 6] {
 
 /// Nodes of ∂root/∂(x, y, z), by a backward sweep.
 pub(super) fn backward(graph: &mut Graph, root: Id) -> [Id; 3] {
-    let live = graph.live(&[root]);
+    let nodes = graph.needed_by(&[root]);
+    let mut adjoints: Vec<Option<Id>> = vec![None; graph.len()];
     let one = graph.constant(1.0);
     let zero = graph.constant(0.0);
-    let mut adjoints: Vec<Option<Id>> = vec![None; live.len()];
     adjoints[root as usize] = Some(one);
     let mut gradient = [zero; 3];
-    for id in (0..=root).rev() {
-        let Some(adjoint) = adjoints[id as usize] else { continue };
-        if !live[id as usize] || graph.is_uniform(id) {
-            continue;
-        }
+    for &id in nodes.iter().rev() {
+        let Some(adjoint) = adjoints[id as usize].filter(|_| !graph.is_uniform(id)) else { continue };
         if let Node::Coordinate(axis) = graph.node(id) {
             gradient[usize::from(axis)] = adjoint;
             continue;
@@ -65,12 +62,13 @@ pub(super) fn backward(graph: &mut Graph, root: Id) -> [Id; 3] {
 
 /// Nodes of ∂root/∂(coordinate `axis`) for each of `roots`, by a forward sweep.
 pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
-    let live = graph.live(roots);
+    let nodes = graph.needed_by(roots);
+    let count = graph.len();
     let zero = graph.constant(0.0);
     let one = graph.constant(1.0);
-    let mut tangent: Vec<Id> = vec![zero; live.len()];
-    for id in 0..u32::try_from(live.len()).unwrap_or(u32::MAX) {
-        if !live[id as usize] || graph.axes(id) >> axis & 1 == 0 {
+    let mut tangent: Vec<Id> = vec![zero; count];
+    for id in nodes {
+        if graph.axes(id) >> axis & 1 == 0 {
             continue;
         }
         tangent[id as usize] = match graph.node(id) {
@@ -79,14 +77,7 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
             // slope.
             Node::Binary(Binary::Min, a, b) => choose(graph, a, b, tangent[a as usize], tangent[b as usize]),
             Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[a as usize], tangent[b as usize]),
-            Node::IfLe(a, b, v) => {
-                let tangent = tangent[v as usize];
-                graph.if_le(a, b, tangent)
-            }
-            Node::IfGt(a, b, v) => {
-                let tangent = tangent[v as usize];
-                graph.if_gt(a, b, tangent)
-            }
+            Node::If(at_most, a, b, v) => graph.when(at_most, a, b, tangent[v as usize]),
             _ => {
                 let mut total = zero;
                 for (operand, slope) in operand_adjoints(graph, id, one).into_iter().flatten() {
@@ -105,8 +96,8 @@ fn choose(graph: &mut Graph, a: Id, b: Id, first: Id, second: Id) -> Id {
     if first == second {
         return first;
     }
-    let first = graph.if_le(a, b, first);
-    let second = graph.if_gt(a, b, second);
+    let first = graph.when(true, a, b, first);
+    let second = graph.when(false, a, b, second);
     graph.add(first, second)
 }
 
@@ -123,8 +114,7 @@ fn operand_adjoints(graph: &mut Graph, id: Id, adjoint: Id) -> [Option<(Id, Id)>
         }
         Node::Binary(operation, a, b) => binary(graph, operation, a, b, id, adjoint),
         Node::Smin(a, b, k) => smin(graph, a, b, k, adjoint),
-        Node::IfLe(a, b, v) => [Some((v, graph.if_le(a, b, adjoint))), None, None],
-        Node::IfGt(a, b, v) => [Some((v, graph.if_gt(a, b, adjoint))), None, None],
+        Node::If(at_most, a, b, v) => [Some((v, graph.when(at_most, a, b, adjoint))), None, None],
     }
 }
 
@@ -229,13 +219,13 @@ fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, adjoint: I
             });
         }
         Binary::Min => {
-            to_a = of_a.then(|| graph.if_le(a, b, adjoint));
-            to_b = of_b.then(|| graph.if_gt(a, b, adjoint));
+            to_a = of_a.then(|| graph.when(true, a, b, adjoint));
+            to_b = of_b.then(|| graph.when(false, a, b, adjoint));
         }
         // max(a, b) is a where b ≤ a.
         Binary::Max => {
-            to_a = of_a.then(|| graph.if_le(b, a, adjoint));
-            to_b = of_b.then(|| graph.if_gt(b, a, adjoint));
+            to_a = of_a.then(|| graph.when(true, b, a, adjoint));
+            to_b = of_b.then(|| graph.when(false, b, a, adjoint));
         }
         Binary::Pow => {
             to_a = of_a.then(|| {
@@ -297,7 +287,7 @@ fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)
         let slope = graph.sub(rise, sixth);
         // The minimum does not depend on widths below the smallest one.
         let slope = graph.mul(adjoint, slope);
-        (k, graph.if_le(least, k, slope))
+        (k, graph.when(true, least, k, slope))
     });
     [to_a, to_b, to_k]
 }

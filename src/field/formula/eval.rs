@@ -95,6 +95,22 @@ impl<'a> RegisterCells<'a> {
     fn get(&self, register: u32) -> &'a [Cell<Lanes>] {
         &self.cells[register as usize * self.stride..][..self.groups]
     }
+
+    /// Sets a register to the numbers of a buffer.
+    fn set(&self, register: u32, buffer: &[f32; BLOCK * LANES]) {
+        for (out, chunk) in self.get(register).iter().zip(buffer.as_chunks().0) {
+            out.set(Lanes(*chunk));
+        }
+    }
+}
+
+/// A buffer that begins with the numbers of `lanes`.
+fn copied(lanes: impl Iterator<Item = Lanes>) -> [f32; BLOCK * LANES] {
+    let mut buffer = [0.0; BLOCK * LANES];
+    for (chunk, lanes) in buffer.as_chunks_mut().0.iter_mut().zip(lanes) {
+        *chunk = lanes.0;
+    }
+    buffer
 }
 
 fn unary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
@@ -126,34 +142,19 @@ fn ternary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lan
 /// Applies a long function `f` to a copy of the register, in one loop that the compiler vectorises. A function pointer,
 /// called once per register, keeps a single copy of this code.
 fn long(registers: &RegisterCells<'_>, i: &Instruction, f: fn(&mut [f32])) {
-    let mut buffer = [0.0; BLOCK * LANES];
-    let (chunks, _) = buffer.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
-        *chunk = a.get().0;
-    }
+    let mut buffer = copied(registers.get(i.a).iter().map(Cell::get));
     f(&mut buffer[..registers.groups * LANES]);
-    let (chunks, _) = buffer.as_chunks::<LANES>();
-    for (out, chunk) in registers.get(i.out).iter().zip(chunks) {
-        out.set(Lanes(*chunk));
-    }
+    registers.set(i.out, &buffer);
 }
 
 /// Computes sine and cosine together.
 fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
-    let mut sine = [0.0; BLOCK * LANES];
+    let mut sine = copied(registers.get(i.a).iter().map(Cell::get));
     let mut cosine = [0.0; BLOCK * LANES];
-    let (chunks, _) = sine.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
-        *chunk = a.get().0;
-    }
     let length = registers.groups * LANES;
     functions::sin_cos_all(&mut sine[..length], &mut cosine[..length]);
-    for (register, result) in [(i.out, &sine), (i.b, &cosine)] {
-        let (chunks, _) = result.as_chunks::<LANES>();
-        for (out, chunk) in registers.get(register).iter().zip(chunks) {
-            out.set(Lanes(*chunk));
-        }
-    }
+    registers.set(i.out, &sine);
+    registers.set(i.b, &cosine);
 }
 
 /// Applies a long function of two operands; see [`long`].
@@ -163,22 +164,11 @@ fn long_binary(
     b: &dyn Fn(usize) -> Lanes,
     f: fn(&mut [f32], &[f32]),
 ) {
-    let mut first = [0.0; BLOCK * LANES];
-    let mut second = [0.0; BLOCK * LANES];
-    let (chunks, _) = first.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
-        *chunk = a.get().0;
-    }
-    let (chunks, _) = second.as_chunks_mut::<LANES>();
-    for (k, chunk) in chunks.iter_mut().enumerate().take(registers.groups) {
-        *chunk = b(k).0;
-    }
+    let mut first = copied(registers.get(i.a).iter().map(Cell::get));
+    let second = copied((0..registers.groups).map(b));
     let length = registers.groups * LANES;
     f(&mut first[..length], &second[..length]);
-    let (chunks, _) = first.as_chunks::<LANES>();
-    for (out, chunk) in registers.get(i.out).iter().zip(chunks) {
-        out.set(Lanes(*chunk));
-    }
+    registers.set(i.out, &first);
 }
 
 /// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln a) and as accurate.
@@ -254,11 +244,8 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
                 _ => unreachable!("only differences and quotients are compiled reversed"),
             }
         }
-        Op::IfLe => ternary(registers, i, |a, b, c| {
-            Lanes(core::array::from_fn(|k| if a.0[k] <= b.0[k] { c.0[k] } else { 0.0 }))
-        }),
-        Op::IfGt => ternary(registers, i, |a, b, c| {
-            Lanes(core::array::from_fn(|k| if a.0[k] <= b.0[k] { 0.0 } else { c.0[k] }))
+        Op::If(at_most) => ternary(registers, i, |a, b, c| {
+            Lanes(core::array::from_fn(|k| if (a.0[k] <= b.0[k]) == at_most { c.0[k] } else { 0.0 }))
         }),
         Op::MulAdd => ternary(registers, i, |a, b, c| a * b + c),
         Op::MulSub => ternary(registers, i, |a, b, c| a * b - c),

@@ -22,10 +22,8 @@ pub(super) enum Node {
     Power(Id, i32),
     /// Smooth minimum of two values, with its blend width.
     Smin(Id, Id, Id),
-    /// The third value where the first is at most the second, else 0.
-    IfLe(Id, Id, Id),
-    /// 0 where the first value is at most the second, else the third.
-    IfGt(Id, Id, Id),
+    /// The third value where the first is at most the second, or, with `false`, where it is not; else 0.
+    If(bool, Id, Id, Id),
 }
 
 impl Node {
@@ -42,7 +40,7 @@ impl Node {
                 visit(a);
                 visit(b);
             }
-            Self::Smin(a, b, c) | Self::IfLe(a, b, c) | Self::IfGt(a, b, c) => {
+            Self::Smin(a, b, c) | Self::If(_, a, b, c) => {
                 visit(a);
                 visit(b);
                 visit(c);
@@ -58,8 +56,7 @@ impl Node {
             Self::Power(a, n) => Self::Power(map(a), n),
             Self::Binary(operation, a, b) => Self::Binary(operation, map(a), map(b)),
             Self::Smin(a, b, c) => Self::Smin(map(a), map(b), map(c)),
-            Self::IfLe(a, b, c) => Self::IfLe(map(a), map(b), map(c)),
-            Self::IfGt(a, b, c) => Self::IfGt(map(a), map(b), map(c)),
+            Self::If(at_most, a, b, c) => Self::If(at_most, map(a), map(b), map(c)),
         }
     }
 
@@ -73,8 +70,9 @@ impl Node {
             Self::Binary(operation, a, b) => operation.evaluate(value(a), value(b)),
             Self::Power(a, n) => power(value(a), n),
             Self::Smin(a, b, k) => smin(value(a), value(b), value(k)),
-            Self::IfLe(a, b, v) => if_le(value(a), value(b), value(v), 0.0),
-            Self::IfGt(a, b, v) => if_le(value(a), value(b), 0.0, value(v)),
+            Self::If(_, a, b, _) if value(a).is_nan() || value(b).is_nan() => f64::NAN,
+            Self::If(at_most, a, b, v) if (value(a) <= value(b)) == at_most => value(v),
+            Self::If(..) => 0.0,
         }
     }
 }
@@ -103,16 +101,6 @@ pub(super) fn smin(a: f64, b: f64, k: f64) -> f64 {
     let k = Binary::Max.evaluate(k, MIN_BLEND_WIDTH);
     let gap = 1.0 - Binary::Min.evaluate(((a - b) / k).abs(), 1.0);
     Binary::Min.evaluate(a, b) - k * (gap * gap * gap) / 6.0
-}
-
-fn if_le(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
-    if a <= b {
-        then
-    } else if a > b {
-        otherwise
-    } else {
-        f64::NAN
-    }
 }
 
 /// The nodes, with the coordinates that each depends on.
@@ -214,8 +202,7 @@ impl Graph {
             Node::Binary(operation, a, b) => self.binary(operation, a, b),
             Node::Power(a, n) => self.power(a, n),
             Node::Smin(a, b, k) => self.smin(a, b, k),
-            Node::IfLe(a, b, value) => self.if_le(a, b, value),
-            Node::IfGt(a, b, value) => self.if_gt(a, b, value),
+            Node::If(at_most, a, b, value) => self.when(at_most, a, b, value),
         }
     }
 
@@ -487,25 +474,8 @@ impl Graph {
         self.folded(Node::Smin(a, b, k))
     }
 
-    pub(super) fn if_le(&mut self, a: Id, b: Id, value: Id) -> Id {
-        if self.is(value, 0.0) { value } else { self.folded(Node::IfLe(a, b, value)) }
-    }
-
-    pub(super) fn if_gt(&mut self, a: Id, b: Id, value: Id) -> Id {
-        if self.is(value, 0.0) { value } else { self.folded(Node::IfGt(a, b, value)) }
-    }
-
-    /// For each node, whether one of `roots` depends on it.
-    pub(super) fn live(&self, roots: &[Id]) -> Vec<bool> {
-        let mut live = vec![false; self.len()];
-        for &root in roots {
-            live[root as usize] = true;
-        }
-        for id in (0..self.len()).rev() {
-            if live[id] {
-                self.nodes[id].operands(|operand| live[operand as usize] = true);
-            }
-        }
-        live
+    /// The node of `value` where a ≤ b, or, unless `at_most`, where it is not; and of 0 elsewhere.
+    pub(super) fn when(&mut self, at_most: bool, a: Id, b: Id, value: Id) -> Id {
+        if self.is(value, 0.0) { value } else { self.folded(Node::If(at_most, a, b, value)) }
     }
 }

@@ -1,5 +1,6 @@
 //! The commands of LaTeX that a formula may have, as it is pasted from a text.
 
+use super::elsewhere::name_elsewhere;
 use super::token::{Bar, Token};
 
 /// The meaning of a LaTeX command.
@@ -17,28 +18,8 @@ pub(super) enum LatexCommand {
     Token(Token),
 }
 
-/// Functions and constants by their commands.
-const NAMES: &[(&str, &str)] = &[
-    ("sin", "sin"),
-    ("cos", "cos"),
-    ("tan", "tan"),
-    ("sinh", "sinh"),
-    ("cosh", "cosh"),
-    ("tanh", "tanh"),
-    ("arcsin", "asin"),
-    ("arccos", "acos"),
-    ("arctan", "atan"),
-    ("exp", "exp"),
-    ("ln", "ln"),
-    ("log", "log"),
-    ("lg", "lg"),
-    ("min", "min"),
-    ("max", "max"),
-    ("sgn", "sign"),
-    ("pi", "pi"),
-    ("tau", "tau"),
-    ("phi", "phi"),
-    ("varphi", "phi"),
+/// Greek letters by their names, which are the commands of LaTeX.
+const GREEK: &[(&str, &str)] = &[
     ("alpha", "α"),
     ("beta", "β"),
     ("gamma", "γ"),
@@ -74,6 +55,11 @@ const NAMES: &[(&str, &str)] = &[
     ("Omega", "Ω"),
 ];
 
+/// The Greek letter with this name, but for π, τ and φ, which are constants.
+pub(super) fn greek(name: &str) -> Option<&'static str> {
+    GREEK.iter().find(|(known, _)| *known == name).map(|&(_, letter)| letter)
+}
+
 /// The meaning of the LaTeX command `word`, given without its backslash; none if the command is unknown.
 pub(super) fn command(word: &str) -> Option<LatexCommand> {
     let token = match word {
@@ -94,10 +80,11 @@ pub(super) fn command(word: &str) -> Option<LatexCommand> {
         "rvert" => Token::Bar(Bar::Closing),
         "{" => Token::Open('{'),
         "}" => Token::Close('}'),
-        _ => {
-            let (_, name) = NAMES.iter().find(|(latex, _)| *latex == word)?;
-            Token::Name((*name).into())
-        }
+        "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "exp" | "ln" | "log" | "lg" | "min" | "max"
+        | "pi" | "tau" | "phi" => Token::Name(word.into()),
+        "varphi" => Token::Name("phi".into()),
+        "arcsin" | "arccos" | "arctan" | "sgn" => Token::Name(name_elsewhere(word)?.into()),
+        _ => Token::Name(greek(word)?.into()),
     };
     Some(LatexCommand::Token(token))
 }

@@ -2,6 +2,7 @@
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::display::{Precedence, level};
+use super::latex::greek;
 use crate::math::shortest_text;
 use serde::Serialize;
 
@@ -279,40 +280,4 @@ fn starts_with_digit(expr: &Expr) -> bool {
         ExprKind::Product(factors) => starts_with_digit(&factors[0].1),
         _ => false,
     }
-}
-
-/// Greek letter with the given name.
-fn greek(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "alpha" => "α",
-        "beta" => "β",
-        "gamma" => "γ",
-        "delta" => "δ",
-        "epsilon" => "ε",
-        "zeta" => "ζ",
-        "eta" => "η",
-        "theta" => "θ",
-        "iota" => "ι",
-        "kappa" => "κ",
-        "lambda" => "λ",
-        "mu" => "μ",
-        "nu" => "ν",
-        "xi" => "ξ",
-        "rho" => "ρ",
-        "sigma" => "σ",
-        "upsilon" => "υ",
-        "chi" => "χ",
-        "psi" => "ψ",
-        "omega" => "ω",
-        "Gamma" => "Γ",
-        "Delta" => "Δ",
-        "Theta" => "Θ",
-        "Lambda" => "Λ",
-        "Xi" => "Ξ",
-        "Sigma" => "Σ",
-        "Phi" => "Φ",
-        "Psi" => "Ψ",
-        "Omega" => "Ω",
-        _ => return None,
-    })
 }

@@ -148,16 +148,22 @@ pub struct Formula {
     compiled: Compiled,
     /// The smooth branches of f, one of which may be evaluated in its place.
     branches: Branches,
-    scratch: eval::RegisterFile,
-    jets: scalar::JetScratch,
-    slopes: Vec<scalar::Order<0>>,
-    /// Scratch memory for the values of the nodes in double precision.
-    doubles: Vec<f64>,
+    scratch: EvaluationScratch,
     /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
     double: Option<f64>,
     /// The point from which positions are counted, [`Field::origin`].
     origin: DVec3,
-    /// Scratch memory for boxes in the coordinates of the formula.
+}
+
+/// Memory that evaluations use again.
+#[derive(Clone, Debug, Default)]
+struct EvaluationScratch {
+    registers: eval::RegisterFile,
+    /// Values of the nodes in double precision, with derivatives up to the second, with first ones, and alone.
+    jets: scalar::JetScratch,
+    slopes: Vec<scalar::ForwardJet<0>>,
+    doubles: Vec<f64>,
+    /// Boxes in the coordinates of the formula.
     boxes: Vec<Bounds>,
 }
 
@@ -208,20 +214,16 @@ impl Formula {
             text: text.to_owned(),
             simplified: None,
             solid: Solid::default(),
-            branches: Branches::new(compiled.graph(), &values),
+            branches: Branches::new(&compiled, &values),
             values,
             automatic,
             unused,
             compiled,
             equation: parsed.equation,
             parameters,
-            scratch: eval::RegisterFile::default(),
-            jets: Vec::new(),
-            slopes: Vec::new(),
-            doubles: Vec::new(),
+            scratch: EvaluationScratch::default(),
             double: None,
             origin: DVec3::ZERO,
-            boxes: Vec::new(),
         })
     }
 
@@ -323,7 +325,7 @@ impl Formula {
     }
 
     fn use_compiled(&mut self, compiled: Compiled) {
-        self.branches = Branches::new(compiled.graph(), &self.values);
+        self.branches = Branches::new(&compiled, &self.values);
         self.compiled = compiled;
     }
 
@@ -409,14 +411,14 @@ impl Formula {
         if self.origin == DVec3::ZERO {
             return enclose(self, boxes);
         }
-        let mut moved = core::mem::take(&mut self.boxes);
+        let mut moved = core::mem::take(&mut self.scratch.boxes);
         moved.clear();
         moved.extend(boxes.iter().map(|own| {
             let [lo, hi] = [own.lo(), own.hi()].map(|corner| (self.origin + corner).to_array());
             Bounds { min: lo.map(f64::next_down), max: hi.map(f64::next_up) }
         }));
         let result = enclose(self, &moved);
-        self.boxes = moved;
+        self.scratch.boxes = moved;
         result
     }
 
@@ -549,13 +551,14 @@ impl Field for Formula {
         let compiled = self.branches.active(&mut self.compiled);
         if is_double {
             for (&p, value) in points.iter().zip(value) {
-                let exact = compiled.value(&self.values, place(self.origin, p.as_dvec3()), &mut self.doubles);
+                let exact =
+                    compiled.value(&self.values, place(self.origin, p.as_dvec3()), &mut self.scratch.doubles);
                 *value = double::value(exact, self.double);
             }
             return;
         }
         let value = &mut value[..points.len()];
-        eval::run(&compiled.value_program, &mut self.scratch, points, &mut eval::Values(value));
+        eval::run(&compiled.value_program, &mut self.scratch.registers, points, &mut eval::Values(value));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
@@ -563,15 +566,18 @@ impl Field for Formula {
         let compiled = self.branches.active(&mut self.compiled);
         if is_double {
             for (k, &p) in points.iter().enumerate() {
-                let exact =
-                    compiled.gradient(&self.values, place(self.origin, p.as_dvec3()), &mut self.doubles);
+                let exact = compiled.gradient(
+                    &self.values,
+                    place(self.origin, p.as_dvec3()),
+                    &mut self.scratch.doubles,
+                );
                 (value[k], gradient[k]) = double::gradient(exact, self.double);
             }
             return;
         }
         let mut sink =
             eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
-        eval::run(&compiled.gradient_program, &mut self.scratch, points, &mut sink);
+        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, &mut sink);
     }
 
     fn hessians(
@@ -585,7 +591,8 @@ impl Field for Formula {
         let compiled = self.branches.active(&mut self.compiled);
         if is_double {
             for (k, &p) in points.iter().enumerate() {
-                let jet = compiled.jet(&self.values, place(self.origin, p.as_dvec3()), &mut self.jets);
+                let jet =
+                    compiled.jet(&self.values, place(self.origin, p.as_dvec3()), &mut self.scratch.jets);
                 (value[k], gradient[k], hessian[k]) = double::hessian(&jet, self.double);
             }
             return;
@@ -595,18 +602,19 @@ impl Field for Formula {
             gradient: &mut gradient[..points.len()],
             hessian: &mut hessian[..points.len()],
         };
-        eval::run(compiled.hessian_program(&self.values), &mut self.scratch, points, &mut sink);
+        eval::run(compiled.hessian_program(&self.values), &mut self.scratch.registers, points, &mut sink);
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
         let compiled = self.branches.active(&mut self.compiled);
-        let (value, gradient) = compiled.first_order(&self.values, place(self.origin, p), &mut self.slopes);
+        let (value, gradient) =
+            compiled.first_order(&self.values, place(self.origin, p), &mut self.scratch.slopes);
         self.double.map_or((value, gradient), |scale| (value / scale, gradient / scale))
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
         let compiled = self.branches.active(&mut self.compiled);
-        let jet = compiled.jet(&self.values, place(self.origin, p), &mut self.jets);
+        let jet = compiled.jet(&self.values, place(self.origin, p), &mut self.scratch.jets);
         self.double.map_or(jet, |scale| double::scaled(jet, scale))
     }
 

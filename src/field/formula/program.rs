@@ -31,10 +31,8 @@ pub(super) enum Op {
     Uniform(Binary),
     /// U[b] ∘ R[a], for the operations that do not commute.
     Reversed(Binary),
-    /// R[c] where R[a] ≤ R[b], else 0
-    IfLe,
-    /// 0 where R[a] ≤ R[b], else R[c]
-    IfGt,
+    /// R[c] where R[a] ≤ R[b], or, with `false`, where it is not; else 0
+    If(bool),
     /// R[a] · R[b] + R[c]
     MulAdd,
     /// R[a] · R[b] − R[c]
@@ -116,13 +114,11 @@ impl Program {
 /// Estimated cost of computing `outputs` for a point, in units of one addition. It serves to choose between forward and
 /// backward differentiation.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
-    let live = graph.live(outputs);
-    let mut total: u32 = 0;
-    for (id, node) in graph.nodes().iter().enumerate() {
-        if !live[id] || graph.is_uniform(u32::try_from(id).unwrap_or(u32::MAX)) {
-            continue;
+    let of_node = |id: Id| {
+        if graph.is_uniform(id) {
+            return 0;
         }
-        total += match *node {
+        match graph.node(id) {
             Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => 0,
             Node::Unary(Unary::Neg | Unary::Abs | Unary::Sign, _) => 1,
             Node::Unary(Unary::Sqrt, _) => 4,
@@ -132,23 +128,19 @@ pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
             Node::Binary(_, _, _) => 1,
             Node::Power(_, n) => n.unsigned_abs().ilog2() + if n < 0 { 4 } else { 0 },
             Node::Smin(_, _, _) => 10,
-            Node::IfLe(_, _, _) | Node::IfGt(_, _, _) => 2,
-        };
-    }
-    total
+            Node::If(..) => 2,
+        }
+    };
+    graph.needed_by(outputs).into_iter().map(of_node).sum()
 }
 
 /// Replaces every smooth minimum by min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. Returns the new
 /// outputs.
 fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
-    let live = graph.live(outputs);
-    let mut map: Vec<Id> = (0..u32::try_from(live.len()).unwrap_or(u32::MAX)).collect();
-    for id in 0..live.len() {
-        if !live[id] {
-            continue;
-        }
-        let node = graph.nodes()[id].mapped(|operand| map[operand as usize]);
-        map[id] = if let Node::Smin(a, b, k) = node {
+    let mut map: Vec<Id> = vec![0; graph.len()];
+    for id in graph.needed_by(outputs) {
+        let node = graph.node(id).mapped(|operand| map[operand as usize]);
+        map[id as usize] = if let Node::Smin(a, b, k) = node {
             let (one, minus_one) = (graph.constant(1.0), graph.constant(-1.0));
             let least = graph.constant(MIN_BLEND_WIDTH);
             let width = graph.binary(Binary::Max, k, least);
@@ -182,15 +174,11 @@ fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
         let square = low.intern(Node::Unary(Unary::Square, half));
         if n.is_multiple_of(2) { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
     }
-    let live = graph.live(outputs);
     let mut low = Graph::default();
-    let mut map: Vec<Id> = vec![0; live.len()];
-    for (id, &node) in graph.nodes().iter().enumerate() {
-        if !live[id] {
-            continue;
-        }
-        let node = node.mapped(|operand| map[operand as usize]);
-        map[id] = match node {
+    let mut map: Vec<Id> = vec![0; graph.len()];
+    for id in graph.needed_by(outputs) {
+        let node = graph.node(id).mapped(|operand| map[operand as usize]);
+        map[id as usize] = match node {
             Node::Power(a, n) if !low.is_uniform(a) => {
                 let base = if n < 0 { low.intern(Node::Power(a, -1)) } else { a };
                 product(&mut low, base, n.unsigned_abs())
@@ -222,15 +210,10 @@ struct Compiler<'a> {
 impl<'a> Compiler<'a> {
     fn new(graph: &'a Graph, outputs: &'a [Id]) -> Self {
         let mut uses = vec![0; graph.len()];
-        let live = graph.live(outputs);
-        for (id, node) in graph.nodes().iter().enumerate() {
-            if live[id] {
-                node.operands(|operand| uses[operand as usize] += 1);
-            }
+        for id in graph.needed_by(outputs) {
+            graph.node(id).operands(|operand| uses[operand as usize] += 1);
         }
-        for &output in outputs {
-            uses[output as usize] += 1;
-        }
+        outputs.iter().for_each(|&output| uses[output as usize] += 1);
         let mut registers_needed: Vec<u32> = Vec::with_capacity(graph.len());
         for node in graph.nodes() {
             let mut operands = Vec::new();
@@ -404,10 +387,9 @@ impl<'a> Compiler<'a> {
                 self.push(Op::Reciprocal, [a, 0, 0])
             }
             Node::Binary(operation, a, b) => self.emit_binary(operation, a, b),
-            Node::IfLe(a, b, c) | Node::IfGt(a, b, c) => {
+            Node::If(at_most, a, b, c) => {
                 let operands = [self.operand(a), self.operand(b), self.operand(c)];
-                let le = matches!(self.graph.node(id), Node::IfLe(_, _, _));
-                self.push(if le { Op::IfLe } else { Op::IfGt }, operands)
+                self.push(Op::If(at_most), operands)
             }
             Node::Constant(_) | Node::Parameter(_) | Node::Smin(_, _, _) => {
                 unreachable!("uniform nodes are not scheduled, smooth minima were expanded")
@@ -541,7 +523,7 @@ fn register_operands(op: Op) -> [bool; 3] {
         | Op::Reversed(_)
         | Op::ScaleAddUniform => [true, false, false],
         Op::Binary(_) | Op::MulAddUniform => [true, true, false],
-        Op::IfLe | Op::IfGt | Op::MulAdd | Op::MulSub | Op::SubMul => [true; 3],
+        Op::If(_) | Op::MulAdd | Op::MulSub | Op::SubMul => [true; 3],
         Op::ScaleAdd | Op::SquareAdd => [true, false, true],
     }
 }

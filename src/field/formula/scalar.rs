@@ -10,7 +10,7 @@ use glam::DVec3;
 
 /// Jet: value, gradient, and the first `N` entries of the Hessian in the order xx, xy, xz, yy, yz, zz: all six, or none.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Order<const N: usize> {
+pub(super) struct ForwardJet<const N: usize> {
     value: f64,
     first: [f64; 3],
     second: [f64; N],
@@ -22,7 +22,7 @@ const ENTRIES: usize = 6;
 /// Axes of the entries of the Hessian.
 const PAIRS: [(usize, usize); ENTRIES] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-impl<const N: usize> Order<N> {
+impl<const N: usize> ForwardJet<N> {
     fn uniform(value: f64) -> Self {
         Self { value, first: [0.0; 3], second: [0.0; N] }
     }
@@ -84,7 +84,7 @@ impl<const N: usize> Order<N> {
 }
 
 /// Scratch space of [`jet`]: the jet of every node.
-pub(super) type JetScratch = Vec<Order<ENTRIES>>;
+pub(super) type JetScratch = Vec<ForwardJet<ENTRIES>>;
 
 /// f, ∇f and ∇∇f of node `root` at `point`.
 pub(super) fn jet(
@@ -95,7 +95,7 @@ pub(super) fn jet(
     scratch: &mut JetScratch,
 ) -> Jet {
     jets(graph, root, parameters, point, scratch);
-    let Order { value, first, second } = scratch[root as usize];
+    let ForwardJet { value, first, second } = scratch[root as usize];
     let [xx, xy, xz, yy, yz, zz] = second;
     Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
 }
@@ -106,41 +106,47 @@ pub(super) fn jets<const N: usize>(
     root: Id,
     parameters: &[f64],
     point: DVec3,
-    scratch: &mut Vec<Order<N>>,
+    scratch: &mut Vec<ForwardJet<N>>,
 ) {
     let point = point.to_array();
     scratch.clear();
     for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
         let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
         let result = if axes == 0 {
-            Order::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].value))
+            ForwardJet::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].value))
         } else {
-            order(node, point, axes, |id| (scratch[id as usize], graph.axes(id)))
+            order(node, point, axes, |id| Operand { jet: scratch[id as usize], axes: graph.axes(id) })
         };
         scratch.push(result);
     }
 }
 
-/// Jet of a node that depends on `axes`. `operand` gives the jet of an operand and the axes that it depends on.
+/// Jet of an operand, and the axes that it depends on: bit k stands for axis k.
+struct Operand<const N: usize> {
+    jet: ForwardJet<N>,
+    axes: u8,
+}
+
+/// Jet of a node that depends on `axes`.
 fn order<const N: usize>(
     node: Node,
     point: [f64; 3],
     axes: u8,
-    operand: impl Fn(Id) -> (Order<N>, u8),
-) -> Order<N> {
+    operand: impl Fn(Id) -> Operand<N>,
+) -> ForwardJet<N> {
     match node {
-        Node::Constant(_) | Node::Parameter(_) => Order::uniform(0.0),
+        Node::Constant(_) | Node::Parameter(_) => ForwardJet::uniform(0.0),
         Node::Coordinate(axis) => {
-            let mut out = Order::uniform(point[usize::from(axis)]);
+            let mut out = ForwardJet::uniform(point[usize::from(axis)]);
             out.first[usize::from(axis)] = 1.0;
             out
         }
         Node::Unary(operation, a) => {
-            let (a, _) = operand(a);
+            let a = operand(a).jet;
             a.apply(operation.jet(a.value), axes)
         }
         Node::Power(a, n) => {
-            let (a, _) = operand(a);
+            let a = operand(a).jet;
             let degree = f64::from(n);
             // Saturation concerns exponents at the lower end of the range of i32 only.
             let d1 = degree * power(a.value, n.saturating_sub(1));
@@ -148,16 +154,15 @@ fn order<const N: usize>(
             a.apply([power(a.value, n), d1, d2], axes)
         }
         Node::Binary(operation, a, b) => binary(operation, operand(a), operand(b), axes),
-        Node::Smin(a, b, k) => smooth_minimum(&operand(a).0, &operand(b).0, &operand(k).0, axes),
-        Node::IfLe(a, b, v) | Node::IfGt(a, b, v) => {
-            let (a, b, v) = (operand(a).0.value, operand(b).0.value, operand(v).0);
-            let le = matches!(node, Node::IfLe(_, _, _));
+        Node::Smin(a, b, k) => smooth_minimum(&operand(a).jet, &operand(b).jet, &operand(k).jet, axes),
+        Node::If(at_most, a, b, v) => {
+            let (a, b, v) = (operand(a).jet.value, operand(b).jet.value, operand(v).jet);
             if a.is_nan() || b.is_nan() {
                 v.scale(f64::NAN)
-            } else if (a <= b) == le {
+            } else if (a <= b) == at_most {
                 v
             } else {
-                Order::uniform(0.0)
+                ForwardJet::uniform(0.0)
             }
         }
     }
@@ -165,15 +170,16 @@ fn order<const N: usize>(
 
 fn binary<const N: usize>(
     operation: Binary,
-    (a, of_a): (Order<N>, u8),
-    (b, of_b): (Order<N>, u8),
+    first: Operand<N>,
+    second: Operand<N>,
     axes: u8,
-) -> Order<N> {
+) -> ForwardJet<N> {
+    let (Operand { jet: a, axes: of_a }, Operand { jet: b, axes: of_b }) = (first, second);
     match operation {
         Binary::Add => a.add(&b),
         Binary::Sub => a.add(&b.scale(-1.0)),
         Binary::Mul => a.mul(&b),
-        Binary::Div => Order { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
+        Binary::Div => ForwardJet { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
         Binary::Min if a.value <= b.value => a,
         Binary::Max if a.value >= b.value => a,
         Binary::Min | Binary::Max if a.value.is_nan() || b.value.is_nan() => a.add(&b).scale(f64::NAN),
@@ -188,7 +194,7 @@ fn binary<const N: usize>(
             }
             // a^b = exp(b ln a)
             let logarithm = if of_a == 0 {
-                Order::uniform(libm::log(a.value))
+                ForwardJet::uniform(libm::log(a.value))
             } else {
                 a.apply(Unary::Ln.jet(a.value), of_a)
             };
@@ -204,23 +210,28 @@ fn binary<const N: usize>(
                 let ratio = b.mul(&a.reciprocal(of_a));
                 ratio.apply(Unary::Atan.jet(ratio.value), axes).scale(-1.0)
             };
-            Order { value: angle, ..jet }
+            ForwardJet { value: angle, ..jet }
         }
     }
 }
 
 /// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the
 /// smaller of a and b.
-fn smooth_minimum<const N: usize>(a: &Order<N>, b: &Order<N>, k: &Order<N>, axes: u8) -> Order<N> {
+fn smooth_minimum<const N: usize>(
+    a: &ForwardJet<N>,
+    b: &ForwardJet<N>,
+    k: &ForwardJet<N>,
+    axes: u8,
+) -> ForwardJet<N> {
     let value = smin(a.value, b.value, k.value);
-    let k = if k.value > MIN_BLEND_WIDTH { *k } else { Order::uniform(MIN_BLEND_WIDTH) };
+    let k = if k.value > MIN_BLEND_WIDTH { *k } else { ForwardJet::uniform(MIN_BLEND_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
     let u = difference.mul(&k.reciprocal(axes));
     if u.value >= 1.0 {
-        return Order { value, ..*b };
+        return ForwardJet { value, ..*b };
     }
     if u.value <= -1.0 {
-        return Order { value, ..*a };
+        return ForwardJet { value, ..*a };
     }
     let size = u.value.abs();
     let blend = u.apply(
@@ -231,5 +242,5 @@ fn smooth_minimum<const N: usize>(a: &Order<N>, b: &Order<N>, k: &Order<N>, axes
         ],
         axes,
     );
-    Order { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
+    ForwardJet { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
 }

@@ -47,10 +47,10 @@ impl Solid {
 /// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to first order.
 ///
 /// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0 and b = 0, each by its own gradient.
-/// They meet in edges, which they would miss by the jump of |∇f|.
+/// These sheets meet in edges. With the one gradient of max(a, b) they would miss each other by the jump of |∇f|.
 fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
     let half = graph.constant(0.5 * thickness);
-    let mut sheets = Sheets { graph, half, left: MAX_SHEETS };
+    let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };
     let zero = sheets.graph.constant(0.0);
     let [above, below] =
         [false, true].map(|is_negative| sheets.side(&Signed { node: root, is_negative, shift: zero }));
@@ -64,15 +64,15 @@ struct Signed {
     shift: Id,
 }
 
-struct Sheets<'a> {
+struct SheetBuilder<'a> {
     graph: &'a mut Graph,
-    /// Half of the thickness.
+    /// Node of half of the thickness.
     half: Id,
     /// Number of smooth functions that may still be added.
     left: usize,
 }
 
-impl Sheets<'_> {
+impl SheetBuilder<'_> {
     /// The node of a function that is at most 0 where f/|∇f| ≤ t/2, for the function f.
     fn side(&mut self, f: &Signed) -> Id {
         let &Signed { node, is_negative, shift } = f;

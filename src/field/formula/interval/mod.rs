@@ -30,8 +30,8 @@ enum BoxOp {
     /// Row a times uniform b.
     Scale,
     Smin,
-    IfLe,
-    IfGt,
+    /// Row c where row a is at most row b, or, with `false`, where it is not; else 0.
+    If(bool),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -58,20 +58,20 @@ pub(super) struct BoxProgram {
 impl BoxProgram {
     /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
-        let live = graph.live(outputs);
         let mut program = Self::default();
         let mut uniform = vec![0_u32; graph.len()];
         // Virtual row of each node, later replaced by a real one.
         let mut row = vec![u32::MAX; graph.len()];
         let mut next = 3_u32;
-        for (id, &node) in graph.nodes().iter().enumerate().filter(|(id, _)| live[*id]) {
-            if graph.is_uniform(id as Id) {
-                uniform[id] = program.uniform_nodes.len() as u32;
+        for id in graph.needed_by(outputs) {
+            let node = graph.node(id);
+            if graph.is_uniform(id) {
+                uniform[id as usize] = program.uniform_nodes.len() as u32;
                 program.uniform_nodes.push(node.mapped(|operand| uniform[operand as usize]));
                 continue;
             }
             if let Node::Coordinate(axis) = node {
-                row[id] = u32::from(axis);
+                row[id as usize] = u32::from(axis);
                 continue;
             }
             let exact = |operand: Id| graph.is_uniform(operand);
@@ -92,13 +92,12 @@ impl BoxProgram {
                 Node::Binary(_, _, _) if scaled => BoxOp::Scale,
                 Node::Binary(operation, _, _) => BoxOp::Binary(operation),
                 Node::Smin(_, _, _) => BoxOp::Smin,
-                Node::IfLe(_, _, _) => BoxOp::IfLe,
-                Node::IfGt(_, _, _) => BoxOp::IfGt,
+                Node::If(at_most, ..) => BoxOp::If(at_most),
                 Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => {
                     unreachable!("dealt with above")
                 }
             };
-            row[id] = next;
+            row[id as usize] = next;
             program.steps.push(BoxStep { op, out: next, operands });
             next += 1;
         }
@@ -226,8 +225,9 @@ impl BoxProgram {
                 _ => Row::each(n, |k| row(a).at(k).binary(operation, row(b).at(k))),
             },
             BoxOp::Smin => Row::each(n, |k| Range::smooth_minimum(row(a).at(k), row(b).at(k), row(c).at(k))),
-            BoxOp::IfLe => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), true)),
-            BoxOp::IfGt => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), false)),
+            BoxOp::If(at_most) => {
+                Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), at_most))
+            }
         }
     }
 }
@@ -250,8 +250,7 @@ fn range_of(
         Node::Power(a, n) => known(a).power(n),
         Node::Binary(operation, a, b) => known(a).binary(operation, known(b)),
         Node::Smin(a, b, k) => Range::smooth_minimum(known(a), known(b), known(k)),
-        Node::IfLe(a, b, v) => Range::choice(known(a), known(b), known(v), true),
-        Node::IfGt(a, b, v) => Range::choice(known(a), known(b), known(v), false),
+        Node::If(at_most, a, b, v) => Range::choice(known(a), known(b), known(v), at_most),
     }
 }
 
@@ -279,7 +278,7 @@ impl BoxOp {
             Self::Fill => [false; 3],
             Self::Unary(_) | Self::Power(_) | Self::Scale => [true, false, false],
             Self::Binary(_) => [true, true, false],
-            Self::Smin | Self::IfLe | Self::IfGt => [true; 3],
+            Self::Smin | Self::If(_) => [true; 3],
         }
     }
 }
