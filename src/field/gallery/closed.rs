@@ -1,6 +1,6 @@
 //! Closed surfaces in one piece.
 
-use super::{Surface, parameter};
+use super::{CLOSED, Surface, parameter};
 use crate::math::Bounds;
 
 pub(super) const SURFACES: &[Surface] = &[
@@ -15,14 +15,12 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.25, 1.05, 0.85]),
         degree: Some(2),
-        closed: true,
         genus: Some(0),
-        smooth: true,
-        intricate: false,
         story: "A sphere stretched by three different factors, the simplest closed surface whose \
                 curvature varies from point to point. At each of its four umbilics the two principal \
                 curvatures agree.",
         source: "D. Hilbert and S. Cohn-Vossen, Anschauliche Geometrie, 1932",
+        ..CLOSED
     },
     Surface {
         id: "sphere",
@@ -31,14 +29,12 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("r", "Radius", 1.0, [0.3, 1.2, 0.01])],
         bounds: Bounds::cube(1.25),
         degree: Some(2),
-        closed: true,
         genus: Some(0),
-        smooth: true,
-        intricate: false,
         story: "All points at one distance from a centre: the closed surface that holds the most volume \
                 for its area. No lattice of six neighbours covers it, because the defects of valence \
                 must add up to twelve.",
         source: "Archimedes, On the Sphere and Cylinder, about 225 BC",
+        ..CLOSED
     },
     Surface {
         id: "torus",
@@ -50,14 +46,12 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.65, 1.65, 0.55]),
         degree: Some(4),
-        closed: true,
         genus: Some(1),
-        smooth: true,
-        intricate: false,
         story: "A circle of radius r carried around an axis at distance R; it is dome-shaped on the \
                 outside and saddle-shaped on the inside. Its Euler number is zero, so that a covering \
                 with six neighbours everywhere is possible.",
         source: "D. Hilbert and S. Cohn-Vossen, Anschauliche Geometrie, 1932",
+        ..CLOSED
     },
     Surface {
         id: "dupin-cyclide",
@@ -69,14 +63,12 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds { min: [-2.35, -1.82, -1.35], max: [1.6, 1.82, 1.35] },
         degree: Some(4),
-        closed: true,
         genus: Some(1),
-        smooth: true,
-        intricate: false,
         story: "A torus seen in a spherical mirror: the tube swells on one side and narrows on the \
                 other. All its lines of curvature are circles, which Charles Dupin found around 1802, \
                 while still a student.",
         source: "C. Dupin, Applications de géométrie et de mécanique, 1822",
+        ..CLOSED
     },
     Surface {
         id: "tanglecube",
@@ -85,13 +77,11 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("c", "Level", 11.8, [7.0, 13.5, 0.05])],
         bounds: Bounds::cube(2.5),
         degree: Some(4),
-        closed: true,
         genus: Some(5),
-        smooth: true,
-        intricate: false,
         story: "Eight balls at the corners of a cube, joined along its twelve edges to a surface of \
                 genus five. Raise c past 12.5 and the bridges break.",
         source: "É. Goursat, Annales scientifiques de l'École normale supérieure 4, 1887",
+        ..CLOSED
     },
     Surface {
         id: "superellipsoid",
@@ -102,15 +92,12 @@ pub(super) const SURFACES: &[Surface] = &[
             parameter("c", "Height", 0.8, [0.4, 1.1, 0.01]),
         ],
         bounds: Bounds::symmetric([1.1, 1.1, 1.2]),
-        degree: None,
-        closed: true,
         genus: Some(0),
-        smooth: true,
-        intricate: false,
         story: "The sphere's formula with another exponent: 2 gives an ellipsoid, and growing exponents \
                 turn it into a box with rounded edges. The designer and poet Piet Hein made the form \
                 popular in the 1960s.",
         source: "A. H. Barr, Superquadrics and angle-preserving transformations, IEEE Computer Graphics and Applications 1(1), 1981",
+        ..CLOSED
     },
     Surface {
         id: "double-torus",
@@ -119,14 +106,12 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("c", "Thickness", 0.12, [0.05, 0.22, 0.005])],
         bounds: Bounds::symmetric([1.2, 0.72, 0.28]),
         degree: Some(8),
-        closed: true,
         genus: Some(2),
-        smooth: true,
-        intricate: false,
         story: "A plane figure of eight, Gerono's lemniscate, thickened until it is the skin of a body \
                 with two holes. Squaring a curve's equation and adding z² does the same for any plane \
                 curve.",
         source: "E. W. Weisstein, Double Torus, MathWorld",
+        ..CLOSED
     },
     Surface {
         id: "tetrahedral-quartic",
@@ -135,13 +120,11 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 2.0, [-2.0, 6.0, 0.05])],
         bounds: Bounds::cube(3.0),
         degree: Some(4),
-        closed: true,
         genus: Some(3),
-        smooth: true,
-        intricate: false,
         story: "Four balls joined along the six edges of a tetrahedron, which leaves three handles. At t = 0 \
                 they only touch, in six cone points, and below there are four seeds for four components.",
         source: "É. Goursat, Annales scientifiques de l'École normale supérieure 4, 1887",
+        ..CLOSED
     },
     Surface {
         id: "decocube",
@@ -153,14 +136,13 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(1.45),
         degree: Some(12),
-        closed: true,
         genus: Some(13),
-        smooth: true,
         intricate: true,
         story: "Six rings, one on each face of a cube, thick enough to melt together where they come \
                 close. With the first settings it has genus thirteen; thin the rings and it falls apart \
                 into six tori.",
         source: "P. Bourke, Geometry, surfaces, curves, polyhedra: Decocube, paulbourke.net",
+        ..CLOSED
     },
     Surface {
         id: "drilled-block",
@@ -171,15 +153,13 @@ pub(super) const SURFACES: &[Surface] = &[
             parameter("k", "Blend", 0.12, [0.02, 0.25, 0.01]),
         ],
         bounds: Bounds::cube(0.95),
-        degree: None,
-        closed: true,
         genus: Some(5),
-        smooth: true,
         intricate: true,
         story: "A cube cut to a ball and drilled along three axes: constructive solid geometry with \
                 every sharp edge replaced by a smooth blend of width k. The crossing drill holes make \
                 its genus five.",
         source: "A. Ricci, A constructive geometry for computer graphics, The Computer Journal 16(2), 1973",
+        ..CLOSED
     },
     Surface {
         id: "chmutov",
@@ -188,14 +168,12 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.8, 0.8, 0.01])],
         bounds: Bounds::cube(1.05),
         degree: Some(6),
-        closed: true,
-        genus: None,
-        smooth: true,
         intricate: true,
         story: "The sum of three Chebyshev polynomials of degree six, whose even waves make a lattice of \
                 bodies joined by thin necks. Sergei Chmutov used such sums in 1992 to build surfaces with \
                 very many cone points, which open here as t leaves an odd number.",
         source: "S. V. Chmutov, Examples of projective surfaces with many singularities, Journal of Algebraic Geometry 1, 1992",
+        ..CLOSED
     },
     Surface {
         id: "rippled-sphere",
@@ -206,13 +184,10 @@ pub(super) const SURFACES: &[Surface] = &[
             parameter("n", "Ripples", 5.0, [2.0, 8.0, 0.1]),
         ],
         bounds: Bounds::cube(1.2),
-        degree: None,
-        closed: true,
         genus: Some(0),
-        smooth: true,
-        intricate: false,
         story: "A sphere whose distance from the centre swings between 1 − a and 1 + a. Its curvature grows \
                 with the square of n, so it shows well what adaptive sizes are for.",
         source: "Made for this gallery",
+        ..CLOSED
     },
 ];

@@ -110,6 +110,25 @@ const fn parameter(
     SurfaceParameter { name, label, value, min, max, step }
 }
 
+/// Base of the open surfaces: they state only the properties in which they differ from it.
+const OPEN: Surface = Surface {
+    id: "",
+    name: "",
+    formula: "",
+    parameters: &[],
+    bounds: Bounds::cube(1.0),
+    degree: None,
+    closed: false,
+    genus: None,
+    smooth: true,
+    intricate: false,
+    story: "",
+    source: "",
+};
+
+/// Base of the closed surfaces.
+const CLOSED: Surface = Surface { closed: true, ..OPEN };
+
 /// The gallery. Its first surface is the default.
 pub static GROUPS: &[SurfaceGroup] = &[
     SurfaceGroup { name: "Closed", surfaces: closed::SURFACES },

@@ -1,6 +1,6 @@
 //! Surfaces that repeat for ever; the box cuts a part out.
 
-use super::{Surface, parameter};
+use super::{OPEN, Surface, parameter};
 use crate::math::Bounds;
 
 pub(super) const SURFACES: &[Surface] = &[
@@ -11,16 +11,12 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-1.3, 1.3, 0.01])],
         // A little less than two periods, 4π, so that no slivers appear at the corners.
         bounds: Bounds::cube(6.2),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "It divides space into two labyrinths, each the mirror image of the other, and holds \
                 neither a straight line nor a plane of symmetry. Alan Schoen found the minimal surface \
                 that this formula closely follows in 1970; butterfly wings and block copolymers grow \
                 it by themselves.",
         source: "A. H. Schoen, Infinite periodic minimal surfaces without self-intersections, NASA TN D-5541, 1970",
+        ..OPEN
     },
     Surface {
         id: "schwarz-p",
@@ -28,15 +24,11 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "cos(x) + cos(y) + cos(z) = t",
         parameters: &[parameter("t", "Level", 0.0, [-0.95, 0.95, 0.01])],
         bounds: Bounds::cube(6.3),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "The primitive surface of Hermann Amandus Schwarz: chambers joined by necks along the \
                 edges of a cubic lattice. The formula is the first term of the true minimal surface's \
                 Fourier series, and already hard to tell from it.",
         source: "H. A. Schwarz, Gesammelte mathematische Abhandlungen 1, 1890",
+        ..OPEN
     },
     Surface {
         id: "schwarz-d",
@@ -45,15 +37,11 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.9, 0.9, 0.01])],
         // A little less than one period, 2π, so that no slivers appear at the corners.
         bounds: Bounds::cube(3.1),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "Two interlocking labyrinths whose tunnels run along the bonds of a diamond crystal. With \
                 the P surface and the gyroid it belongs to one family: bending without stretching turns \
                 each one into the others.",
         source: "H. A. Schwarz, Gesammelte mathematische Abhandlungen 1, 1890",
+        ..OPEN
     },
     Surface {
         id: "neovius",
@@ -61,15 +49,11 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "3(cos(x) + cos(y) + cos(z)) + 4cos(x) cos(y) cos(z) = t",
         parameters: &[parameter("t", "Level", 0.0, [-0.9, 0.9, 0.01])],
         bounds: Bounds::cube(3.1),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "The same symmetry as Schwarz P, but the chambers are joined along the twelve edges of a \
                 cube. Edvard Neovius, a student of Schwarz, described the minimal surface that this formula \
                 follows in 1883.",
         source: "E. R. Neovius, Bestimmung zweier speciellen periodischen Minimalflächen, 1883",
+        ..OPEN
     },
     Surface {
         id: "i-wp",
@@ -77,44 +61,30 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "2(cos(x) cos(y) + cos(y) cos(z) + cos(z) cos(x)) - cos(2x) - cos(2y) - cos(2z) = t",
         parameters: &[parameter("t", "Level", 0.0, [-1.0, 1.0, 0.01])],
         bounds: Bounds::cube(3.1),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "Unlike the gyroid it parts space into two labyrinths that are not alike: one follows the \
                 bonds of a body-centred lattice, the other wraps around it. Alan Schoen named it after these \
                 two graphs, I and wrapped package.",
         source: "A. H. Schoen, Infinite periodic minimal surfaces without self-intersections, NASA TN D-5541, 1970",
+        ..OPEN
     },
     Surface {
         id: "scherk-doubly-periodic",
         name: "Scherk surface",
         formula: "cos(x) exp(z) = cos(y)",
-        parameters: &[],
         bounds: Bounds::symmetric([6.0, 6.0, 3.0]),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "Saddles over the black fields of a chessboard, joined at its corners by vertical lines. \
                 Heinrich Scherk gave this formula, exact and not an approximation, in 1835.",
         source: "H. F. Scherk, Journal für die reine und angewandte Mathematik 13, 1835",
+        ..OPEN
     },
     Surface {
         id: "saddle-tower",
         name: "Saddle tower",
         formula: "sinh(x) sinh(y) = sin(z)",
-        parameters: &[],
         bounds: Bounds::symmetric([2.0, 2.0, 6.0]),
-        degree: None,
-        closed: false,
-        genus: None,
-        smooth: true,
-        intricate: false,
         story: "Two planes that cross are made one minimal surface by holes along the line of crossing, one \
                 above the other. It is Scherk's other surface of 1835, and its formula too is exact.",
         source: "H. F. Scherk, Journal für die reine und angewandte Mathematik 13, 1835",
+        ..OPEN
     },
 ];
