@@ -16,6 +16,7 @@ pub use function::FnField;
 use crate::math::{Bounds, Interval, Sym3};
 use crate::slices::Work;
 use core::future::ready;
+use core::ops::DerefMut;
 use glam::{DVec3, Vec3};
 
 /// Second-order jet of a field at a point, in double precision.
@@ -245,116 +246,82 @@ pub(crate) fn jet_by_differences<F: Field + ?Sized>(field: &mut F, p: DVec3) -> 
     Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
 }
 
-/// Implements [`Field`] for a type `this` that holds or borrows one, as two expressions give it: to be read, and to be used.
-macro_rules! forward_field {
-    ([$($generics:tt)*] $type:ty, |$this:ident| $field:expr, $field_mut:expr) => {
-        impl $($generics)* $crate::field::Field for $type {
-            fn value_and_gradient(&mut self, p: ::glam::DVec3) -> (f64, ::glam::DVec3) {
-                let $this = self;
-                $field_mut.value_and_gradient(p)
-            }
+/// A pointer to a field is a field.
+impl<P: DerefMut<Target: Field> + Send> Field for P {
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        (**self).value_and_gradient(p)
+    }
 
-            fn jet(&mut self, p: ::glam::DVec3) -> $crate::field::Jet {
-                let $this = self;
-                $field_mut.jet(p)
-            }
+    fn jet(&mut self, p: DVec3) -> Jet {
+        (**self).jet(p)
+    }
 
-            fn values(&mut self, points: &[::glam::Vec3], value: &mut [f32]) {
-                let $this = self;
-                $field_mut.values(points, value);
-            }
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        (**self).values(points, value);
+    }
 
-            fn gradients(&mut self, points: &[::glam::Vec3], value: &mut [f32], gradient: &mut [::glam::Vec3]) {
-                let $this = self;
-                $field_mut.gradients(points, value, gradient);
-            }
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        (**self).gradients(points, value, gradient);
+    }
 
-            fn hessians(
-                &mut self,
-                points: &[::glam::Vec3],
-                value: &mut [f32],
-                gradient: &mut [::glam::Vec3],
-                hessian: &mut [$crate::math::Sym3<f32>],
-            ) {
-                let $this = self;
-                $field_mut.hessians(points, value, gradient, hessian);
-            }
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        (**self).hessians(points, value, gradient, hessian);
+    }
 
-            fn exact_gradients(
-                &mut self,
-                points: &[::glam::Vec3],
-                value: &mut [f64],
-                gradient: &mut [::glam::DVec3],
-            ) {
-                let $this = self;
-                $field_mut.exact_gradients(points, value, gradient);
-            }
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        (**self).exact_gradients(points, value, gradient);
+    }
 
-            fn use_double(&mut self, scale: Option<f64>) {
-                let $this = self;
-                $field_mut.use_double(scale);
-            }
+    fn use_double(&mut self, scale: Option<f64>) {
+        (**self).use_double(scale);
+    }
 
-            fn bounded(&mut self) -> Option<&mut dyn $crate::field::Bounded> {
-                let $this = self;
-                $field_mut.bounded()
-            }
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        (**self).bounded()
+    }
 
-            fn origin(&self) -> ::glam::DVec3 {
-                let $this = self;
-                $field.origin()
-            }
+    fn origin(&self) -> DVec3 {
+        (**self).origin()
+    }
 
-            fn set_origin(&mut self, origin: ::glam::DVec3) {
-                let $this = self;
-                $field_mut.set_origin(origin);
-            }
+    fn set_origin(&mut self, origin: DVec3) {
+        (**self).set_origin(origin);
+    }
 
-            fn sampled_as(&self) -> Option<String> {
-                let $this = self;
-                $field.sampled_as()
-            }
+    fn sampled_as(&self) -> Option<String> {
+        (**self).sampled_as()
+    }
 
-            fn find_creases(
-                &mut self,
-                bounds: &$crate::math::Bounds,
-                width: f64,
-            ) -> $crate::slices::Work<'_, Vec<$crate::math::Bounds>> {
-                let $this = self;
-                $field_mut.find_creases(bounds, width)
-            }
+    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        (**self).find_creases(bounds, width)
+    }
 
-            fn branch_at(&mut self, p: ::glam::DVec3) -> u32 {
-                let $this = self;
-                $field_mut.branch_at(p)
-            }
+    fn branch_at(&mut self, p: DVec3) -> u32 {
+        (**self).branch_at(p)
+    }
 
-            fn branches_in(&mut self, bounds: &$crate::math::Bounds) -> Option<Vec<u32>> {
-                let $this = self;
-                $field_mut.branches_in(bounds)
-            }
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
+        (**self).branches_in(bounds)
+    }
 
-            fn select_branch(&mut self, branch: Option<u32>) {
-                let $this = self;
-                $field_mut.select_branch(branch);
-            }
+    fn select_branch(&mut self, branch: Option<u32>) {
+        (**self).select_branch(branch);
+    }
 
-            fn periods(&self) -> [Option<f64>; 3] {
-                let $this = self;
-                $field.periods()
-            }
+    fn periods(&self) -> [Option<f64>; 3] {
+        (**self).periods()
+    }
 
-            fn unit_cell(&self) -> Option<$crate::field::UnitCell> {
-                let $this = self;
-                $field.unit_cell()
-            }
-        }
-    };
+    fn unit_cell(&self) -> Option<UnitCell> {
+        (**self).unit_cell()
+    }
 }
-pub(crate) use forward_field;
-
-forward_field!([<F: Field + ?Sized>] &mut F, |this| (**this), (**this));
-forward_field!([<F: Field + ?Sized>] Box<F>, |this| (**this), (**this));
 
 /// A field that bounds its values and derivatives over boxes, rounded outward: what the proofs about its surface rest on.
 ///

@@ -16,14 +16,15 @@ pub use setting::{
 };
 
 use crate::extent::Reach;
+use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
-use crate::field::{Field, forward_field};
 use crate::math::Bounds;
 use crate::run::{Report, Run, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
+use core::ops::{Deref, DerefMut};
 use fitting::Fitting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -120,15 +121,12 @@ impl Source {
             Self::Points { .. } => None,
         }
     }
+}
 
-    fn as_field(&self) -> &dyn Field {
-        match self {
-            Self::Formula(field) => field,
-            Self::Points { field, .. } => field,
-        }
-    }
+impl Deref for Source {
+    type Target = dyn Field;
 
-    fn as_field_mut(&mut self) -> &mut dyn Field {
+    fn deref(&self) -> &Self::Target {
         match self {
             Self::Formula(field) => field,
             Self::Points { field, .. } => field,
@@ -136,7 +134,14 @@ impl Source {
     }
 }
 
-forward_field!([] Source, |source| source.as_field(), source.as_field_mut());
+impl DerefMut for Source {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::Formula(field) => field,
+            Self::Points { field, .. } => field,
+        }
+    }
+}
 
 /// A run whose field is changed by requests.
 pub struct Session {
