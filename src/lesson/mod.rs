@@ -496,9 +496,7 @@ pub fn digest(particles: &[Particle]) -> u64 {
 
 /// Length of the diagonal of the box around some points; 0 if there is none.
 fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
-    let infinite = DVec3::splat(f64::INFINITY);
-    let (lo, hi) = points.fold((infinite, -infinite), |(lo, hi), p| (lo.min(p), hi.max(p)));
-    (hi - lo).max(DVec3::ZERO).length()
+    Bounds::around(points).size().max(DVec3::ZERO).length()
 }
 
 #[cfg(test)]

@@ -78,6 +78,13 @@ impl Bounds {
         Self::new(p, p)
     }
 
+    /// The smallest box that holds these points; of none, one from +∞ to −∞.
+    pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (lo, hi) = points.into_iter().fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
+        Self::new(lo, hi)
+    }
+
     /// The box centred on the origin with half-widths `half`.
     #[must_use]
     pub const fn symmetric(half: [f64; 3]) -> Self {
@@ -126,6 +133,11 @@ impl Bounds {
         self.size().length()
     }
 
+    /// Largest size of a coordinate of a corner.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.lo().abs().max(self.hi().abs()).max_element()
+    }
+
     /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to
     /// single precision moves a particle of the default radius by a twenty-five-thousandth of it.
     const NEAR: f64 = 4.0;
@@ -137,7 +149,7 @@ impl Bounds {
     #[must_use]
     pub fn local_origin(&self) -> DVec3 {
         let diagonal = self.diagonal();
-        if self.lo().abs().max(self.hi().abs()).max_element() <= Self::NEAR * diagonal {
+        if self.farthest() <= Self::NEAR * diagonal {
             return DVec3::ZERO;
         }
         let grid = libm::exp2(libm::floor(libm::log2(diagonal)) - 2.0);
@@ -192,10 +204,9 @@ impl Bounds {
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let diagonal = self.diagonal();
-        let farthest = self.lo().abs().max(self.hi().abs()).max_element();
         // No corner with a NaN gets through: it makes the diagonal one.
         Self::DIAGONALS.contains(&diagonal)
-            && farthest <= Self::FARTHEST_CORNER * diagonal
+            && self.farthest() <= Self::FARTHEST_CORNER * diagonal
             && (0..3).all(|k| self.min[k] < self.max[k])
     }
 

@@ -10,7 +10,7 @@
 //! The system is set up in local coordinates, in which the centres fill a box of about one unit, and solved in double precision.
 
 use super::solve::{Decomposition, SingularMatrix};
-use super::thin::{check_spread, corners};
+use super::thin::check_spread;
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
@@ -245,10 +245,9 @@ fn field_of(x: &DVector<f64>, centres: &[DVec3], frame: &CentredFrame) -> Result
 
 /// The fit with its report.
 fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
-    let centres: Vec<DVec3> = field.data().centres.iter().map(|&c| DVec3::from_array(c)).collect();
-    let (lo, hi) = corners(given.iter().chain(&centres));
-    let diagonal = (hi - lo).length();
-    let margin = DVec3::splat(MARGIN * diagonal);
+    let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
+    let bounds = Bounds::around(given.iter().copied().chain(centres));
+    let diagonal = bounds.diagonal();
     let sum: f64 = residuals.iter().copied().map(f64::from).sum();
     info.residual_mean = sum / residuals.len().max(1) as f64 / diagonal;
     sort_numbers(&mut residuals);
@@ -263,8 +262,7 @@ fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info
             info.condition
         ));
     }
-    let bounds = Bounds { min: (lo - margin).to_array(), max: (hi + margin).to_array() };
-    Fit { data: field.data().clone(), bounds, info }
+    Fit { data: field.data().clone(), bounds: bounds.enlarged(MARGIN * diagonal), info }
 }
 
 /// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of every centre.

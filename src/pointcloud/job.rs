@@ -4,10 +4,11 @@ use super::fit::{Fit, FitError, approximate};
 use super::models;
 use super::normals::{Settled, settle};
 use super::read::{ReadError, Reader};
-use super::thin::{check_spread, corners, merge, spread, thin};
+use super::thin::{check_spread, merge, spread, thin};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::model;
 pub use crate::field::model::{CENTRES, DEFAULT_CENTRES};
+use crate::math::Bounds;
 use crate::slices;
 use core::cell::{Cell, OnceCell};
 use core::pin::Pin;
@@ -332,8 +333,8 @@ async fn of_cloud(
 
 /// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.
 fn bring_near(points: &mut [DVec3]) -> Option<String> {
-    let (lo, hi) = corners(&*points);
-    let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
+    let bounds = Bounds::around(points.iter().copied());
+    let (middle, diagonal) = (bounds.middle(), bounds.diagonal());
     if middle.abs().max_element() <= FAR * diagonal {
         return None;
     }

@@ -14,9 +14,9 @@
 //!   spanning tree. Each connected component of the graph is oriented by itself.
 //! * Outward is decided by the outermost points in six directions together, not by the highest point alone.
 
-use super::thin::{corners, covariance};
+use super::thin::covariance;
 use super::{Cloud, CloudError, NormalSource, eigen};
-use crate::math::{shortest_text, sort_numbers, unkey};
+use crate::math::{Bounds, shortest_text, sort_numbers, unkey};
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
@@ -221,8 +221,8 @@ async fn flattest(local: &[DVec3], tree: &Tree) -> usize {
 impl NeighbourGraph {
     /// Fits a plane to the neighbours of each point.
     async fn new(points: &[DVec3], tell: impl Fn(f64)) -> Self {
-        let (lo, hi) = corners(points);
-        let (middle, unit) = ((lo + hi) / 2.0, (hi - lo).length());
+        let bounds = Bounds::around(points.iter().copied());
+        let (middle, unit) = (bounds.middle(), bounds.diagonal());
         let local: Vec<DVec3> = points.iter().map(|p| (*p - middle) / unit).collect();
         let single: Vec<_> = local.iter().map(|p| p.as_vec3()).collect();
         let tree = Tree::new(&single);

@@ -2,7 +2,7 @@
 //! farthest-point sampling.
 
 use super::{Cloud, CloudError};
-use crate::math::{IndexTable, Sym3, hash};
+use crate::math::{Bounds, IndexTable, Sym3, hash};
 use crate::slices::{pause, ranges};
 use glam::DVec3;
 
@@ -26,12 +26,6 @@ const FIRST_POINTS: usize = 1024;
 
 /// Points merged or put into cells in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
 const POINTS: usize = 1000;
-
-/// Smallest and largest corner of the bounding box of `points`; of none infinity and its negative.
-pub(super) fn corners<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> (DVec3, DVec3) {
-    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    points.into_iter().fold(none, |(lo, hi), p| (lo.min(*p), hi.max(*p)))
-}
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
 ///
@@ -119,12 +113,12 @@ pub async fn thin(cloud: Cloud) -> Result<Cloud, CloudError> {
     if cloud.len() <= KEPT {
         return Ok(cloud);
     }
-    let (lo, hi) = corners(&cloud.position);
-    let mut side = (hi - lo).length() * (CELLS_PER_SQUARE / KEPT as f64).sqrt();
+    let bounds = Bounds::around(cloud.position.iter().copied());
+    let mut side = bounds.diagonal() * (CELLS_PER_SQUARE / KEPT as f64).sqrt();
     let mut best = Vec::new();
     let mut was_too_fine = false;
     for _ in 0..MAX_PASSES {
-        let kept = first_in_cells(&cloud.position, lo, side).await?;
+        let kept = first_in_cells(&cloud.position, bounds.lo(), side).await?;
         if kept.len() <= KEPT {
             best = kept;
             if was_too_fine || best.len() as f64 >= ENOUGH * KEPT as f64 {
@@ -166,12 +160,10 @@ async fn first_in_cells(points: &[DVec3], lo: DVec3, side: f64) -> Result<Vec<u3
 ///
 /// If the points coincide, lie on a line or lie in a plane.
 pub fn check_spread(points: &[DVec3]) -> Result<(), CloudError> {
-    let (lo, hi) = corners(points);
-    let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
+    let bounds = Bounds::around(points.iter().copied());
+    let (middle, diagonal) = (bounds.middle(), bounds.diagonal());
     // For a single point at the origin, both sides of the comparison are 0.
-    if points.len() < 2
-        || diagonal <= MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * lo.abs().max(hi.abs()).max_element()
-    {
+    if points.len() < 2 || diagonal <= MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * bounds.farthest() {
         return Err(CloudError::OnePlace);
     }
     let local = || points.iter().map(|p| (*p - middle) / diagonal);
@@ -217,10 +209,11 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
 /// choice is the point farthest from the mean. Ties go to the smaller index. There are fewer than wanted where no other point is at
 /// a sufficient distance. `tell` gets the fraction of the points that are chosen.
 pub async fn spread(points: &[DVec3], wanted: usize, tell: impl Fn(f64)) -> Vec<u32> {
-    let (lo, hi) = corners(points);
+    let bounds = Bounds::around(points.iter().copied());
+    let lo = bounds.lo();
     // The sum is relative to a corner, so that it keeps its digits far from the origin.
     let mean = lo + points.iter().map(|p| *p - lo).sum::<DVec3>() / points.len() as f64;
-    let min_distance_sq = MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * hi.distance_squared(lo);
+    let min_distance_sq = MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * bounds.size().length_squared();
     // Squared distance of each point from the nearest chosen one, or at first from the mean.
     let mut distance_sq: Vec<f64> = points.iter().map(|p| p.distance_squared(mean)).collect();
     let wanted = wanted.min(points.len());

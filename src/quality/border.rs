@@ -35,14 +35,10 @@ impl Border {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
         if bounds.is_valid() && margin > 0.0 && margin.is_finite() {
-            let mut lo = DVec3::INFINITY;
-            let mut hi = DVec3::NEG_INFINITY;
-            for p in &tree.position {
-                lo = lo.min(p.as_dvec3());
-                hi = hi.max(p.as_dvec3());
-            }
+            let own = Bounds::around(tree.position.iter().map(|p| p.as_dvec3()));
             for axis in 0..3 {
-                let faces = [(lo[axis] - bounds.min[axis], -1.0), (bounds.max[axis] - hi[axis], 1.0)];
+                let faces =
+                    [(own.min[axis] - bounds.min[axis], -1.0), (bounds.max[axis] - own.max[axis], 1.0)];
                 for (_, sign) in faces.into_iter().filter(|face| face.0 < margin) {
                     let mut face = Face::new(bounds, axis, sign, d_hex);
                     for row in 0..=face.rows {

@@ -1,5 +1,6 @@
 //! Local coordinates, in which the centres fill a box of about one unit.
 
+use crate::math::Bounds;
 use glam::DVec3;
 
 /// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points does not move it. Half and
@@ -27,12 +28,11 @@ impl CentredFrame {
     /// Frame of `points`, which must be finite.
     #[must_use]
     pub fn of(points: impl Iterator<Item = DVec3>) -> Self {
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (lo, hi) = points.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
-        let side = (hi - lo).max_element();
+        let bounds = Bounds::around(points);
+        let side = bounds.size().max_element();
         let scale = if side > 0.0 && side.is_finite() { power_of_two(side).recip() } else { 1.0 };
         let step = GRID / scale;
-        let origin = ((lo * 0.5 + hi * 0.5) / step).round() * step;
+        let origin = ((bounds.lo() * 0.5 + bounds.hi() * 0.5) / step).round() * step;
         // For a model far from the origin, single precision may be coarser than the grid.
         let origin = origin.as_vec3().as_dvec3();
         Self { origin: if origin.is_finite() { origin } else { DVec3::ZERO }, scale }
