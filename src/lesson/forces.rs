@@ -26,7 +26,7 @@ pub(super) const AT_REST: f64 = 0.12;
 /// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a twentieth of the spacing.
 const FREE: f64 = 0.01;
 
-/// The same sum above which it may die: six neighbours at 0.7 of the spacing 2r.
+/// Σ (overlap / mean radius)² above which a particle may die: six neighbours at 0.7 of the spacing 2r.
 const CROWDED: f64 = {
     let overlap = 2.0 * (OVERLAP_REACH - 0.7);
     6.0 * overlap * overlap

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 
 /// The patches of the points, in tree order; all columns are empty on a surface without creases.
 #[derive(Debug, Default)]
-pub(super) struct Creases {
+pub(super) struct CreaseRows {
     patch: Vec<u32>,
     /// The first row of the particle of each point, as given.
     particle: Vec<u32>,
@@ -23,7 +23,7 @@ pub(super) struct Creases {
     on_creases: Vec<(u32, u32)>,
 }
 
-impl Creases {
+impl CreaseRows {
     pub(super) fn new(tree: &Tree, patches: Patches<'_>) -> Self {
         if patches.patch.is_empty() {
             return Self::default();
@@ -153,7 +153,7 @@ impl Creases {
         field.select_branch(None);
     }
 
-    /// Has the field evaluated on the patch of point `i`, until [`Creases::release`].
+    /// Has the field evaluated on the patch of point `i`, until [`CreaseRows::release`].
     pub(super) fn select(&self, field: &mut dyn Field, i: usize) {
         if let Some(&patch) = self.patch.get(i) {
             field.select_branch(Some(patch));

@@ -1,7 +1,7 @@
 //! Figures of the holes: distances from random points of the surface and from Voronoi corners to the nearest point.
 
 use super::border::Border;
-use super::creases::Creases;
+use super::creases::CreaseRows;
 use super::nearby::PointsInBox;
 use super::places::{Hole, WIDE};
 use super::probe;
@@ -41,8 +41,8 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
 /// The points whose holes are measured, and the triangles from which samples of the surface are drawn.
 pub(super) struct Cover<'a> {
     pub(super) tree: &'a Tree,
-    pub(super) creases: &'a Creases,
-    /// Those of one patch follow each other.
+    pub(super) creases: &'a CreaseRows,
+    /// The triangles; those of one patch follow each other.
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a WantedRadii>,
@@ -361,7 +361,7 @@ mod tests {
             let mesh = [[0, 1, 2]];
             let cover = Cover {
                 tree: &tree,
-                creases: &Creases::default(),
+                creases: &CreaseRows::default(),
                 mesh: &mesh,
                 border: None,
                 wanted: None,

@@ -1,7 +1,7 @@
 //! The points to be measured, with their normals and one-rings.
 
 use super::accuracy::{NormalAngles, first_order_height};
-use super::creases::Creases;
+use super::creases::CreaseRows;
 use super::one_rings::OneRings;
 use super::options::Patches;
 use super::sheets::Sheets;
@@ -24,7 +24,7 @@ pub(super) struct MeasuredPoints {
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
     pub(super) rings: OneRings,
-    pub(super) creases: Creases,
+    pub(super) creases: CreaseRows,
     /// Whether a duplicate of the point was dropped, so that the distance to the nearest point is 0.
     has_duplicate: Vec<bool>,
 }
@@ -40,7 +40,7 @@ impl MeasuredPoints {
     ) -> Self {
         let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
         let tree = Tree::in_slices(kept).await;
-        let creases = Creases::new(&tree, patches);
+        let creases = CreaseRows::new(&tree, patches);
         let mut normal = Vec::with_capacity(tree.len());
         let mut height = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();

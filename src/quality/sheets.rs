@@ -7,7 +7,7 @@
 //!
 //! The points are taken to lie where their residuals say, so that the lift does not suffer from their distances from the surface.
 
-use super::creases::Creases;
+use super::creases::CreaseRows;
 use crate::field::Field;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
@@ -30,7 +30,7 @@ pub(super) struct Sheets<'a> {
     pub(super) normal: &'a [Vec3],
     /// First-order heights f/|∇f| above the surface.
     pub(super) height: &'a [f64],
-    pub(super) creases: &'a Creases,
+    pub(super) creases: &'a CreaseRows,
 }
 
 impl Sheets<'_> {

@@ -28,7 +28,7 @@ struct Buffers {
     occlusion: Option<Occlusion>,
 }
 
-/// What the openness of a surface is found with, at every other pixel each way.
+/// Textures of the ambient-occlusion passes, at half the resolution of the picture along each axis.
 #[derive(Clone)]
 struct Occlusion {
     depth: wgpu::TextureView,
@@ -109,8 +109,8 @@ impl Painter {
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         if let Some(Occlusion { depth, nearest }) = &buffers.occlusion {
             let clear = wgpu::Color { r: f64::from(1.0_f32.to_bits()), ..wgpu::Color::TRANSPARENT };
-            let target = |k: usize| Target { view: &nearest[k].0, resolve: None, clear, depth: None };
-            let mut pass = self.pass(&mut encoder, Target { depth: Some(depth), ..target(0) });
+            let target = |k: usize| PassTarget { view: &nearest[k].0, resolve: None, clear, depth: None };
+            let mut pass = self.pass(&mut encoder, PassTarget { depth: Some(depth), ..target(0) });
             scene.draw_nearest(&mut pass, &mut |kind| self.pipelines.get(device, kind, 1));
             drop(pass);
             for (kind, from) in [(Kind::Occlusion, 0), (Kind::Mean, 1)] {
@@ -124,7 +124,7 @@ impl Painter {
             [&buffers.samples, &buffers.resolved].map(|texture| texture.as_ref().map(view_of));
         let mut pass = self.pass(
             &mut encoder,
-            Target {
+            PassTarget {
                 view: sampled.as_ref().unwrap_or(canvas.view),
                 resolve: sampled.as_ref().map(|_| resolved.as_ref().unwrap_or(canvas.view)),
                 clear: scene.clear_colour(),
@@ -144,8 +144,12 @@ impl Painter {
     }
 
     /// Begins a pass whose depths are not kept.
-    fn pass<'a>(&self, encoder: &'a mut wgpu::CommandEncoder, target: Target<'_>) -> wgpu::RenderPass<'a> {
-        let Target { view, resolve, clear, depth } = target;
+    fn pass<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        target: PassTarget<'_>,
+    ) -> wgpu::RenderPass<'a> {
+        let PassTarget { view, resolve, clear, depth } = target;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -205,10 +209,10 @@ impl Painter {
     }
 }
 
-/// Target of a pass.
-struct Target<'a> {
+/// PassTarget of a pass.
+struct PassTarget<'a> {
     view: &'a wgpu::TextureView,
-    /// What its samples are resolved to.
+    /// Texture to which the samples of a multisampled `view` are resolved.
     resolve: Option<&'a wgpu::TextureView>,
     clear: wgpu::Color,
     depth: Option<&'a wgpu::TextureView>,

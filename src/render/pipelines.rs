@@ -22,7 +22,7 @@ pub(super) struct FrameBinding {
 /// Blending of colours that are premultiplied by their opacity.
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
-/// What a pipeline draws.
+/// Kind of a pipeline: the shapes that it draws, and into which pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Fully covered pixels of discs, with depth writes.
@@ -35,19 +35,19 @@ pub(super) enum Kind {
     BallCore,
     /// Partly covered pixels of spheres.
     BallRim,
-    /// What is nearest of the spheres.
+    /// Spheres into the nearest-surface texture: depth and normal of the sphere that is nearest at each pixel.
     BallNearest,
     /// Faces, with depth writes.
     Face,
     /// Faces that a plane may cut, with depth writes. The samples of a pixel antialias the edge at the plane.
     CutFace,
-    /// What is nearest of the faces.
+    /// Faces into the nearest-surface texture: depth and normal of the face that is nearest at each pixel.
     FaceNearest,
     /// Faces as a ghost beneath discs, with depth writes.
     Ghost,
-    /// The openness of what is nearest.
+    /// Ambient occlusion: the openness of the nearest surface at each pixel.
     Occlusion,
-    /// The same, smoothed.
+    /// The ambient occlusion, smoothed by the mean over neighbouring pixels.
     Mean,
     /// A ring around a particle, over everything.
     Ring,

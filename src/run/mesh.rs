@@ -15,7 +15,7 @@ use std::io;
 /// Rows of a file that are written in one slice of work, at up to a microsecond each.
 const ROWS: usize = 1_000;
 
-/// What a mesh adds up to: triangles, components, borders and volume.
+/// Counts and sizes of a mesh: triangles, components, borders and volume.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct MeshAnswer {
@@ -125,7 +125,7 @@ struct Begun {
 }
 
 impl MeshAnswer {
-    /// What the triangles over particles add up to.
+    /// Counts and sizes of the triangles over the particles.
     #[must_use]
     pub fn new(mesh: &Triangulation, particles: &Particles) -> Self {
         let component = |component: &Component| MeshComponent {

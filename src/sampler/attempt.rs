@@ -77,7 +77,7 @@ pub(super) struct Refining {
 }
 
 impl Refining {
-    /// What is known of the surface in a box.
+    /// The facts about the surface in a box that a refinement uses.
     pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
         SurfaceFacts {
             bounds: *bounds,

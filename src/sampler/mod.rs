@@ -132,7 +132,7 @@ pub(crate) fn find_creases<'a>(field: &'a mut dyn Field, bounds: &Bounds) -> Wor
 struct PointScale {
     /// The constant of [`Scaled`].
     scale: f32,
-    /// That of [`Field::use_double`].
+    /// The scale that [`Field::use_double`] takes; none to compute in single precision.
     double: Option<f64>,
 }
 

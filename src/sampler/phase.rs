@@ -117,7 +117,8 @@ impl PhaseState {
     }
 }
 
-/// What is tried as a seed: creases and tips first, then a point drawn from the surface, and then the survey's points in grid order.
+/// Position in the sequence of seeds: particles on creases and tips first, then a point drawn from the surface, and then the survey's
+/// points in grid order.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SurveyCursor {
     /// Whether the particles on creases and tips have been placed.

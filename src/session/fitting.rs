@@ -24,14 +24,14 @@ pub enum BoxMode {
     Fixed,
 }
 
-/// What the faces of the box do where they cut the surface of a formula.
+/// Treatment of the surface of a formula where the faces of the box cut it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BoxFaces {
-    /// The surface ends there.
+    /// The surface ends at the faces.
     #[default]
     Open,
-    /// They close the solid f ≤ 0: see [`Formula::closed_by`].
+    /// The faces close the solid f ≤ 0: see [`Formula::closed_by`].
     Closed,
 }
 
@@ -53,7 +53,7 @@ pub enum BoxCell {
 pub struct SolidSettings {
     /// Choice of the box.
     pub box_mode: BoxMode,
-    /// What the faces of the box do.
+    /// Treatment of the surface at the faces of the box.
     pub box_faces: BoxFaces,
     /// What opposite faces of the box have in common, where they close the solid.
     pub box_cell: BoxCell,

@@ -9,12 +9,12 @@ use tempfile::{Builder, NamedTempFile};
 /// A file that is written beside its path and takes the place of what is there when it is complete. One that is dropped before is
 /// removed, and what is there stays.
 #[derive(Debug)]
-pub(crate) struct Output {
+pub(crate) struct OutputFile {
     path: PathBuf,
     beside: NamedTempFile,
 }
 
-impl Output {
+impl OutputFile {
     /// A file for each of the paths.
     ///
     /// # Errors

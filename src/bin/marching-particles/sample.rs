@@ -5,7 +5,7 @@ use crate::failure::{Failure, LIMIT};
 use crate::mesh::Mesh;
 use crate::options::refusal;
 use crate::outcome::{Outcome, Seconds};
-use crate::output::Output;
+use crate::output::OutputFile;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export;
@@ -80,7 +80,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
-    let mut outputs = Output::beside(&paths)?.into_iter();
+    let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
     let clock = Stopwatch::start();
     let Chosen { field, name, formula, parameters, model, bounds, has_own_box, faces } =

@@ -8,7 +8,7 @@ use glam::Vec3;
 /// The particles on creases and tips at every level of a refinement. All are known before it begins, so that the patches that meet at a crease
 /// have them at the same places.
 ///
-/// Those of the coarse front have the numbers of their first rows, and the others the numbers after these.
+/// The crease particles of the coarse front are numbered by their first rows; those of finer levels have the numbers after these.
 #[derive(Clone, Debug)]
 pub(in super::super) struct CreaseLadder {
     /// Pairs of particles of the coarse front that follow each other along a crease.

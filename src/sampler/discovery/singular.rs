@@ -48,7 +48,7 @@ const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
 /// curve: the Newton step does not run along it. It is the root of the precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
-/// That share where a step leads too far: beside a curve of singular points it runs along it.
+/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular points the step runs along the curve.
 const DAMPED: f64 = 0.1;
 /// Factors by which steps shrink where the first derivatives that do not vanish are of third to eighth order: (n − 2)/(n − 1). Such a
 /// step is lengthened to where the steps would end.
@@ -90,7 +90,7 @@ impl Singular {
     }
 }
 
-/// What the surface is at a place where the gradient vanishes.
+/// Kind of the surface at a place where the gradient vanishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SingularKind {
     /// A point: the tip of a cone or of a cusp.
@@ -106,12 +106,12 @@ pub(crate) enum SingularKind {
 /// A place where the gradient vanishes on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SingularPlace {
-    /// A point of it.
+    /// A point of the place.
     pub(crate) position: DVec3,
     pub(crate) kind: SingularKind,
 }
 
-/// What is found near the points of a survey.
+/// Singular points and sharp bends near the points of a survey.
 #[derive(Debug, Default)]
 pub(crate) struct NearSurvey {
     pub(crate) points: Vec<Singular>,

@@ -7,7 +7,7 @@ use glam::Vec3;
 /// Newton's method move one that touches the box.
 const SLACK: f32 = 1e-4;
 
-/// What holds a particle besides the surface: bit 2k for the lower plane of axis k of the box, bit 2k + 1 for the upper one, bit 6 for a
+/// The constraints of a particle besides the surface: bit 2k for the lower plane of axis k of the box, bit 2k + 1 for the upper one, bit 6 for a
 /// crease, and bit 7 for an end of creases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Planes(u8);

@@ -841,7 +841,7 @@ export type Mended = {
   places: number,
 };
 
-/** What a mesh adds up to: triangles, components, borders and volume. */
+/** Counts and sizes of a mesh: triangles, components, borders and volume. */
 export type MeshAnswer = {
   /** Number of triangles. */
   triangles: number,

@@ -190,7 +190,7 @@ const NO_NEIGHBOURS: NeighbourLanes = {
 
 /// The particles of the parent's sheet around it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Ring {
+pub(crate) struct ParentRing {
     len: usize,
     chunks: Vec<NeighbourLanes>,
     /// Start and end of the closed intervals, sorted by start.
@@ -236,7 +236,7 @@ impl NeighbourLanes {
     }
 }
 
-impl Ring {
+impl ParentRing {
     pub(crate) fn clear(&mut self) {
         self.len = 0;
     }

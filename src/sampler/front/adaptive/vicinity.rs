@@ -2,7 +2,7 @@
 
 use super::{FrontRules, LISTED, RING, TOUCHING};
 use crate::particles::Particles;
-use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
+use crate::sampler::front::adaptive::arcs::{ParentRing, PredictedChild};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::sheet::{PointPair, is_level};
@@ -37,7 +37,7 @@ impl OccupantKind {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Vicinity {
     /// The particles of the sheet of the parent.
-    pub(super) ring: Ring,
+    pub(super) ring: ParentRing,
     /// Numbers in the ring of those that touch the parent, but for the one that placed it.
     touching: Vec<u32>,
     /// Particles and children on the circle around the parent, in the order of their angles.
