@@ -87,7 +87,7 @@ export function createPair(lab, { bare = false } = {}) {
    * @param {ScorePlace | null} place @param {number} side
    */
   function pointOut(place, side) {
-    for (const [k, picture] of pictures.entries()) picture.ring(k === side ? place : null);
+    for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
     if (place) orbit.turnTo(place.normal);
   }
   let asked = 0;

@@ -187,11 +187,6 @@ export class Picture {
     this.scene.value = scene;
   }
 
-  /** Rings a place; null: none. @param {ScorePlace | null} place */
-  ring(place) {
-    this.ringed.value = place;
-  }
-
   #view() {
     const { width, height } = this.#size.peek();
     return viewOf(this.orbit.camera.state, width, height, this.orbit.ball);
@@ -351,16 +346,6 @@ export const byValue = (values, low, high) =>
       const at = (value - low) / (high - low || 1);
       return palette.sequential[Math.round(Math.min(1, Math.max(0, at)) * (RAMP - 1))];
     }),
-  );
-
-/**
- * Some particles in a strong colour, the others plain.
- * @param {number} count
- * @param {(particle: number) => boolean} isMarked
- */
-export const byMark = (count, isMarked) =>
-  once((palette) =>
-    Uint32Array.from({ length: count }, (_, i) => (isMarked(i) ? palette.fate.trouble : palette.plain)),
   );
 
 /** Works out the colours of a palette once. @param {(palette: Palette) => Uint32Array} colours */

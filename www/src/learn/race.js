@@ -181,7 +181,7 @@ class Course {
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
       const ratio = own.lanes[1].workMs / own.lanes[0].workMs;
       const scorecard = createScorecard((place, side) => {
-        for (const [k, { picture }] of lanes.entries()) picture.ring(k === side ? place : null);
+        for (const [k, { picture }] of lanes.entries()) picture.ringed.value = k === side ? place : null;
         if (place) orbit.turnTo(place.normal);
       });
       fill(this.result, scorecard.element, marksOf(kind, ratio));

@@ -5,7 +5,7 @@ import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js'
 import { reasonOf } from '../figure.js';
 import { energiesOf, nearestDistances } from '../measure.js';
 import { createChart, createPlay, createRange, createScale } from '../parts.js';
-import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
+import { byLevel, byValue, Orbit, Picture } from '../picture.js';
 import { placesOf, scoreOf } from '../score.js';
 import { createScorecard } from '../scorecard.js';
 
@@ -55,8 +55,6 @@ export async function seams({ lab, stops }) {
     name: 'The particles as they were placed, before any relaxation',
     onPick: (particle) => stops.pick('predict-hole', particle),
   });
-  const show = h('input', { type: 'checkbox' });
-  const box = h('label', { class: 'check' }, show, 'Mark where rings met out of step');
   const words = h('p', { class: 'figure-count' });
   const scale = createScale('Energy, over that of an ideal place', formatFixed(CALM, 1), formatFixed(CROWDED, 1));
   const count = run.placed.radii.length;
@@ -65,7 +63,6 @@ export async function seams({ lab, stops }) {
   const inLattice = close.filter((i) => valence[i] === 6 && !met.has(i));
   const rings = byLevel(run.placed);
   const energies = byValue(energy, CALM, CROWDED);
-  const marked = byMark(count, (i) => met.has(i));
   let wasOpen = false;
   const draw = () => {
     const isOpen = stops.isOpen('predict-hole');
@@ -79,21 +76,20 @@ export async function seams({ lab, stops }) {
         radius: run.radius,
         kind: 'cross',
       });
-    const colours = !isOpen ? rings : show.checked ? marked : energies;
+    const colours = isOpen ? energies : rings;
     picture.show({ particles: run.placed, body, count: isOpen ? count : Math.round(QUARTER * count), colours, marks });
     if (isOpen && !wasOpen && widest) {
-      picture.ring(widest.hole);
+      picture.ringed.value = widest.hole;
       orbit.turnTo(widest.hole.normal);
     }
     wasOpen = isOpen;
-    box.hidden = scale.hidden = !isOpen;
+    scale.hidden = !isOpen;
     words.textContent = isOpen
       ? `${formatCount(close.length)} of ${formatCount(count)} particles are nearer than ${formatFixed(CLOSE, 2)} · 2r to another: ${formatCount(close.length - inLattice.length)} along seams, ${formatCount(inLattice.length)} in unbroken lattice, squeezed where it bends.`
-      : 'A quarter of the front is there. Turn the picture and press a place: that is your prediction.';
+      : '';
   };
-  show.addEventListener('change', draw);
-  live(box, draw);
-  return [picture.element, h('div', { class: 'controls' }, box, words), scale];
+  live(words, draw);
+  return [picture.element, words, scale];
 }
 
 /** @param {Context} context */
@@ -115,7 +111,7 @@ export async function rest({ lab, stops }) {
   const last = states.length - 1;
   const scorecard = createScorecard((place, side) => {
     if (place) range.set(side === 0 ? 0 : scored);
-    picture.ring(place);
+    picture.ringed.value = place;
     if (place) orbit.turnTo(place.normal);
   });
   let scored = last;
@@ -130,7 +126,7 @@ export async function rest({ lab, stops }) {
     if (step === scored) scorecard.tell(['As placed', `After step ${formatCount(step)}`], scores);
   }
   const show = (/** @type {number} */ step) => {
-    picture.ring(null);
+    picture.ringed.value = null;
     picture.show({ particles: states[step], colours: colours[step] });
     const { largest_move: move } = steps[step - 1] ?? {};
     words.textContent =
