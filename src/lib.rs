@@ -77,6 +77,8 @@
 //! | gap | A hole at a seam wide enough for a particle. |
 //! | relaxation | Moving all particles against their repulsion, step by step. |
 //! | energy | The sum over neighbour pairs that the relaxation lowers. |
+//! | flow | Particles of a finished run that follow a surface while it moves, frame by frame. |
+//! | transport | Moving the particles of a flow down the gradient to the new surface. |
 //! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |
 //! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
 //! | neighbour list | The particles within the range of the repulsion and a skin, kept from step to step. |

@@ -301,24 +301,30 @@ impl Particles {
 
     /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
     pub(crate) fn keep_within(&mut self, bounds: &Bounds) {
+        let is_inside: Vec<bool> = self.position.iter().map(|&p| bounds.contains(p)).collect();
+        self.keep(|i| is_inside[i]);
+        for i in 0..self.len() {
+            // Parents come before their children, so the new level is known.
+            self.level[i] = self.level.get(self.parent[i] as usize).map_or(0, |level| level + 1);
+        }
+    }
+
+    /// Keeps some of the particles, in their order. One whose parent is removed has none then.
+    pub(crate) fn keep(&mut self, is_kept: impl Fn(usize) -> bool) {
         let mut place = vec![Self::NO_PARENT; self.len()];
         let mut kept = 0;
-        for i in 0..self.len() {
-            if !bounds.contains(self.position[i]) {
-                continue;
-            }
-            // Parents come before their children, so its new place and level are known.
-            let parent = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
+        for i in (0..self.len()).filter(|&i| is_kept(i)) {
             place[i] = kept as u32;
             self.position[kept] = self.position[i];
             self.normal[kept] = self.normal[i];
             self.radius[kept] = self.radius[i];
+            self.level[kept] = self.level[i];
             self.slots[kept] = self.slots[i];
             if !self.patch.is_empty() {
                 self.patch[kept] = self.patch[i];
             }
-            self.parent[kept] = parent;
-            self.level[kept] = if parent == Self::NO_PARENT { 0 } else { self.level[parent as usize] + 1 };
+            // Parents come before their children, so its new place is known.
+            self.parent[kept] = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
             kept += 1;
         }
         self.truncate(kept);

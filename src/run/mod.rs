@@ -209,6 +209,54 @@ impl<F: Field> Run<F> {
         self.remember(progress)
     }
 
+    /// Has the particles of a finished run follow its surface to that of `field`, in the same box, which has moved but little;
+    /// [`Run::step`] does it. Each call is a frame of a motion: the transport of the particles, births and deaths where they become sparse
+    /// or crowd, and a step of relaxation. The same sequence of fields gives the same particles to the last bit.
+    ///
+    /// Returns whether the particles can follow. If not, a run on the new field has to be started: the surface is gone or has creases or
+    /// tips, or it lies farther from the particles than they from each other. Either way the field is the run's from then on.
+    ///
+    /// The order of the fronts is lost where particles are born and die, the mesh of a refined run is dropped, and components are no longer
+    /// searched beyond a survey.
+    ///
+    /// ```
+    /// use marching_particles::{Bounds, Formula, Run, Settings};
+    ///
+    /// let ellipsoid = |a: f64| Formula::parse("x^2/a^2 + y^2 + z^2 = 1").and_then(|formula| formula.with("a", a));
+    /// let mut run = Run::start(ellipsoid(1.0)?, &Settings::with_count(1_000).in_box(Bounds::cube(1.5)))?;
+    /// while run.step(u32::MAX).stop_reason.is_none() {}
+    /// for frame in 1..=10 {
+    ///     assert!(run.follow(ellipsoid(1.0 + 0.01 * f64::from(frame))?));
+    ///     while run.step(u32::MAX).stop_reason.is_none() {}
+    /// }
+    /// // Most of the particles are those of the beginning.
+    /// assert!(run.identity().iter().filter(|&&number| number < 1_000).count() > 900);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn follow(&mut self, field: F) -> bool {
+        self.set_field(field, false);
+        self.follow_field()
+    }
+
+    /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have changed since the last step.
+    pub(crate) fn follow_field(&mut self) -> bool {
+        let bounds = self.bounds.relative_to(self.field.origin());
+        let can_follow = self.sampler.follow(&mut self.field, &bounds);
+        if can_follow {
+            self.is_surveyed = false;
+            self.creases = None;
+            self.forget_results();
+        }
+        can_follow
+    }
+
+    /// The numbers of the particles of a run that has [followed](Run::follow) a moving surface, in ascending order. A particle keeps its
+    /// number as long as it lives; those of the run before it moved are the first. Empty if the run has not moved.
+    #[must_use]
+    pub fn identity(&self) -> &[u32] {
+        self.sampler.identity()
+    }
+
     /// Asks for more relaxation steps on the particles of a finished run; [`Run::step`] does them.
     pub fn relax(&mut self, steps: u32) {
         if self.is_surveyed {

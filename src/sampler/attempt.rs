@@ -114,6 +114,28 @@ impl Attempt {
         attempt
     }
 
+    /// Takes the area and the radius field of a surface that has moved, or the `growth` of the radius on it where the number of particles is given.
+    pub(super) fn follow(
+        &mut self,
+        settings: &Settings,
+        area: f64,
+        diagonal: f64,
+        sizing: Option<Sizing>,
+        growth: f64,
+    ) {
+        self.radius = match settings.size_mode {
+            SizeMode::Radius => settings.radius_share * diagonal,
+            SizeMode::Count => self.radius * growth,
+        };
+        (self.area, self.sizing) = (area, sizing);
+        if let Some(sizing) = &mut self.sizing
+            && settings.size_mode == SizeMode::Count
+        {
+            sizing.scale_to(f64::from(settings.count) / self.packing);
+        }
+        self.follow_sizing();
+    }
+
     /// The number of particles of radius r that are expected, times r².
     fn count_times_radius_sq(&self) -> f64 {
         self.area * self.packing / CELL_AREA

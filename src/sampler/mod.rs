@@ -9,6 +9,7 @@ mod attempt;
 mod constraint;
 mod discovery;
 mod fates;
+mod flow;
 mod front;
 mod message;
 mod neighbours;
@@ -47,7 +48,8 @@ use discovery::search::ComponentSearch;
 use discovery::singular::{NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, spacing, survey};
 use discovery::{precision, singular};
-use front::Front;
+use flow::Flow;
+use front::{Front, FrontSetup};
 use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
@@ -98,6 +100,7 @@ struct Tools {
     /// Coarse fronts, of which a refinement takes several where the surface has several components.
     coarse: CoarseFronts,
     relaxation: Relaxation,
+    flow: Flow,
     neighbours: PackedNeighbours,
 }
 
@@ -316,6 +319,7 @@ impl Sampler {
         self.output.corners = Vec::new();
         self.tools.coarse = CoarseFronts::default();
         self.tools.relaxation.clear();
+        self.tools.flow.end();
         self.counts = Counts::default();
         self.tools.memory.evaluations = 0;
         self.look_over(field, creases);
@@ -474,6 +478,76 @@ impl Sampler {
     /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
     pub fn relax(&mut self, steps: u32) {
         self.next(RunInput::Relax(steps));
+    }
+
+    /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
+    /// changed but little; [`Sampler::step`] does it. Returns whether they can follow. If not, nothing has changed, and a run has to start:
+    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other.
+    pub(crate) fn follow(&mut self, field: &mut dyn Field, bounds: &Bounds) -> bool {
+        let particles = &self.output.particles;
+        // A front that was stopped has not covered the surface.
+        let is_still = match self.phase {
+            PhaseState::Done(reason) => reason == StopReason::Complete || self.tools.flow.is_under_way(),
+            _ => false,
+        };
+        let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
+        if !is_still || !is_smooth || particles.len() < 2 || particles.origin != field.origin() {
+            return false;
+        }
+        if field.branches_in(bounds).is_none_or(|branches| branches.len() > 1) {
+            return false;
+        }
+        field.use_double(self.survey.double);
+        let scale = self.survey.scale;
+        if !flow::is_near(&mut Scaled::new(field, scale), particles) {
+            return false;
+        }
+        if !self.tools.flow.is_under_way() {
+            self.tools.flow.begin(&self.output.particles);
+        }
+        if self.tools.flow.is_due() {
+            self.look_again(field, bounds);
+        }
+        self.bounds = *bounds;
+        self.output.corners = Vec::new();
+        self.next(RunInput::Follow);
+        true
+    }
+
+    /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the surface before no longer holds.
+    fn look_again(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+        let PointScale { scale, double } = PointScale::of(field, bounds);
+        let scaled = &mut Scaled::new(field, scale);
+        let probe = &mut Probe::new(scaled, &mut self.tools.memory);
+        let known = core::mem::replace(&mut self.survey, survey(probe, bounds, false));
+        (self.survey.scale, self.survey.double) = (scale, double);
+        if self.survey.area == 0.0 {
+            // What remains is not seen on the grid.
+            self.survey = known;
+            return;
+        }
+        let sizing = (self.settings.sampling == Sampling::Adaptive)
+            .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey));
+        let (area, growth) = (self.survey.area, self.tools.flow.growth());
+        self.attempt.follow(&self.settings, area, bounds.diagonal(), sizing, growth);
+        self.components.begin(field, bounds, &[]);
+        self.tools.front.reset(&FrontSetup {
+            settings: &self.settings,
+            bounds,
+            survey: &self.survey,
+            radius: self.attempt.radius as f32,
+            radii: self.attempt.radii(),
+            expected: 0,
+        });
+        if self.attempt.sizing.is_none() {
+            self.output.particles.radius.fill(self.attempt.radius as f32);
+        }
+    }
+
+    /// The number of every particle that has followed a moving surface, by which it is known as long as it lives; empty before any has.
+    #[must_use]
+    pub fn identity(&self) -> &[u32] {
+        self.tools.flow.identity()
     }
 
     /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its

@@ -21,6 +21,8 @@ pub enum Phase {
     Search,
     /// Relaxing the particles.
     Relaxation,
+    /// Bringing the particles to a surface that has moved.
+    Flow,
     /// Finished or stopped.
     Done,
 }
@@ -65,6 +67,8 @@ pub enum StopReason {
 /// | `Audit` | it is known which components hold particles | `Marking` |
 /// | `Marking` | the particles are marked | `Done` |
 /// | `Done` | the caller asks for more relaxation steps | `Relaxation` |
+/// | `Done` | the surface has moved | `Flow` |
+/// | `Flow` | the particles have made their steps on the new surface | `Done` |
 /// | any before `Marking` | the caller cancels the run | `Marking` |
 ///
 /// `Sampler::next` makes every transition.
@@ -86,6 +90,8 @@ pub(super) enum PhaseState {
     Refinement(Box<Components>),
     /// Moves the particles to more even distances.
     Relaxation,
+    /// Brings the particles to a surface that has moved: their transport, or one of so many steps there.
+    Flow(Option<u32>),
     /// Finds out which components hold particles.
     Audit(StopReason),
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
@@ -104,6 +110,7 @@ impl PhaseState {
             Self::Refinement(_) => Phase::Refinement,
             Self::Search | Self::Audit(_) => Phase::Search,
             Self::Relaxation => Phase::Relaxation,
+            Self::Flow(_) => Phase::Flow,
             Self::Marking(_) | Self::Done(_) => Phase::Done,
         }
     }

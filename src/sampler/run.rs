@@ -1,6 +1,6 @@
 //! The state machine of a run: the work of every phase, and the transitions between them.
 
-use super::{Output, Sampler};
+use super::{Output, Sampler, Tools};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
@@ -8,12 +8,13 @@ use crate::sampler::constraint::tips;
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
+use crate::sampler::flow::{FlowSurface, Settled};
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, Next, Refusal};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
-use crate::sampler::settings::{GapPolicy, Sampling};
+use crate::sampler::settings::{GapPolicy, Sampling, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
@@ -38,6 +39,8 @@ pub(super) enum RunInput<'a> {
     Refuse,
     /// The caller asks for so many more relaxation steps.
     Relax(u32),
+    /// The surface of a finished run has moved, but its particles can follow.
+    Follow,
     /// The caller ends the run.
     Cancel,
     /// The caller gives a budget; `left` is the rest of it.
@@ -57,6 +60,7 @@ impl Sampler {
                 }
                 _ => phase,
             },
+            RunInput::Follow => self.begin_flow(),
             RunInput::Cancel => match phase {
                 PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_) => phase,
                 PhaseState::Seeding(_)
@@ -74,6 +78,8 @@ impl Sampler {
                     self.output.moved |= self.tools.relaxation.abandon(&mut self.output.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
+                // The next frame goes on from where the particles are.
+                PhaseState::Flow(_) => PhaseState::Marking(StopReason::Cancelled),
                 // Nothing moves any more, but the audit has not come to its end.
                 PhaseState::Audit(_) => PhaseState::Marking(StopReason::Cancelled),
                 // The columns hold the last level that was finished, or the coarse front.
@@ -103,6 +109,7 @@ impl Sampler {
             PhaseState::Filling => self.fill(probe, left),
             PhaseState::Refinement(refinement) => self.refine(probe, left, refinement),
             PhaseState::Relaxation => self.relax_particles(probe, left),
+            PhaseState::Flow(steps) => self.flow(probe, left, steps),
             PhaseState::Audit(reason) => self.audit(probe, left, reason),
             PhaseState::Marking(reason) => self.mark(probe.field, reason),
         }
@@ -512,19 +519,23 @@ impl Sampler {
         }
     }
 
-    fn begin_relaxation(&mut self) -> PhaseState {
-        self.output.corners = Vec::new();
-        self.tools.front.release();
-        self.output.particles.shrink();
-        self.tools.neighbours.shrink();
+    fn law(&self) -> RepulsionLaw {
         let tolerance = self.attempt.tolerance(&self.survey);
-        let law = match self.settings.sampling {
+        match self.settings.sampling {
             Sampling::Uniform => RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance },
             Sampling::Adaptive => RepulsionLaw::Overlap {
                 residual_limits: self.survey.residual_limits(),
                 min_gradient: tolerance.min_gradient,
             },
-        };
+        }
+    }
+
+    fn begin_relaxation(&mut self) -> PhaseState {
+        self.output.corners = Vec::new();
+        self.tools.front.release();
+        self.output.particles.shrink();
+        self.tools.neighbours.shrink();
+        let law = self.law();
         let steps = self.settings.relax_steps;
         let limits =
             MoveLimits { bounds: self.bounds, largest_lift: self.tools.front.active().rule().largest_lift() };
@@ -538,7 +549,59 @@ impl Sampler {
         self.begin_relaxation()
     }
 
+    fn begin_flow(&mut self) -> PhaseState {
+        let are_listed = core::mem::take(&mut self.tools.flow.is_whole);
+        let limits = MoveLimits { bounds: self.bounds, largest_lift: f32::INFINITY };
+        let (law, particles) = (self.law(), &self.output.particles);
+        self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
+        PhaseState::Flow(None)
+    }
+
+    /// Goes on with a frame of particles that follow a moving surface: their transport, unless it is known how many `steps` are left.
+    fn flow(&mut self, probe: &mut Probe, left: &mut u32, steps: Option<u32>) -> PhaseState {
+        self.relax_slice(probe, left);
+        if !self.tools.relaxation.is_done() {
+            return PhaseState::Flow(steps);
+        }
+        let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
+        let particles = &mut self.output.particles;
+        let settled = match steps {
+            Some(steps) => Settled { has_changed: false, steps: steps - 1 },
+            None => {
+                let surface = FlowSurface {
+                    bounds: self.bounds,
+                    survey: &self.survey,
+                    rule: front.active().rule(),
+                    sizing: self.attempt.sizing.as_ref(),
+                    radius: self.attempt.radius as f32,
+                    count: (self.settings.size_mode == SizeMode::Count).then_some(self.settings.count),
+                    max_particles: self.settings.max_particles as usize,
+                };
+                flow.settle(probe, &surface, relaxation.lost(), particles)
+            }
+        };
+        if particles.is_empty() {
+            return PhaseState::Done(StopReason::NoSurface);
+        }
+        if settled.steps == 0 {
+            flow.is_whole = true;
+            return PhaseState::Done(StopReason::Complete);
+        }
+        relaxation.begin_following(particles, neighbours, !settled.has_changed);
+        PhaseState::Flow(Some(settled.steps))
+    }
+
     fn relax_particles(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
+        self.relax_slice(probe, left);
+        if self.tools.relaxation.is_done() {
+            self.begin_audit(self.reason_for_end())
+        } else {
+            PhaseState::Relaxation
+        }
+    }
+
+    /// Does a slice of the relaxation, or of the frame of a flow.
+    fn relax_slice(&mut self, probe: &mut Probe, left: &mut u32) {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
         let slice = (*left).min(RELAXATION_SLICE);
@@ -551,11 +614,6 @@ impl Sampler {
         );
         *left = 0;
         self.counts.relaxation_evaluations += probe.evaluations() - start;
-        if self.tools.relaxation.is_done() {
-            self.begin_audit(self.reason_for_end())
-        } else {
-            PhaseState::Relaxation
-        }
     }
 
     fn begin_audit(&mut self, reason: StopReason) -> PhaseState {

@@ -18,6 +18,7 @@ mod differential;
 mod door;
 mod far;
 mod faults;
+mod flow;
 mod formula;
 mod formula_functions;
 mod formula_properties;

@@ -10,6 +10,7 @@ use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Contents of the golden file.
 #[derive(Serialize, Deserialize)]
@@ -17,6 +18,8 @@ struct Golden {
     runs: Vec<Run>,
     /// Runs on built-in models, which the page solves in another WebAssembly module.
     models: Vec<Run>,
+    /// Runs whose particles have followed their surface.
+    moved: Vec<Run>,
 }
 
 /// A run with its expected result.
@@ -28,6 +31,9 @@ struct Run {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     model: Option<String>,
     settings: serde_json::Value,
+    /// Parameters of the surfaces that the particles of the run follow, one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    moves: Vec<BTreeMap<String, f64>>,
     count: usize,
     digest: String,
 }
@@ -53,6 +59,13 @@ fn run(case: &Run) -> (usize, String) {
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     while session.run.step(BUDGET).stop_reason.is_none() {}
+    for parameters in &case.moves {
+        let request = FieldRequest { parameters: parameters.clone(), ..FieldRequest::default() };
+        session.set_field(&request).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        while session.fit(&settings, true, BUDGET).is_none() {}
+        assert!(session.follow(&settings), "{}: the particles cannot follow to {parameters:?}", case.name);
+        while session.run.step(BUDGET).stop_reason.is_none() {}
+    }
     (session.run.count(), format!("{:016x}", session.run.particles().digest()))
 }
 
@@ -61,7 +74,8 @@ fn runs_have_the_digests_that_other_platforms_give() {
     let mut golden: Golden = golden::read("digests.json");
     assert!(golden.runs.len() >= 3, "there are {} runs", golden.runs.len());
     let mut faults = Vec::new();
-    for case in golden.runs.iter_mut().chain(&mut golden.models) {
+    assert!(golden.moved.iter().all(|case| !case.moves.is_empty()), "a run has not moved");
+    for case in golden.runs.iter_mut().chain(&mut golden.models).chain(&mut golden.moved) {
         let (count, digest) = run(case);
         assert!(count > 500, "{}: {count} particles are too few to show anything", case.name);
         golden::compare(&case.name, &mut case.count, count, &mut faults);

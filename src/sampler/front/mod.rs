@@ -5,6 +5,7 @@ mod level;
 mod uniform;
 
 pub(crate) use level::{FrontContext, FrontSetup, LevelFront};
+pub(crate) use uniform::gaps::widest_gap;
 
 use crate::sampler::front::adaptive::AdaptiveFront;
 use crate::sampler::front::uniform::UniformFront;
@@ -12,7 +13,7 @@ use crate::sampler::settings::Sampling;
 
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
-const UNCOVERED: f32 = 2.0;
+pub(crate) const UNCOVERED: f32 = 2.0;
 
 /// Largest sine of the angle by which the way to a child is predicted to dip below the tangent plane, or to rise above it. Beyond
 /// it the radius does not resolve the curvature.

@@ -47,6 +47,8 @@ const RENEWAL_UNITS: u32 = 10;
 /// Stage of a relaxation: the work that is done for each particle in turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum RelaxationStage {
+    /// Bring the particles to a surface that has moved.
+    Transport,
     /// Put all particles into the grid.
     FillGrid,
     /// Renew the stale neighbour lists.
@@ -73,6 +75,10 @@ enum Purpose {
     Step,
     /// The judgement of the step just made, and then the next step.
     Judge,
+    /// The neighbours of particles on a surface that moves.
+    Neighbours,
+    /// The one step of particles on a surface that moves: it stands, whatever it does to the energy.
+    Follow,
     /// The end of the relaxation.
     #[default]
     End,
@@ -132,7 +138,16 @@ pub(crate) struct Relaxation {
     is_steep: bool,
     lists: NeighbourLists,
     stepper: Stepper,
+    /// Particles that the transport has not brought to the surface, in ascending order.
+    lost: Vec<u32>,
 }
+
+/// Largest distance, in radii, that a particle is transported: that of its neighbours. A surface that has moved farther is sampled anew.
+pub(crate) const TRANSPORT_REACH: f32 = 2.0;
+
+/// A Newton correction shorter than this, in radii, ends the transport: what it leaves is far below the step that follows, which lands
+/// particles as closely as any.
+const TRANSPORT_TRUST: f32 = 0.1;
 
 impl Relaxation {
     /// Forgets an earlier run.
@@ -177,6 +192,58 @@ impl Relaxation {
             self.lists.make_all_stale();
             RelaxationStage::FillGrid
         };
+    }
+
+    /// Brings the particles to the surface of a field that has changed, and renews the lists. `are_listed` says whether the lists were those
+    /// of these particles before.
+    pub(crate) fn begin_transport(
+        &mut self,
+        law: RepulsionLaw,
+        limits: MoveLimits,
+        particles: &Particles,
+        pairs: &mut PackedNeighbours,
+        are_listed: bool,
+    ) {
+        self.law = law;
+        self.purpose = Purpose::Neighbours;
+        self.stepper.follow(limits, law.first_step());
+        if !are_listed {
+            self.list_anew(particles, pairs);
+        }
+        self.lost.clear();
+        (self.next, self.debt) = (0, 0);
+        self.stage = RelaxationStage::Transport;
+    }
+
+    /// Makes a step on the surface to which the particles were transported, at rows that are `still_listed` or others.
+    pub(crate) fn begin_following(
+        &mut self,
+        particles: &Particles,
+        pairs: &mut PackedNeighbours,
+        still_listed: bool,
+    ) {
+        self.purpose = Purpose::Follow;
+        if !still_listed {
+            self.list_anew(particles, pairs);
+        }
+        (self.next, self.debt) = (0, 0);
+        self.stage = if still_listed { self.after_lists() } else { RelaxationStage::FillGrid };
+    }
+
+    /// Makes all lists stale, for rows that may be others than before.
+    fn list_anew(&mut self, particles: &Particles, pairs: &mut PackedNeighbours) {
+        let n = particles.len();
+        pairs.clear();
+        pairs.extend_to(n);
+        self.stepper.resize(n, self.law.resizes());
+        self.lists.reset(n);
+        self.lists.sheets = Vec::new();
+        self.lists.make_all_stale();
+    }
+
+    /// The particles that the last transport has not brought to the surface, in ascending order.
+    pub(crate) fn lost(&self) -> &[u32] {
+        &self.lost
     }
 
     pub(crate) fn is_done(&self) -> bool {
@@ -265,7 +332,10 @@ impl Relaxation {
                         self.stepper.forces.add_near(law, pairs, particles, few, energy);
                     }
                 }
-                RelaxationStage::Move | RelaxationStage::TakeBack | RelaxationStage::Polish => {
+                RelaxationStage::Transport
+                | RelaxationStage::Move
+                | RelaxationStage::TakeBack
+                | RelaxationStage::Polish => {
                     has_moved |= !range.is_empty();
                     self.displace(law, probe, pairs, particles, range);
                 }
@@ -327,7 +397,8 @@ impl Relaxation {
         particles: &mut Particles,
         range: Range<usize>,
     ) {
-        let Self { stage, lists, stepper, .. } = self;
+        let Self { stage, lists, stepper, lost, .. } = self;
+        let is_transport = *stage == RelaxationStage::Transport;
         let mut landing = LandingBatch::new();
         let mut next = range.start;
         while next < range.end {
@@ -338,17 +409,24 @@ impl Relaxation {
             // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another
             // sheet a short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
-            match stage {
+            match *stage {
                 RelaxationStage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
                 RelaxationStage::TakeBack => {
                     stepper.take_back(law, lists, particles, range.clone(), &mut landing);
                 }
                 _ => {
-                    (landing.trust, landing.renews_radii) = (0.0, true);
+                    landing.trust = 0.0;
+                    if is_transport {
+                        (landing.trust, landing.reach) = (TRANSPORT_TRUST, TRANSPORT_REACH);
+                    }
+                    landing.renews_radii = true;
                     landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
                 }
             }
-            stepper.land(law, probe, lists, particles, range, &mut landing);
+            stepper.land(law, probe, lists, particles, range.clone(), &mut landing);
+            if is_transport {
+                lost.extend(range.clone().filter(|i| !landing.ok[i - range.start]).map(|i| i as u32));
+            }
         }
     }
 
@@ -371,12 +449,20 @@ impl Relaxation {
                 match self.purpose {
                     _ if has_lowered => RelaxationStage::Grade { has_lowered: false },
                     Purpose::End => RelaxationStage::Done,
-                    Purpose::Step | Purpose::Judge => RelaxationStage::SumForces { energy: 0.0 },
+                    _ => RelaxationStage::SumForces { energy: 0.0 },
                 }
             }
             RelaxationStage::SumForces { mut energy } => {
                 self.stepper.forces.add_far(law, pairs, particles, &mut energy);
+                if self.purpose == Purpose::Follow {
+                    return RelaxationStage::Move;
+                }
                 self.after_forces::<L>(energy / particles.len() as f64)
+            }
+            RelaxationStage::Transport => self.after_moving(law, particles),
+            RelaxationStage::Move if self.purpose == Purpose::Follow => {
+                self.lists.end_move(L::SLACK * law.radius(particles, 0));
+                RelaxationStage::Done
             }
             RelaxationStage::Move => self.after_moving(law, particles),
             RelaxationStage::TakeBack => {
@@ -396,7 +482,11 @@ impl Relaxation {
 
     /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
     fn after_lists(&self) -> RelaxationStage {
-        let is_uneven = self.is_steep || self.purpose == Purpose::End || !self.stepper.has_begun();
+        let is_uneven = match self.purpose {
+            Purpose::Neighbours => return RelaxationStage::Done,
+            Purpose::End | Purpose::Follow => true,
+            Purpose::Step | Purpose::Judge => self.is_steep || !self.stepper.has_begun(),
+        };
         if self.law.resizes() && is_uneven {
             RelaxationStage::Grade { has_lowered: false }
         } else {

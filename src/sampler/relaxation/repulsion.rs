@@ -31,6 +31,8 @@ pub(crate) struct LandingBatch {
     pub(crate) count: usize,
     /// A Newton correction shorter than this, in radii, is not checked by another evaluation.
     pub(crate) trust: f32,
+    /// Largest distance, in radii, from where a particle is to where it lands.
+    pub(crate) reach: f32,
     /// Whether all radii are brought up to date.
     pub(crate) renews_radii: bool,
     pub(crate) position: [Vec3; BATCH],
@@ -48,6 +50,7 @@ impl LandingBatch {
         Self {
             count: 0,
             trust: 0.0,
+            reach: MAX_MOVE,
             renews_radii: false,
             position: [Vec3::ZERO; BATCH],
             normal: [Vec3::ZERO; BATCH],
@@ -147,7 +150,7 @@ impl Repulsion for Gaussian {
     fn land(&self, probe: &mut Probe, landing: &mut LandingBatch) {
         let mut descent = Descent {
             residual: self.tolerance.residual,
-            reach: MAX_MOVE * self.radius,
+            reach: landing.reach * self.radius,
             trust: landing.trust * self.radius,
         };
         probe.land_along_gradient(
@@ -162,7 +165,7 @@ impl Repulsion for Gaussian {
 }
 
 /// Energy of a pair at the cut-off, exp(−RANGE²/2).
-const END_ENERGY: f32 = 0.011_108_997;
+pub(crate) const END_ENERGY: f32 = 0.011_108_997;
 
 /// Returns exp(−x) for 0 ≤ x ≤ 4.5, with a relative error below 2·10⁻⁵. The result has no meaning outside that range.
 ///
@@ -174,6 +177,12 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     let e4 = e2 * e2;
     let e8 = e4 * e4;
     e8 * e8
+}
+
+/// Returns the energy of a pair by the [`Gaussian`] repulsion, whose squared distance is given in squared mean radii, up to the square of
+/// the range.
+pub(crate) fn pair_energy(distance_sq: f32) -> f32 {
+    gaussian(Vec4::splat(0.5 * distance_sq)).x - END_ENERGY
 }
 
 /// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): two
@@ -255,6 +264,7 @@ impl Repulsion for Overlap<'_> {
             radius: [0.0; BATCH],
             residual_limits: self.residual_limits,
             trust,
+            reach: landing.reach,
             needs_curvature: true,
             hessian: [Sym3::default(); BATCH],
             curvature: [Curvature::default(); BATCH],
@@ -295,6 +305,7 @@ struct CurvatureDescents {
     radius: [f32; BATCH],
     residual_limits: ResidualLimits,
     trust: f32,
+    reach: f32,
     /// Whether evaluations include the Hessian.
     needs_curvature: bool,
     hessian: [Sym3<f32>; BATCH],
@@ -308,7 +319,7 @@ impl Descents for CurvatureDescents {
         let radius = self.radius[i];
         Descent {
             residual: self.residual_limits.residual(radius),
-            reach: MAX_MOVE * radius,
+            reach: self.reach * radius,
             trust: self.trust * radius,
         }
     }

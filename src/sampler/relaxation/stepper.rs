@@ -58,6 +58,17 @@ impl Stepper {
         }
         // After a stop the particles may be where no energy was measured, and after a run they have been polished.
         self.energy.truncate(self.done as usize);
+        self.resize(particles, resizes);
+    }
+
+    /// Prepares for particles on a surface that moves: there are no judgements, and all steps have one size.
+    pub(super) fn follow(&mut self, limits: MoveLimits, size: f32) {
+        self.clear();
+        (self.limits, self.step_size) = (limits, size);
+    }
+
+    /// Makes room for this many particles, of which nothing is known.
+    pub(super) fn resize(&mut self, particles: usize, resizes: bool) {
         self.forces.reset(particles);
         refill(&mut self.previous, particles, Vec3::ZERO);
         let resized = if resizes { particles } else { 0 };
@@ -165,7 +176,7 @@ impl Stepper {
     }
 
     /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
-    /// normals and radii there.
+    /// normals and radii there. Those that have come there are the ones that are `ok` in `landing` then.
     ///
     /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the box or of its patch, where the field ends, at a fold, across
     /// which its normal would turn by more than 90°, and where only another sheet is near.
@@ -195,12 +206,12 @@ impl Stepper {
             let (position, normal) = (landing.position[k], landing.normal[k]);
             let cosine = normal.dot(particles.normal[i]);
             let is_free = i >= particles.twins.len();
-            if landing.ok[k]
+            landing.ok[k] = landing.ok[k]
                 && is_free
                 && self.limits.bounds.contains(position)
                 && cosine > 0.0
-                && probe.is_on_patch(position, particles.patch_of(i))
-            {
+                && probe.is_on_patch(position, particles.patch_of(i));
+            if landing.ok[k] {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
                 let per_turn = 0.5 * L::SKIN / STALE_TURN * law.radius(particles, i);

@@ -88,7 +88,7 @@ impl UniformFront {
                 count += 1;
             }
         }
-        let Some(centre) = widest_gap(&plane[..count]) else { return };
+        let Some(centre) = widest_gap(&plane[..count], GAP) else { return };
         let width = centre.length();
         let direction = (u * centre.x + w * centre.y) / width;
         let circle =
@@ -128,9 +128,9 @@ impl UniformFront {
     }
 }
 
-/// Returns the centre of the widest empty circle through the origin and two of the `points`, if it is wide enough for a gap.
-fn widest_gap(points: &[Vec2]) -> Option<Vec2> {
-    let mut widest = GAP;
+/// Returns the centre of the widest empty circle through the origin and two of the `points`, if its radius is above `least`.
+pub(crate) fn widest_gap(points: &[Vec2], least: f32) -> Option<Vec2> {
+    let mut widest = least;
     let mut found = None;
     for (a, &p) in points.iter().enumerate() {
         for &q in &points[..a] {

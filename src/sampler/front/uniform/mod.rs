@@ -11,7 +11,7 @@
 //!   field, and compared with the particles there at that place. Only a free child is projected, at about two
 //!   evaluations, and then compared again at its final place. All free children of a level are projected together.
 
-mod gaps;
+pub(super) mod gaps;
 mod surroundings;
 
 use crate::field::Field;

@@ -1,0 +1,192 @@
+//! Particles that follow a moving surface, beside fresh runs: `docs/flow.md` is what this writes.
+//!
+//! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles. `--count N` takes
+//! another number, `--adaptive` takes sizes that follow the curvature, and names of sweeps take these alone.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
+
+use marching_particles::field::formula::Formula;
+use marching_particles::math::Bounds;
+use marching_particles::{Figures, Run, Sampling, Settings, SizeMode};
+use std::f64::consts::{PI, TAU};
+use std::time::Instant;
+
+#[path = "../tests/it/settings.rs"]
+#[macro_use]
+mod settings;
+
+/// Numbers of particles.
+const COUNTS: [u32; 2] = [5_000, 20_000];
+const FRAMES: u32 = 100;
+/// Frames from one comparison to the next.
+const COMPARED_EVERY: u32 = 25;
+
+/// A surface, the parameter `q` that moves it, and the half-width of the box.
+struct Sweep {
+    name: &'static str,
+    formula: &'static str,
+    from: f64,
+    to: f64,
+    half: f64,
+}
+
+const fn sweep(name: &'static str, formula: &'static str, [from, to]: [f64; 2], half: f64) -> Sweep {
+    Sweep { name, formula, from, to, half }
+}
+
+const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
+const SWEEPS: [Sweep; 12] = [
+    sweep("ellipsoid grows", "x^2/q^2+y^2/0.49+z^2/0.25-1", [1.0, 1.6], 1.8),
+    sweep("ellipsoid shrinks", "x^2/q^2+y^2/0.49+z^2/0.25-1", [1.6, 0.8], 1.8),
+    sweep("ellipsoid turns", "(x*cos(q)+y*sin(q))^2+3*(y*cos(q)-x*sin(q))^2+3*z^2-1", [0.0, PI], 1.2),
+    sweep("tanglecube splits", TANGLECUBE, [11.0, 14.5], 2.6),
+    sweep("tanglecube joins", TANGLECUBE, [14.5, 11.0], 2.6),
+    sweep("torus thickens", "(sqrt(x^2+y^2)-1)^2+z^2-q^2", [0.2, 0.5], 1.6),
+    sweep("gyroid shifts its level", "sin(x)*cos(y)+sin(y)*cos(z)+sin(z)*cos(x)-q", [-0.8, 0.8], 3.2),
+    sweep("gyroid slides through the box", "sin(x+q)*cos(y)+sin(y)*cos(z)+sin(z)*cos(x+q)", [0.0, PI], 3.2),
+    sweep("sphere leaves the box", "(x-q)^2+y^2+z^2-0.36", [0.0, 1.2], 1.0),
+    sweep("sphere comes into the box", "(x-q)^2+y^2+z^2-0.36", [1.4, 0.0], 1.0),
+    sweep(
+        "a second sphere is born",
+        "exp(-4*((x+0.6)^2+y^2+z^2))+q*exp(-4*((x-0.6)^2+y^2+z^2))-0.4",
+        [0.3, 1.0],
+        1.5,
+    ),
+    sweep("waves roll", "z-0.3*sin(3*x+q)*cos(3*y)", [0.0, TAU], 1.5),
+];
+
+fn finish(run: &mut Run<Formula>) {
+    while run.step(u32::MAX).stop_reason.is_none() {}
+}
+
+/// Text above the table.
+const HEAD: &str = "\
+# Particles that follow a moving surface
+
+Each surface is moved through a hundred frames by its parameter `q`, and its particles follow it. Every 25 frames they are compared with
+a fresh run of the same radius, whose figures stand in brackets. This page is written by `cargo bench --bench flow > docs/flow.md`. All
+figures but the times are the same on every machine; README.md says what they mean, and on which machine the times were taken. *Still the
+first*: particles of the run before the surface moved, over those that the smaller of the two surfaces has room for. *Fresh / frame*: time
+of a fresh run over that of a frame.
+";
+
+const COLUMNS: &str = "\
+| Sweep | Frame | Count / fresh | Six neighbours | Largest hole | Closest pair | Still the first | Components | Euler number | ns a particle | Fresh / frame |
+| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
+
+fn main() {
+    let (mut counts, mut sampling, mut names) = (Vec::new(), Sampling::Uniform, Vec::new());
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--count" => {
+                counts.push(
+                    arguments.next().and_then(|number| number.parse().ok()).expect("--count takes a number"),
+                );
+            }
+            "--adaptive" => sampling = Sampling::Adaptive,
+            // From cargo.
+            "--bench" => {}
+            name => names.push(name.to_owned()),
+        }
+    }
+    if counts.is_empty() {
+        counts.extend(COUNTS);
+    }
+    println!("{HEAD}");
+    for count in counts {
+        println!("## About {count} particles\n\n{COLUMNS}");
+        for sweep in &SWEEPS {
+            if names.is_empty() || names.iter().any(|name| name == sweep.name) {
+                measure(sweep, count, sampling);
+            }
+        }
+        println!();
+    }
+}
+
+/// What is compared of two runs.
+struct Compared {
+    count: usize,
+    figures: Figures,
+}
+
+impl Compared {
+    fn of(run: &mut Run<Formula>) -> Self {
+        let report = run.report();
+        Self {
+            count: report.count,
+            figures: report.measures.quality.expect("figures of a run that was measured"),
+        }
+    }
+
+    /// The largest hole, where it is known over that of the radii wanted there.
+    fn hole(&self) -> f64 {
+        let coverage = &self.figures.coverage;
+        if coverage.cover_local.is_nan() { coverage.cover } else { coverage.cover_local }
+    }
+
+    /// The closest pair, where it is known over the sum of the radii.
+    fn closest(&self) -> f64 {
+        let Figures { edges, spacing, .. } = &self.figures;
+        if edges.overlap_min.is_nan() { spacing.nn_min } else { edges.overlap_min }
+    }
+}
+
+fn measure(sweep: &Sweep, count: u32, sampling: Sampling) {
+    let bounds = Bounds::cube(sweep.half);
+    let by_count = settings!(sampling; ..Settings::with_count(count).in_box(bounds));
+    let field = |frame: u32| {
+        let q = sweep.from + (sweep.to - sweep.from) * f64::from(frame) / f64::from(FRAMES);
+        Formula::parse(sweep.formula).and_then(|formula| formula.with("q", q)).expect("a formula")
+    };
+    // A uniform run has one radius for all of the sweep: that with the wanted count in the middle.
+    let settings = match sampling {
+        Sampling::Uniform => {
+            let mut middle = Run::start(field(FRAMES / 2), &by_count).expect("a run");
+            finish(&mut middle);
+            let radius_share = middle.progress().map_or(0.0, |progress| progress.radius) / bounds.diagonal();
+            settings!(size_mode: SizeMode::Radius, radius_share; ..by_count)
+        }
+        Sampling::Adaptive => by_count,
+    };
+    let mut run = Run::start(field(0), &settings).expect("a run");
+    finish(&mut run);
+    let first = run.count();
+    let (mut spent, mut moved) = (0.0, 0);
+    for frame in 1..=FRAMES {
+        let next = field(frame);
+        let before = Instant::now();
+        assert!(run.follow(next), "{}: the particles cannot follow in frame {frame}", sweep.name);
+        finish(&mut run);
+        spent += before.elapsed().as_secs_f64();
+        moved += run.count();
+        if frame % COMPARED_EVERY != 0 {
+            continue;
+        }
+        let before = Instant::now();
+        let mut fresh = Run::start(field(frame), &settings).expect("a run");
+        finish(&mut fresh);
+        let took = before.elapsed().as_secs_f64();
+        let alive = run.identity().iter().filter(|&&number| (number as usize) < first).count();
+        let (ours, fresh) = (Compared::of(&mut run), Compared::of(&mut fresh));
+        println!(
+            "| {} | {frame} | {:.3} | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} | {} ({}) | {} ({}) | {:.0} | {:.1} |",
+            sweep.name,
+            ours.count as f64 / fresh.count as f64,
+            ours.figures.order.six,
+            fresh.figures.order.six,
+            ours.hole(),
+            fresh.hole(),
+            ours.closest(),
+            fresh.closest(),
+            alive as f64 / first.min(fresh.count) as f64,
+            ours.figures.connectivity.components,
+            fresh.figures.connectivity.components,
+            ours.figures.connectivity.euler,
+            fresh.figures.connectivity.euler,
+            1e9 * spent / moved as f64,
+            took * f64::from(COMPARED_EVERY) / spent,
+        );
+        (spent, moved) = (0.0, 0);
+    }
+}

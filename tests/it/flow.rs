@@ -1,0 +1,156 @@
+//! Tests of particles that follow a moving surface.
+
+use marching_particles::field::formula::Formula;
+use marching_particles::math::Bounds;
+use marching_particles::{Phase, Run, Sampling, Settings};
+
+const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
+const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
+
+/// The field of a formula with its parameter `q`.
+fn field(formula: &str, q: f64) -> Formula {
+    Formula::parse(formula).and_then(|formula| formula.with("q", q)).expect("a formula")
+}
+
+fn finish(run: &mut Run<Formula>, budget: u32) {
+    while run.step(budget).stop_reason.is_none() {}
+}
+
+/// A finished run on the surface with `q`, in a box of this half-width.
+fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<Formula> {
+    let settings = settings.in_box(Bounds::cube(half));
+    let mut run = Run::start(field(formula, q), &settings).expect("a run");
+    finish(&mut run, u32::MAX);
+    run
+}
+
+/// Moves the surface of a run from one value of `q` to another in so many frames, each done with steps of `budget`.
+fn sweep(run: &mut Run<Formula>, formula: &str, [from, to]: [f64; 2], frames: u32, budget: u32) {
+    for frame in 1..=frames {
+        let q = from + (to - from) * f64::from(frame) / f64::from(frames);
+        assert!(run.follow(field(formula, q)), "{formula}: the particles cannot follow to {q}");
+        finish(run, budget);
+    }
+}
+
+#[test]
+fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
+    let settings = Settings::with_count(3_000);
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        let settings = settings!(sampling; ..settings);
+        let mut run = started(TANGLECUBE, 11.0, 2.6, &settings);
+        for (way, euler, components) in [([11.0, 14.0], 16, 8), ([14.0, 11.0], -8, 1)] {
+            sweep(&mut run, TANGLECUBE, way, 60, u32::MAX);
+            let mut fresh = started(TANGLECUBE, way[1], 2.6, &settings);
+            let (report, fresh) = (run.report(), fresh.report());
+            let of = format!("{sampling:?}, {way:?}");
+            let figures = report.measures.quality.expect("figures");
+            assert_eq!(
+                (figures.connectivity.euler, figures.connectivity.components),
+                (euler, components),
+                "{of}"
+            );
+            let count = report.count as f64 / fresh.count as f64;
+            assert!((0.85..1.15).contains(&count), "{of}: {count} of the particles of a fresh run");
+            let hole = match sampling {
+                Sampling::Uniform => figures.coverage.cover,
+                Sampling::Adaptive => figures.coverage.cover_local,
+            };
+            assert!(hole < 1.9, "{of}: a hole of {hole}");
+            assert!(figures.accuracy.err_max < 1e-3, "{of}: off by {}", figures.accuracy.err_max);
+            let first = run.identity().iter().filter(|&&number| number < 3_000).count();
+            assert!(first > 1_000, "{of}: only {first} of the first particles are left");
+        }
+    }
+}
+
+#[test]
+fn how_a_flow_is_cut_into_steps_changes_no_bit() {
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        let settings = settings!(sampling; ..Settings::with_count(1_200));
+        let digest = |budget: u32| {
+            let mut run = started(ELLIPSOID, 1.0, 1.5, &settings);
+            sweep(&mut run, ELLIPSOID, [1.0, 1.2], 9, budget);
+            (run.particles().digest(), run.identity().to_vec())
+        };
+        assert_eq!(digest(u32::MAX), digest(77), "{sampling:?}");
+    }
+}
+
+#[test]
+fn a_particle_keeps_its_number_and_its_level() {
+    let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(2_000));
+    let born: Vec<u32> = run.particles().level.clone();
+    sweep(&mut run, ELLIPSOID, [1.0, 1.3], 40, u32::MAX);
+    let (particles, identity) = (run.particles(), run.identity());
+    assert_eq!(identity.len(), particles.len());
+    assert!(identity.is_sorted_by(|a, b| a < b));
+    assert!(identity.iter().any(|&number| number as usize >= born.len()), "no particle was born");
+    for (i, &number) in identity.iter().enumerate() {
+        if let Some(&level) = born.get(number as usize) {
+            assert_eq!(particles.level[i], level, "particle {number}");
+        }
+        assert!((particles.parent[i] as usize) < i || particles.parent[i] == u32::MAX, "particle {number}");
+    }
+}
+
+#[test]
+fn a_component_that_is_born_gets_particles() {
+    let two = "exp(-4*((x+0.6)^2+y^2+z^2))+q*exp(-4*((x-0.6)^2+y^2+z^2))-0.4";
+    let mut run = started(two, 0.3, 1.5, &Settings::with_count(1_000));
+    assert!(run.particles().position.iter().all(|p| p.x < 0.0));
+    sweep(&mut run, two, [0.3, 0.6], 30, u32::MAX);
+    let figures = run.report().measures.quality.expect("figures");
+    assert_eq!((figures.connectivity.components, figures.connectivity.euler), (2, 4));
+}
+
+#[test]
+fn what_leaves_the_box_is_dropped_and_what_comes_in_is_covered() {
+    let ball = "(x-q)^2+y^2+z^2-0.36";
+    let settings = Settings::with_count(1_500);
+    let mut run = started(ball, 0.0, 1.0, &settings);
+    sweep(&mut run, ball, [0.0, 0.8], 80, u32::MAX);
+    let bounds = Bounds::cube(1.0);
+    assert!(run.particles().position.iter().all(|&p| bounds.contains(p)));
+    sweep(&mut run, ball, [0.8, 0.0], 80, u32::MAX);
+    let figures = run.report().measures.quality.expect("figures");
+    assert_eq!((figures.connectivity.components, figures.connectivity.euler), (1, 2));
+    assert!(figures.coverage.cover < 1.9, "a hole of {}", figures.coverage.cover);
+}
+
+#[test]
+fn a_surface_too_far_or_with_creases_is_not_followed_and_a_run_goes_on() {
+    let settings = Settings::with_count(800);
+    for (next, why) in [
+        ("(x-0.7)^2+y^2+z^2-0.25", "far"),
+        ("max(x^2+y^2+z^2-0.26,z-0.3)", "creased"),
+        ("x^2+y^2+z^2+1", "gone"),
+    ] {
+        let mut run = started("x^2+y^2+z^2-0.25+0*q", 0.0, 1.5, &settings);
+        let digest = run.particles().digest();
+        let next = Formula::parse(next).expect("a formula");
+        assert!(!run.follow(next), "{why}");
+        assert_eq!(run.particles().digest(), digest, "{why}");
+        run.restart(&settings.in_box(Bounds::cube(1.5))).expect("a run");
+        finish(&mut run, u32::MAX);
+        assert_eq!(run.count() > 500, why != "gone", "{why}");
+    }
+}
+
+#[test]
+fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
+    let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(2_000));
+    for frame in 1..=20 {
+        assert!(run.follow(field(ELLIPSOID, 1.0 + 0.01 * f64::from(frame))));
+        assert_eq!(run.step(500).phase, Phase::Flow);
+        if frame % 3 == 0 {
+            run.cancel();
+        } else {
+            finish(&mut run, u32::MAX);
+        }
+    }
+    finish(&mut run, u32::MAX);
+    let figures = run.report().measures.quality.expect("figures");
+    assert!(figures.accuracy.err_max < 1e-3, "off by {}", figures.accuracy.err_max);
+    assert_eq!(figures.connectivity.euler, 2);
+}
