@@ -158,6 +158,8 @@ pub struct Session {
     fitting: Fitting,
     /// The record of the present run.
     made: Option<FileRecord>,
+    /// The settings of the last start.
+    started: Option<Settings>,
 }
 
 impl Default for Session {
@@ -180,6 +182,7 @@ impl Session {
             reach: None,
             fitting: Fitting::default(),
             made: None,
+            started: None,
         }
     }
 
@@ -396,7 +399,20 @@ impl Session {
         }
         self.fitting.is_settled = false;
         self.made = Some(self.beginning(settings));
+        self.started = Some(*settings);
         self.run.begin(settings)
+    }
+
+    /// Has the particles of the last run, which had these settings, [follow](Run::follow) its surface to the present field, in the box that
+    /// [`Session::fit`] has found. Returns whether they can; if not, a run has to start. What they have become is made from no record.
+    pub fn follow(&mut self, settings: &Settings) -> bool {
+        let can_follow =
+            self.fitting.is_settled && self.started == Some(*settings) && self.run.follow_field();
+        if can_follow {
+            self.fitting.is_settled = false;
+            self.made = None;
+        }
+        can_follow
     }
 
     /// [`Run::measure`]. Of a surface of the gallery or a model, whose box was chosen for it, no cause is told why particles lie at

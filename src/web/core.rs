@@ -115,6 +115,15 @@ impl Core {
         }))
     }
 
+    /// Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
+    /// and the run had these `Settings`.
+    pub fn follow(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+    ) -> bool {
+        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings))
+    }
+
     /// Does up to `budget` units of work: `Progress`.
     #[wasm_bindgen(unchecked_return_type = "Progress")]
     pub fn step(&mut self, budget: u32) -> JsValue {

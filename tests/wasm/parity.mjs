@@ -33,8 +33,8 @@ function solve(core, model, name) {
   points.free();
 }
 
-/** @param {{ name: string, field?: object, model?: string, settings: object }} run */
-function sample({ name, field, model, settings }) {
+/** @param {{ name: string, field?: object, model?: string, settings: object, moves?: Record<string, number>[] }} run */
+function sample({ name, field, model, settings, moves = [] }) {
   const core = new Core();
   if (field) accepted(core.set_field(field), `${name}: set_field`);
   if (model) solve(core, model, name);
@@ -42,15 +42,24 @@ function sample({ name, field, model, settings }) {
   let progress;
   do progress = core.step(BUDGET);
   while (progress.stop_reason === null);
+  for (const parameters of moves) {
+    accepted(core.set_field({ parameters }), `${name}: set_field`);
+    while (core.fit(settings, true, BUDGET) === undefined);
+    if (!core.follow(settings))
+      throw new Error(`${name}: the particles cannot follow to ${JSON.stringify(parameters)}`);
+    do progress = core.step(BUDGET);
+    while (progress.stop_reason === null);
+  }
   const result = { count: progress.particles, digest: core.digest() };
   core.free();
   return result;
 }
 
-const { runs, models } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
-if (runs.length < 3 || models.length < 2) throw new Error(`only ${runs.length} and ${models.length} runs`);
+const { runs, models, moved } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
+if (runs.length < 3 || models.length < 2 || moved.length < 2)
+  throw new Error(`only ${runs.length}, ${models.length} and ${moved.length} runs`);
 let failures = 0;
-for (const run of [...runs, ...models]) {
+for (const run of [...runs, ...models, ...moved]) {
   const { count, digest } = sample(run);
   const same = count === run.count && digest === run.digest;
   failures += same ? 0 : 1;

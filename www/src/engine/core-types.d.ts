@@ -941,7 +941,7 @@ export type Parameter = {
 };
 
 /** Phase of a run. */
-export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
+export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "flow" | "done";
 
 /** Size and orientation of a mesh in a file. */
 export type Placement = {

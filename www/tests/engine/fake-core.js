@@ -58,6 +58,8 @@ export function fakeCore({
   let stop = null;
   let moves = 0;
   let measured = 0;
+  /** Count of the run before, whose particles may follow. */
+  let started = 0;
   let joined = 0;
   let refined = 0;
   /** @returns {CoreProgress} */
@@ -136,6 +138,7 @@ export function fakeCore({
     start(settings) {
       calls.push('start');
       if (settings.count) target = Number(settings.count);
+      started = target;
       steps = Number(settings.relax_steps ?? relax_steps);
       count = 0;
       step = 0;
@@ -144,6 +147,16 @@ export function fakeCore({
       joined = 0;
       refined = 0;
       return { ok: true, radius: 0.01, predicted_count: target, area: 1, warnings: [] };
+    },
+    /** Particles follow if the run before had as many as these settings ask for. @param {Settings} settings */
+    follow(settings) {
+      const can = count > 0 && started === Number(settings.count);
+      if (can) {
+        calls.push('follow');
+        stop = null;
+        step = steps - 1;
+      }
+      return can;
     },
     /** @param {number} budget */
     step(budget) {

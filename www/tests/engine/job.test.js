@@ -13,6 +13,7 @@ const sampleJob = (part = {}) => ({
   field: { formula: 'x' },
   points: null,
   settings: {},
+  following: [],
   grow: true,
   live: false,
   coarse: false,
@@ -221,6 +222,29 @@ describe('a job', () => {
     expect(of(posted, 'columns')[0]).toMatchObject({ first: 0, total: 20_000 });
     expect(of(posted, 'report')).toHaveLength(0);
     expect(of(posted, 'done')[0].reportFollows).toBe(false);
+  });
+
+  test('the particles of the run before follow if its settings are among those that may', async () => {
+    const core = fakeCore({ particles: 500 });
+    const memory = { held: 0, meshed: 0 };
+    const live = { grow: false, live: true, following: [{ count: 500 }] };
+    for (const [id, count, followed] of /** @type {const} */ ([
+      [1, 500, false],
+      [2, 300, true],
+      [3, 300, true],
+    ])) {
+      const { posted } = await run(core, sampleJob({ ...live, id, settings: { count } }), { memory });
+      const done = posted.find(({ type }) => type === 'done');
+      expect(done).toMatchObject({ outcome: 'complete', followed, progress: { particles: 500 } });
+      const columns = posted.filter(({ type }) => type === 'columns');
+      expect(columns).toHaveLength(1);
+      expect(columns[0]).toMatchObject({ first: 0, total: 500 });
+      expect(memory.held).toBe(id);
+    }
+    const other = sampleJob({ ...live, id: 4, settings: { count: 300 }, following: [{ count: 400 }] });
+    const { posted } = await run(core, other, { memory });
+    expect(posted.find(({ type }) => type === 'done')).toMatchObject({ followed: false, progress: { particles: 300 } });
+    expect(core.calls.filter((call) => call === 'start')).toHaveLength(2);
   });
 
   test('a live job that is stopped is the last of its drag, and is reported', async () => {

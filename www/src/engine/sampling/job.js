@@ -33,6 +33,7 @@ const PICTURE_MS = 15;
  * @returns {keyof Seconds}
  */
 function clockOf(phase) {
+  if (phase === 'flow') return 'relaxation';
   return phase === 'generation' || phase === 'refinement' || phase === 'relaxation' ? phase : 'seeding';
 }
 
@@ -117,6 +118,8 @@ class JobRun {
     /** @type {CoreProgress | null} */
     this.progress = null;
     this.predicted = 0;
+    /** Whether the particles of the run before follow the surface. */
+    this.followed = false;
     /** Positions before each relaxation step. @type {Float32Array[]} */
     this.past = [];
     this.#beatMs = 0;
@@ -126,10 +129,21 @@ class JobRun {
 
   /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [reportFollows] */
   done(outcome, message = '', reportFollows = false) {
-    const { job, progress, predicted } = this;
+    const { job, progress, predicted, followed } = this;
     const seconds = { ...this.seconds };
     const record = this.core.record();
-    this.env.post({ type: 'done', id: job.id, outcome, progress, seconds, predicted, message, reportFollows, record });
+    this.env.post({
+      type: 'done',
+      id: job.id,
+      outcome,
+      progress,
+      seconds,
+      predicted,
+      followed,
+      message,
+      reportFollows,
+      record,
+    });
   }
 
   /**
@@ -179,8 +193,14 @@ class JobRun {
   start(memory) {
     const { core, job, env } = this;
     if (job.kind === 'sample') {
-      // The core looks for the surface when it starts; for a model, this is most of the seeding.
+      // The core looks for the surface when it starts or lets particles follow; for a model, this is most of the seeding.
       const before = env.nowMs();
+      this.followed = job.following.some((settings) => core.follow(settings));
+      if (this.followed) {
+        this.seconds.seeding += (env.nowMs() - before) / 1000;
+        memory.held = job.id;
+        return true;
+      }
       const start = core.start(job.settings);
       this.seconds.seeding += (env.nowMs() - before) / 1000;
       if (!start.ok) return this.#end('refused', start.error.message);

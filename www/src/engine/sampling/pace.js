@@ -47,9 +47,7 @@ export class Pace {
     const { drag } = this;
     drag.requested += 1;
     drag.quietMs = now;
-    const plan = planLive(request.settings, diagonal, this.#costOf(request));
-    drag.coarse ||= plan.coarse;
-    return plan;
+    return planLive(request.settings, diagonal, this.#costOf(request));
   }
 
   /**
@@ -62,12 +60,14 @@ export class Pace {
     const { particles } = measured;
     const { drag } = this;
     const cost = this.#costOf(sampled);
-    // A run that ended at its coarse level does not tell what the whole one costs.
-    const isWhole = !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
+    // A run that ended at its coarse level does not tell what the whole one costs, nor do particles that followed.
+    const isWhole =
+      !measured.followed && !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
     if (request.kind === 'sample' && isWhole) cost.record(measured);
     if (!request.live || !drag) return null;
     const latency = this.#nowMs() - sinceMs;
     drag.latencies.push(latency);
+    drag.coarse ||= request.coarse === true && !measured.followed;
     // The rest of the latency is drawing: a slow graphics device delays every message.
     cost.recordPicture(particles, latency - samplingSeconds(measured.seconds) * 1e3);
     const sorted = [...drag.latencies].sort((a, b) => a - b);

@@ -19,11 +19,15 @@ import { timingOf } from './pace.js';
 const figuresOfMesh = ({ about: { volume, smallest_angle } }) => ({ volume, smallest_angle });
 
 export class Presenter {
+  /** Whether the particles on the page have followed the surface. */
+  #followed;
+
   /** @param {{store: Store, columns: Columns, picture: PictureLike}} page */
   constructor({ store, columns, picture }) {
     this.store = store;
     this.columns = columns;
     this.picture = picture;
+    this.#followed = false;
   }
 
   /**
@@ -100,7 +104,8 @@ export class Presenter {
     if (request.kind !== 'sample') return;
     this.columns.clear(request.settings.sampling === 'adaptive');
     this.columns.stale = request.backdrop === true;
-    this.picture.begin({ grow: request.grow, fit: request.fit, bounds });
+    // The particles of a run take the places of those that have followed the surface there.
+    this.picture.begin({ grow: request.grow, fit: request.fit, bounds, meets: this.#followed && !request.live });
     batch(() => {
       store.hover.value = null;
       store.empty.value = this.columns.stale;
@@ -149,8 +154,9 @@ export class Presenter {
    * @param {Run} run
    * @param {number} particles
    */
-  end({ outcome, progress, seconds, reportFollows, record }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows, record, followed }, { id, request }, particles) {
     const { store, columns } = this;
+    this.#followed = followed;
     if (request.backdrop) return;
     if (particles > 0) columns.record = record;
     if (particles === 0) {

@@ -103,14 +103,16 @@ export class Sampler {
   }
 
   /**
-   * Starts a run for a control that is being dragged, coarse if necessary.
+   * Has the particles follow the surface of a control that is being dragged. Where they cannot, a run starts, coarse if
+   * necessary.
    * @param {SampleRequest} request @param {number} diagonal  of the clip box
    */
   sampleLive(request, diagonal) {
     const { coarse, settings } = this.#pace.plan(request, diagonal);
     const { value: description } = this.store.description;
     const valid = description ? clampSettings(description, settings) : settings;
-    this.submit({ ...request, settings: valid, coarse, live: true, grow: false });
+    const following = [request.settings, valid];
+    this.submit({ ...request, settings: valid, following, coarse, live: true, grow: false });
   }
 
   /**
@@ -162,7 +164,7 @@ export class Sampler {
     if (request.kind === 'relax') {
       return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
     }
-    const { field, settings, grow, live, coarse = false } = request;
+    const { field, settings, following = [], grow, live, coarse = false } = request;
     // A run of a drag needs no confirmation: it stops at the limit.
     const unasked = request.confirmed || live || request.restoring;
     return {
@@ -170,6 +172,7 @@ export class Sampler {
       id,
       field,
       settings,
+      following,
       grow,
       live,
       coarse: coarse && settings.method === 'refined',
@@ -341,11 +344,17 @@ export class Sampler {
    * @param {Run} run
    * @param {number} particles
    */
-  #learn({ seconds, progress }, run, particles) {
+  #learn({ seconds, progress, followed }, run, particles) {
     const { store } = this;
     const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.#whole());
     const size = sizeOfRun(sampled.settings, progress?.radius ?? 0, store.field.value?.bounds);
-    const drag = this.#pace.record(run, sampled, { seconds, particles, relax_steps: progress?.relax_step ?? 0, size });
+    const drag = this.#pace.record(run, sampled, {
+      seconds,
+      particles,
+      relax_steps: progress?.relax_step ?? 0,
+      size,
+      followed,
+    });
     if (drag) store.lastDrag.value = drag;
   }
 

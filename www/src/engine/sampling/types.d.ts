@@ -35,6 +35,8 @@ export interface SampleJob {
   field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
   settings: Settings;
+  /** settings of the runs whose particles may follow the surface instead; none unless a control is being dragged */
+  following: Settings[];
   grow: boolean;
   live: boolean;
   coarse: boolean;
@@ -96,6 +98,8 @@ export interface DoneMessage {
   seconds: Seconds;
   /** particles expected at the start, 0 when unknown */
   predicted: number;
+  /** whether the particles are those of the run before, which have followed the surface */
+  followed: boolean;
   /** words for `refused`, else empty */
   message: string;
   reportFollows: boolean;
@@ -139,6 +143,8 @@ export interface SampleRequest {
   trial?: boolean;
   /** of fewer particles than the settings of the state ask for, or of the coarse level alone */
   coarse?: boolean;
+  /** settings of the runs whose particles may follow the surface instead (see `SampleJob`) */
+  following?: Settings[];
 }
 export type RelaxRequest = {
   kind: 'relax';
@@ -237,11 +243,17 @@ export type SliceEnv = Pick<Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>;
  */
 export type Memory = { held: number; meshed: number };
 /** The measurements of a finished run. */
-export type Measured = { seconds: Seconds; particles: number; relax_steps: number; size: number };
+export type Measured = {
+  seconds: Seconds;
+  particles: number;
+  relax_steps: number;
+  size: number;
+  followed: boolean;
+};
 /** The part of the viewer that the presenter uses. */
 export interface PictureLike {
   /** a new surface replaces the old one */
-  begin: (options: { grow: boolean; fit: boolean; bounds: Bounds | null }) => void;
+  begin: (options: { grow: boolean; fit: boolean; bounds: Bounds | null; meets?: boolean }) => void;
   /** columns of particles first … last are new */
   changed: (first: number, last: number, onDrawn: () => void) => void;
   /** the columns have positions of earlier relaxation steps */

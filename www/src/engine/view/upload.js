@@ -20,6 +20,8 @@ import { scaleOf } from './style.js';
 
 /** @typedef {Device['renderer']} Renderer */
 
+/** Distance, in radii, from which a particle comes to its place in a new run: beyond the nearest of the ones before. */
+const MEET_RADII = 4;
 /** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;
 
@@ -71,9 +73,14 @@ export class ParticleUpload {
     this.dirty.include(0, this.columns.count);
   }
 
-  /** Starts over for another surface or a new device, without an animation from the earlier positions. */
-  restart() {
-    this.glide.forget();
+  /**
+   * Starts over for another surface or a new device, without an animation from the earlier positions, unless the next
+   * particles are to start from there.
+   * @param {boolean} [meets]
+   */
+  restart(meets = false) {
+    if (meets) this.glide.meets = true;
+    else this.glide.forget();
     this.dirty = new Span();
     this.all();
   }
@@ -90,7 +97,10 @@ export class ParticleUpload {
     const { count } = columns;
     if (!dirty.empty || !this.#recoloured.empty) this.#followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
-    if (moved && count <= MOST_STEPPED && !reveal.active && !calm) glide.begin(nowS);
+    if (moved && count <= MOST_STEPPED && !reveal.active && !calm) {
+      if (glide.meets) glide.meet(columns.shown, count, MEET_RADII * columns.radii[0], nowS);
+      else glide.begin(nowS);
+    }
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;

@@ -96,8 +96,11 @@ export class Viewer {
   // ---- what is to be drawn
   // ------------------------------------------------------------------------------------------------
 
-  /** Replaces the old surface by a new one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
-  begin({ grow, fit, bounds }) {
+  /**
+   * Replaces the old surface by a new one. If it `meets` the old one, its particles come from those nearest there.
+   * @param {{grow: boolean, fit: boolean, bounds: Bounds | null, meets?: boolean}} options
+   */
+  begin({ grow, fit, bounds, meets = false }) {
     this.#scene.shown = bounds ?? this.#scene.bounds;
     // A surface of another size could otherwise grow around the camera or far from it.
     if (fit) this.fit(true);
@@ -107,7 +110,7 @@ export class Viewer {
     } else {
       this.#endReveal();
     }
-    this.upload.restart();
+    this.upload.restart(meets);
     this.look = { ...this.look, highlight: -1, upto: null };
     this.remembered();
     this.#restyle();

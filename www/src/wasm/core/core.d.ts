@@ -62,6 +62,11 @@ export class Core {
      */
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
     /**
+     * Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
+     * and the run had these `Settings`.
+     */
+    follow(settings: Record<string, number | string>): boolean;
+    /**
      * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
      */
     join(budget: number): MeshAnswer | undefined;
