@@ -104,6 +104,10 @@ const ROOMS: [Room; 4] = [
             ),
             ("relaxation", &["probe", "projection", "neighbours", "sheet", "sizing"]),
             ("refine", &["probe", "sizing", "constraint"]),
+            (
+                "flow",
+                &["probe", "projection", "neighbours", "sheet", "discovery", "sizing", "front", "relaxation"],
+            ),
             ("message", &["discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
             (
@@ -124,6 +128,7 @@ const ROOMS: [Room; 4] = [
                     "front",
                     "refine",
                     "relaxation",
+                    "flow",
                 ],
             ),
         ],

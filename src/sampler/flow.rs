@@ -105,7 +105,7 @@ pub(crate) struct Settled {
 
 /// A neighbour in the tangent plane of a particle: its direction, and its distance over the sum of the radii.
 #[derive(Clone, Copy)]
-struct Around {
+struct Bearing {
     angle: f32,
     distance: f32,
     index: u32,
@@ -137,7 +137,7 @@ pub(crate) struct Flow {
     open: Vec<u32>,
     grids: RadiusGrids,
     found: Vec<Neighbour>,
-    around: Vec<Around>,
+    around: Vec<Bearing>,
     landing: Vec<CircleLanding>,
 }
 
@@ -308,7 +308,7 @@ impl Flow {
     fn look_around(&mut self, particles: &Particles, i: usize) {
         let (u, w) = tangent_frame(particles.normal[i]);
         self.around.clear();
-        self.around.extend(self.found.iter().take(MOST_NEIGHBOURS).map(|near| Around {
+        self.around.extend(self.found.iter().take(MOST_NEIGHBOURS).map(|near| Bearing {
             angle: direction_angle(near.offset.dot(u), near.offset.dot(w)),
             distance: near.distance_sq.sqrt() / (particles.radius[i] + particles.radius[near.index as usize]),
             index: near.index,
@@ -392,7 +392,7 @@ impl Flow {
             self.try_child(probe, surface, particles, parent, &circle, CLEAR);
             // Where there is no room for a child, the direction counts as taken, too.
             let at = self.around.partition_point(|other| other.angle < angle);
-            self.around.insert(at, Around { angle, distance: 1.0, index: parent as u32 });
+            self.around.insert(at, Bearing { angle, distance: 1.0, index: parent as u32 });
         }
     }
 
@@ -495,7 +495,7 @@ struct Sector {
 }
 
 /// Returns the widest sector between neighbours in the order of their angles, if it is open.
-fn widest_sector(around: &[Around]) -> Option<Sector> {
+fn widest_sector(around: &[Bearing]) -> Option<Sector> {
     let Some(last) = around.last() else { return Some(Sector { from: 0.0, width: TAU }) };
     let mut widest = Sector { from: last.angle, width: around[0].angle + TAU - last.angle };
     for pair in around.windows(2) {
