@@ -74,7 +74,7 @@ export class Runs {
   resampleLive() {
     if (!this.#begin({})) return;
     this.sampling.sampleLive(this.#request(), this.#diagonal());
-    this.#timer = setTimeout(() => this.sampling.sample(this.#request()), REST_MS);
+    this.#timer = setTimeout(() => this.sampling.sample(this.#request({ rests: true })), REST_MS);
   }
 
   /**

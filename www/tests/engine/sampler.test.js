@@ -350,6 +350,19 @@ describe('latest wins', () => {
     expect(formulas(jobs())).toEqual(['x', 'y']);
   });
 
+  test('a drag waits for the run that follows the one before, but not for long', () => {
+    for (const [afterMs, sent] of /** @type {const} */ ([
+      [100, ['x']],
+      [200, ['x', 'y']],
+    ])) {
+      const { sampler, jobs } = page();
+      sampler.submit(request('x', { rests: true }));
+      vi.advanceTimersByTime(afterMs);
+      sampler.submit(live('y'));
+      expect(formulas(jobs())).toEqual(sent);
+    }
+  });
+
   test('a live job that takes too long gives way', () => {
     const { sampler, jobs } = page();
     sampler.submit(live('x'));

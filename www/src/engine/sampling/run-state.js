@@ -13,7 +13,7 @@ import { clampSettings } from '../share/state.js';
 
 /**
  * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
- * finish.
+ * finish. So does the run that follows a drag, since the particles that it leaves can follow the surface again.
  */
 const PATIENCE_MS = 150;
 
@@ -184,7 +184,7 @@ export function runningOf({ asked, current }) {
  */
 export function isToWait(state, request, nowMs) {
   const running = runningOf(state);
-  if (!running?.request.live || !request.live) return false;
+  if (!request.live || !(running?.request.live || running?.request.rests)) return false;
   return nowMs - running.sinceMs < PATIENCE_MS;
 }
 

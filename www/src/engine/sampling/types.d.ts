@@ -143,6 +143,8 @@ export interface SampleRequest {
   trial?: boolean;
   /** of fewer particles than the settings of the state ask for, or of the coarse level alone */
   coarse?: boolean;
+  /** the run of a surface that was being changed and has come to rest: the next change waits for its particles */
+  rests?: boolean;
   /** settings of the runs whose particles may follow the surface instead (see `SampleJob`) */
   following?: Settings[];
 }
@@ -156,6 +158,7 @@ export type RelaxRequest = {
   restoring?: false;
   backdrop?: false;
   trial?: false;
+  rests?: false;
 };
 export type RunRequest = SampleRequest | RelaxRequest;
 /**
