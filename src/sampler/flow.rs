@@ -4,18 +4,18 @@
 //! A frame has three parts. The particles are *transported* down the gradient onto the new surface; one that does not come there dies. In
 //! every few frames they are *balanced*. Then they make a step of the [relaxation](super::relaxation). The balance:
 //!
-//! * Of two particles that crowd each other the younger one dies, and so does whoever has more energy than all around it, where that is
-//!   too much.
+//! * Of two particles that crowd each other the younger one dies. So does a particle with more energy than all around it, where that is too
+//!   much.
 //! * Children are placed as a front places them wherever a sector around a particle is open: where a sheet tears, widens or comes into the
 //!   box. A point of the survey that no particle is near is a seed, of a component that was born.
-//! * Whoever has less energy than all around it, where that is too little, gets a child in the widest gap beside it.
+//! * A particle with less energy than all around it, where that is too little, gets a child in the widest gap beside it.
 //!
 //! Births and deaths at extrema of the energy are spread evenly, and hold the density. They leave the disorder of Witkin and Heckbert's
 //! system: the order of the fronts comes back with a run.
 //!
 //! # Differs from Witkin and Heckbert
 //!
-//! * Velocities are not integrated: a particle goes to the new surface by Newton's method (their φ → ∞), so that it never drifts.
+//! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that it never drifts from it.
 //! * Radii are those of the run and do not adapt (their §4.3); fission is a birth in a gap.
 
 use crate::differential::{Curvature, curvatures};

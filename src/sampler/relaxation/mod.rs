@@ -215,19 +215,19 @@ impl Relaxation {
         self.stage = RelaxationStage::Transport;
     }
 
-    /// Makes a step on the surface to which the particles were transported, at rows that are `still_listed` or others.
+    /// Makes a step on the surface to which the particles were transported. `are_listed` says whether the lists are those of these rows.
     pub(crate) fn begin_following(
         &mut self,
         particles: &Particles,
         pairs: &mut PackedNeighbours,
-        still_listed: bool,
+        are_listed: bool,
     ) {
         self.purpose = Purpose::Follow;
-        if !still_listed {
+        if !are_listed {
             self.list_anew(particles, pairs);
         }
         (self.next, self.debt) = (0, 0);
-        self.stage = if still_listed { self.after_lists() } else { RelaxationStage::FillGrid };
+        self.stage = if self.lists.has_stale() { RelaxationStage::FillGrid } else { self.after_lists() };
     }
 
     /// Makes all lists stale, for rows that may be others than before.
