@@ -193,7 +193,7 @@ class JobRun {
   start(memory) {
     const { core, job, env } = this;
     if (job.kind === 'sample') {
-      // The core looks for the surface when it starts or lets particles follow; for a model, this is most of the seeding.
+      // The core looks for the surface here; for a model, this is most of the seeding.
       const before = env.nowMs();
       this.followed = job.following.some((settings) => core.follow(settings));
       if (this.followed) {
