@@ -280,7 +280,10 @@ impl Flow {
         refill(&mut self.columns.is_open, n, false);
         refill(&mut self.columns.is_spared, n, false);
         self.open.clear();
-        for i in (0..n).filter(|&i| !self.columns.is_dead[i]).collect::<Vec<_>>() {
+        for i in 0..n {
+            if self.columns.is_dead[i] {
+                continue;
+            }
             self.gather_neighbours(particles, i);
             let (mut energy, mut is_crowded) = (0.0, false);
             for near in &self.found {
