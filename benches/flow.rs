@@ -167,7 +167,7 @@ fn measure(sweep: &Sweep, count: u32, sampling: Sampling) {
         let mut fresh = Run::start(field(frame), &settings).expect("a run");
         finish(&mut fresh);
         let took = before.elapsed().as_secs_f64();
-        let alive = run.identity().iter().filter(|&&number| (number as usize) < first).count();
+        let alive = run.particles().identity.iter().filter(|&&number| (number as usize) < first).count();
         let (ours, fresh) = (Compared::of(&mut run), Compared::of(&mut fresh));
         println!(
             "| {} | {frame} | {:.3} | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} ({:.2}) | {:.2} | {} ({}) | {} ({}) | {:.0} | {:.1} |",

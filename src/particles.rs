@@ -41,6 +41,9 @@ pub struct Particles {
     /// For each row, the first row of the particle on the lowest faces of a cell of which its own is the image: of its own particle, but
     /// on an upper face. Empty unless opposite faces are the same.
     pub periodic: Vec<u32>,
+    /// Number by which a particle that follows a moving surface is known as long as it lives, in ascending order; those of the run before it
+    /// moved are the first. Empty unless the surface has moved.
+    pub identity: Vec<u32>,
 }
 
 /// Two opposite faces of a cell with the same particles: their coordinates are the same bit for bit but that across the faces.
@@ -277,6 +280,7 @@ impl Particles {
         self.patch.truncate(len);
         self.twins.truncate(len);
         self.periodic.truncate(len);
+        self.identity.truncate(len);
         self.keep_segments(len);
     }
 
@@ -323,6 +327,9 @@ impl Particles {
             if !self.patch.is_empty() {
                 self.patch[kept] = self.patch[i];
             }
+            if !self.identity.is_empty() {
+                self.identity[kept] = self.identity[i];
+            }
             // Parents come before their children, so its new place is known.
             self.parent[kept] = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
             kept += 1;
@@ -363,6 +370,7 @@ impl Particles {
         self.sides.clear();
         self.opposite.clear();
         self.periodic.clear();
+        self.identity.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,

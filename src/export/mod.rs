@@ -79,6 +79,9 @@ pub struct Column {
     /// Whether the column is there only where opposite faces of the box have the same particles.
     #[serde(skip)]
     pub periodic: bool,
+    /// Whether the column is there only where the surface has moved.
+    #[serde(skip)]
+    pub moved: bool,
     /// Returns the value of a particle, given by its index.
     #[serde(skip)]
     read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
@@ -133,7 +136,15 @@ fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
 type Read = fn(&Particles, &quality::Measurements, usize) -> CellValue;
 
 const fn float(name: &'static str, read: Read) -> Column {
-    Column { name, kind: ColumnKind::Float, measured: false, creases: false, periodic: false, read }
+    Column {
+        name,
+        kind: ColumnKind::Float,
+        measured: false,
+        creases: false,
+        periodic: false,
+        moved: false,
+        read,
+    }
 }
 
 /// The columns of PLY and CSV files, in their order.
@@ -193,16 +204,22 @@ pub const COLUMNS: &[Column] = &[
         periodic: true,
         ..float("periodic", |particles, _, i| CellValue::Uint(particles.periodic[i]))
     },
+    Column {
+        kind: ColumnKind::Uint,
+        moved: true,
+        ..float("identity", |particles, _, i| CellValue::Uint(particles.identity[i]))
+    },
 ];
 
 /// The columns of a file: all, but those of measurements where nothing was measured, and those of patches where there are no creases.
 fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
     let (is_measured, is_creased) = (!measured.valence.is_empty(), !particles.patch.is_empty());
-    let is_periodic = !particles.periodic.is_empty();
+    let (is_periodic, has_moved) = (!particles.periodic.is_empty(), !particles.identity.is_empty());
     COLUMNS.iter().filter(move |column| {
         (is_measured || !column.measured)
             && (is_creased || !column.creases)
             && (is_periodic || !column.periodic)
+            && (has_moved || !column.moved)
     })
 }
 

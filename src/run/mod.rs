@@ -230,7 +230,7 @@ impl<F: Field> Run<F> {
     ///     while run.step(u32::MAX).stop_reason.is_none() {}
     /// }
     /// // Most of the particles are those of the beginning.
-    /// assert!(run.identity().iter().filter(|&&number| number < 1_000).count() > 900);
+    /// assert!(run.particles().identity.iter().filter(|&&number| number < 1_000).count() > 900);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(&mut self, field: F) -> bool {
@@ -248,13 +248,6 @@ impl<F: Field> Run<F> {
             self.forget_results();
         }
         can_follow
-    }
-
-    /// The numbers of the particles of a run that has [followed](Run::follow) a moving surface, in ascending order. A particle keeps its
-    /// number as long as it lives; those of the run before it moved are the first. Empty if the run has not moved.
-    #[must_use]
-    pub fn identity(&self) -> &[u32] {
-        self.sampler.identity()
     }
 
     /// Asks for more relaxation steps on the particles of a finished run; [`Run::step`] does them.

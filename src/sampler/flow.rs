@@ -124,8 +124,6 @@ pub(crate) struct Flow {
     frames: u32,
     /// Whether the last frame came to its end, so that the neighbour lists are those of these particles.
     pub(crate) is_whole: bool,
-    /// The number of every particle, in ascending order, by which it is known as long as it lives.
-    identity: Vec<u32>,
     /// The number of the next particle that is born.
     next_identity: u32,
     /// Mean energy of the particles as the run has left them, at which one neither dies nor gets a child; none before the first balance.
@@ -154,25 +152,13 @@ struct BalanceColumns {
 }
 
 impl Flow {
-    /// Begins with the particles of a run, each known by its row.
-    pub(crate) fn begin(&mut self, particles: &Particles) {
-        let n = particles.len() as u32;
-        *self = Self { identity: (0..n).collect(), next_identity: n, growth: 1.0, ..Self::default() };
-    }
-
-    /// Forgets the particles.
-    pub(crate) fn end(&mut self) {
-        *self = Self::default();
-    }
-
-    /// Whether the particles are known from one frame to the next.
-    pub(crate) fn is_under_way(&self) -> bool {
-        !self.identity.is_empty()
-    }
-
-    /// The number of every particle, by which it is known as long as it lives; empty before particles have followed a surface.
-    pub(crate) fn identity(&self) -> &[u32] {
-        &self.identity
+    /// Begins with the particles of a run, each known by its row, unless they are known already.
+    pub(crate) fn begin(&mut self, particles: &mut Particles) {
+        if particles.identity.is_empty() {
+            let n = particles.len() as u32;
+            particles.identity.extend(0..n);
+            *self = Self { next_identity: n, growth: 1.0, ..Self::default() };
+        }
     }
 
     /// Factor by which radii had to grow at the last balance for as many particles as are wanted.
@@ -206,8 +192,6 @@ impl Flow {
         let has_changed = particles.len() > n || is_dead.contains(&true);
         if has_changed {
             particles.keep(|i| !is_dead[i]);
-            let mut dead = is_dead.iter();
-            self.identity.retain(|_| dead.next() == Some(&false));
         }
         Settled { has_changed, steps }
     }
@@ -478,7 +462,7 @@ impl Flow {
         particles.push(position, normal, radius, of, level, slots);
         self.columns.handle.push(self.grids.insert(position, radius, row));
         self.columns.is_dead.push(false);
-        self.identity.push(self.next_identity);
+        particles.identity.push(self.next_identity);
         self.next_identity += 1;
         self.open.push(row);
     }

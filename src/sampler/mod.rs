@@ -319,7 +319,6 @@ impl Sampler {
         self.output.corners = Vec::new();
         self.tools.coarse = CoarseFronts::default();
         self.tools.relaxation.clear();
-        self.tools.flow.end();
         self.counts = Counts::default();
         self.tools.memory.evaluations = 0;
         self.look_over(field, creases);
@@ -487,7 +486,7 @@ impl Sampler {
         let particles = &self.output.particles;
         // A front that was stopped has not covered the surface.
         let is_still = match self.phase {
-            PhaseState::Done(reason) => reason == StopReason::Complete || self.tools.flow.is_under_way(),
+            PhaseState::Done(reason) => reason == StopReason::Complete || !particles.identity.is_empty(),
             _ => false,
         };
         let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
@@ -502,9 +501,7 @@ impl Sampler {
         if !flow::is_near(&mut Scaled::new(field, scale), particles) {
             return false;
         }
-        if !self.tools.flow.is_under_way() {
-            self.tools.flow.begin(&self.output.particles);
-        }
+        self.tools.flow.begin(&mut self.output.particles);
         if self.tools.flow.is_due() {
             self.look_again(field, bounds);
         }
@@ -542,12 +539,6 @@ impl Sampler {
         if self.attempt.sizing.is_none() {
             self.output.particles.radius.fill(self.attempt.radius as f32);
         }
-    }
-
-    /// The number of every particle that has followed a moving surface, by which it is known as long as it lives; empty before any has.
-    #[must_use]
-    pub fn identity(&self) -> &[u32] {
-        self.tools.flow.identity()
     }
 
     /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its

@@ -33,7 +33,7 @@ pub struct Description {
     /// Ways to colour the particles.
     pub colours: &'static [Colour],
     /// Columns of PLY and CSV files.
-    pub columns: &'static [Column],
+    pub columns: Vec<&'static Column>,
     /// Template of a new parameter, without its name.
     pub new_parameter: Parameter,
     /// Largest and smallest values that the core accepts.
@@ -189,7 +189,8 @@ pub fn describe() -> Description {
         fates: FATES,
         functions: FUNCTIONS,
         colours: COLOURS,
-        columns: COLUMNS,
+        // What the page saves is the result of a run.
+        columns: COLUMNS.iter().filter(|column| !column.moved).collect(),
         new_parameter: Parameter::automatic(""),
         limits: Limits {
             formula_bytes: MAX_FORMULA_BYTES,

@@ -539,3 +539,74 @@ fn a_formula_has_a_box_that_fits_and_a_surface_that_is_cut_is_told_with_what_to_
     assert!(fails(3, &["sample", "--formula", "x^2 = -1"]).contains("±10,000"));
     assert!(fails(2, &["sample", "--formula", "x2 + y2 = 1"]).contains("in all 2 places: x^2 + y^2 = 1"));
 }
+
+/// The lines of a CSV file without its head, each with the values of two columns.
+fn columns_of(text: &str, names: [&str; 2]) -> Vec<[String; 2]> {
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let at = names.map(|name| head.iter().position(|column| *column == name).expect(name));
+    lines
+        .map(|line| {
+            let values: Vec<&str> = line.split(',').collect();
+            at.map(|k| values[k].to_owned())
+        })
+        .collect()
+}
+
+#[test]
+fn a_sweep_writes_a_file_for_each_frame_with_particles_that_are_known_by_their_numbers() {
+    let directory = file("frames");
+    let _ = std::fs::remove_dir_all(&directory);
+    let formula = "x^2/q^2 + y^2/0.49 + z^2/0.25 = 1";
+    let path = directory.to_str().expect("a path");
+    let output = run(&[
+        "sweep",
+        "--formula",
+        formula,
+        "--sweep",
+        "q=1..1.2",
+        "--frames",
+        "10",
+        "--count",
+        "800",
+        "--format",
+        "csv",
+        "--out",
+        path,
+    ]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("11 files in "), "{}", stdout(&output));
+    let frame = |k: usize| {
+        let text = std::fs::read_to_string(directory.join(format!("{k:02}.csv"))).expect("a file");
+        columns_of(&text, ["identity", "level"])
+    };
+    let (first, last) = (frame(0), frame(10));
+    assert!(first.iter().enumerate().all(|(i, [identity, _])| *identity == i.to_string()));
+    let kept = last.iter().filter(|&row| first.contains(row)).count();
+    assert!(kept > 700, "{kept} of {} particles are those of the first frame, with their levels", last.len());
+    // Where no particle can follow another run begins, with other numbers.
+    let output = run(&[
+        "sweep",
+        "--formula",
+        "(x-q)^2 + y^2 + z^2 = 0.25",
+        "--sweep",
+        "q=-3..3",
+        "--frames",
+        "2",
+        "--count",
+        "300",
+        "--format",
+        "csv",
+        "--out",
+        path,
+    ]);
+    assert!(stdout(&output).contains("of 3 runs"), "{}{}", stdout(&output), stderr(&output));
+    let identity = |name: &str| {
+        let text = std::fs::read_to_string(directory.join(name)).expect("a file");
+        columns_of(&text, ["identity", "level"])[0][0].clone()
+    };
+    assert_ne!(identity("0.csv"), identity("1.csv"));
+    let message = fails(2, &["sweep", "--formula", "x^2+y^2+z^2=q", "--sweep", "a=1..2", "--out", path]);
+    assert!(message.contains('a'), "{message}");
+    fails(2, &["sweep", "--formula", "x^2+y^2+z^2=q", "--sweep", "q=1", "--out", path]);
+}

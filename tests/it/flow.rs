@@ -58,7 +58,7 @@ fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
             };
             assert!(hole < 1.9, "{of}: a hole of {hole}");
             assert!(figures.accuracy.err_max < 1e-3, "{of}: off by {}", figures.accuracy.err_max);
-            let first = run.identity().iter().filter(|&&number| number < 3_000).count();
+            let first = run.particles().identity.iter().filter(|&&number| number < 3_000).count();
             assert!(first > 1_000, "{of}: only {first} of the first particles are left");
         }
     }
@@ -71,7 +71,7 @@ fn how_a_flow_is_cut_into_steps_changes_no_bit() {
         let digest = |budget: u32| {
             let mut run = started(ELLIPSOID, 1.0, 1.5, &settings);
             sweep(&mut run, ELLIPSOID, [1.0, 1.2], 9, budget);
-            (run.particles().digest(), run.identity().to_vec())
+            (run.particles().digest(), run.particles().identity.clone())
         };
         assert_eq!(digest(u32::MAX), digest(77), "{sampling:?}");
     }
@@ -82,7 +82,8 @@ fn a_particle_keeps_its_number_and_its_level() {
     let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(2_000));
     let born: Vec<u32> = run.particles().level.clone();
     sweep(&mut run, ELLIPSOID, [1.0, 1.3], 40, u32::MAX);
-    let (particles, identity) = (run.particles(), run.identity());
+    let particles = run.particles();
+    let identity = &particles.identity;
     assert_eq!(identity.len(), particles.len());
     assert!(identity.is_sorted_by(|a, b| a < b));
     assert!(identity.iter().any(|&number| number as usize >= born.len()), "no particle was born");

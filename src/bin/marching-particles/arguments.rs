@@ -4,10 +4,10 @@ use crate::options::SamplingOptions;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use marching_particles::export::{Placement, Unit, UpAxis};
-use marching_particles::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
+use marching_particles::{Format, gallery};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -40,6 +40,57 @@ pub(crate) enum Command {
     Sample(Box<SampleArguments>),
     /// List the named surfaces
     Surfaces(Surfaces),
+    /// Move a surface by a parameter, and write the particles that follow it to numbered files
+    #[command(long_about = SWEEP_LONG)]
+    Sweep(Box<SweepArguments>),
+}
+
+const SWEEP_LONG: &str = "\
+Move a surface by a parameter, and write the particles that follow it to numbered files.
+
+The particles of the first frame are those of `sample`. From frame to frame they are brought to the new surface; they die where they \
+crowd, and are born where it tears, grows or comes into the box. A particle keeps its number, the column `identity` of ply and csv, as long \
+as it lives. Where the surface moves too far for that, has sharp edges or is gone, a new run begins: give more frames.
+
+Example:
+  marching-particles sweep --formula \"x^4 + y^4 + z^4 - 5(x^2 + y^2 + z^2) + q\" --sweep q=11..14 --frames 90 --count 8000 --out frames";
+
+/// Arguments of `sweep`.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArguments {
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArguments,
+
+    /// The parameter that moves the surface, with its first and its last value
+    #[arg(long, value_name = "NAME=FROM..TO", value_parser = sweep, allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) sweep: Sweep,
+
+    /// Steps from the first to the last value: there is one more file
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Surface")]
+    pub(crate) frames: u32,
+
+    #[command(flatten)]
+    pub(crate) sampling: SamplingOptions,
+
+    /// Directory for the files, which is made if it is not there; files of the same names are replaced
+    #[arg(long, value_name = "DIRECTORY", help_heading = "Output")]
+    pub(crate) out: PathBuf,
+
+    /// Format of the files
+    #[arg(long, value_name = "WORD", value_parser = one_of(&Format::ALL), default_value = "ply", help_heading = "Output")]
+    pub(crate) format: String,
+
+    /// Show no progress bar (there is none without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// A parameter and the range through which it goes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sweep {
+    pub(crate) name: String,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
 }
 
 const SAMPLE_LONG: &str = "\
@@ -313,6 +364,13 @@ fn parameter(text: &str) -> Result<(String, f64), String> {
     Ok((name.trim().to_owned(), number(value)?))
 }
 
+fn sweep(text: &str) -> Result<Sweep, String> {
+    let how = "a sweep is given as NAME=FROM..TO, like a=0.2..1.5";
+    let (name, range) = text.split_once('=').ok_or(how)?;
+    let (from, to) = range.split_once("..").ok_or(how)?;
+    Ok(Sweep { name: name.trim().to_owned(), from: number(from)?, to: number(to)? })
+}
+
 /// A length from an argument.
 pub(crate) fn length(text: &str) -> Result<Length, String> {
     let length = match text.strip_suffix('%') {
@@ -366,6 +424,16 @@ mod tests {
         assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
         for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
             assert!(length(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sweep_takes_a_name_and_two_numbers() {
+        let range = |from, to| Ok(Sweep { name: "a".to_owned(), from, to });
+        assert_eq!(sweep("a=0.2..1.5"), range(0.2, 1.5));
+        assert_eq!(sweep("a = -1 .. -2e-1"), range(-1.0, -0.2));
+        for bad in ["a", "a=1", "a=1..", "1..2", "a=..2", "a=1..b", "a=nan..1"] {
+            assert!(sweep(bad).is_err(), "{bad}");
         }
     }
 

@@ -10,6 +10,7 @@ mod points;
 mod sample;
 mod summary;
 mod surfaces;
+mod sweep;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Sample(arguments) => sample::run(*arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(*arguments),
     };
     match result {
         Ok(code) => code,

@@ -32,8 +32,8 @@ const BUDGET: u32 = 256;
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 
 /// The surface that was asked for.
-struct Chosen {
-    field: Box<dyn Field>,
+pub(crate) struct Chosen {
+    pub(crate) field: Box<dyn Field>,
     /// Name of the surface, if it has one.
     name: Option<String>,
     formula: String,
@@ -41,7 +41,7 @@ struct Chosen {
     /// Report of the fit, for a surface near points.
     model: Option<ModelInfo>,
     /// The box to sample in, where it is not to be fitted.
-    bounds: Option<Bounds>,
+    pub(crate) bounds: Option<Bounds>,
     /// Whether that box was chosen for the surface, so that it may cut it.
     has_own_box: bool,
     /// The box whose faces close the solid.
@@ -246,7 +246,7 @@ fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure
 }
 
 /// The surface that the arguments name.
-fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
+pub(crate) fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
     let given = arguments.bounds.and_then(BoxChoice::given);
     if let Some(fit) = fit(arguments, quiet)? {
         if arguments.solid() != SolidSettings::default() {
@@ -365,7 +365,7 @@ fn formula(
 }
 
 /// Why a run was refused, by the names of the options.
-fn refused(error: Error) -> Failure {
+pub(crate) fn refused(error: Error) -> Failure {
     match error {
         Error::Settings(error) => Failure::Usage(refusal(&error)),
         error => Failure::Nothing(error.to_string()),
@@ -413,7 +413,7 @@ fn step_to_end(run: &mut Run<Box<dyn Field>>, seconds: &mut Seconds, bar: &Progr
 }
 
 /// Progress bar on standard error, if that is a terminal.
-fn bar(quiet: bool) -> ProgressBar {
+pub(crate) fn bar(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

@@ -1,0 +1,134 @@
+//! Subcommand `sweep`: a surface that moves, as numbered files of the particles that follow it.
+
+use crate::arguments::{SurfaceArguments, Sweep, SweepArguments};
+use crate::failure::Failure;
+use crate::output::OutputFile;
+use crate::sample::{Chosen, bar, choose, refused};
+use marching_particles::extent;
+use marching_particles::quality::Measurements;
+use marching_particles::{Bounds, Field, Format, Run, export};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Values of the parameter, spread over its range, at which a box is fitted: the surface may be larger in between.
+const FITTED: u32 = 9;
+
+pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
+    let (sweep, frames) = (arguments.sweep.clone(), arguments.frames);
+    let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
+    std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
+    let bounds = box_of(&mut arguments)?;
+    let settings = arguments.sampling.settings(&bounds).in_box(bounds);
+    let bar = bar(arguments.quiet);
+    bar.set_length(u64::from(frames) + 1);
+    let digits = frames.to_string().len();
+    let mut counted = Counted::default();
+    let mut moved: Option<Run<Box<dyn Field>>> = None;
+    for frame in 0..=frames {
+        let field = at(&mut arguments.surface, &sweep, f64::from(frame) / f64::from(frames))?.field;
+        let mut run = match moved.take() {
+            None => Run::start(field, &settings).map_err(refused)?,
+            Some(mut run) => {
+                if !run.follow(field) {
+                    run.restart(&settings).map_err(refused)?;
+                    counted.begin_anew();
+                }
+                run
+            }
+        };
+        while run.step(u32::MAX).stop_reason.is_none() {}
+        let mut particles = run.particles().clone();
+        let count = particles.len();
+        counted.number(&mut particles.identity, count);
+        let path = arguments.out.join(format!("{frame:0digits$}.{}", arguments.format));
+        let format = Format::of_extension(&arguments.format).unwrap_or(Format::Ply);
+        for output in OutputFile::beside(&[&path])? {
+            output.write(|out| {
+                export::write(
+                    format,
+                    &particles,
+                    &Measurements::default(),
+                    &export::RecordText::default(),
+                    out,
+                )
+            })?;
+        }
+        counted.note(run.count());
+        bar.set_position(u64::from(frame) + 1);
+        moved = Some(run);
+    }
+    bar.finish_and_clear();
+    let Counted { least, most, next, runs, .. } = counted;
+    let again = if runs > 1 {
+        format!(", of {runs} runs: between two the surface moved too far")
+    } else {
+        String::new()
+    };
+    let mut out = std::io::stdout().lock();
+    let directory = arguments.out.display();
+    writeln!(out, "{} files in {directory}: {least} to {most} particles, {next} in all{again}", frames + 1)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The numbers of particles in the frames so far, and of their identities.
+#[derive(Default)]
+struct Counted {
+    least: usize,
+    most: usize,
+    /// Identities before those of the present run.
+    before: u32,
+    /// The identity after all so far.
+    next: u32,
+    runs: u32,
+}
+
+impl Counted {
+    /// Another run begins, whose particles are others.
+    fn begin_anew(&mut self) {
+        self.before = self.next;
+        self.runs += 1;
+    }
+
+    /// Numbers the particles of a frame, so that no two of all runs have the same.
+    fn number(&mut self, identity: &mut Vec<u32>, particles: usize) {
+        if identity.is_empty() {
+            identity.extend(0..particles as u32);
+        }
+        for number in identity {
+            *number += self.before;
+            self.next = self.next.max(*number + 1);
+        }
+    }
+
+    fn note(&mut self, count: usize) {
+        if self.runs == 0 {
+            (self.runs, self.least) = (1, count);
+        }
+        (self.least, self.most) = (self.least.min(count), self.most.max(count));
+    }
+}
+
+/// The surface at a share of the way of the sweep.
+fn at(surface: &mut SurfaceArguments, sweep: &Sweep, share: f64) -> Result<Chosen, Failure> {
+    let value = sweep.from + (sweep.to - sweep.from) * share;
+    surface.parameters.retain(|(name, _)| *name != sweep.name);
+    surface.parameters.push((sweep.name.clone(), value));
+    choose(surface, true)
+}
+
+/// The box of all frames: the one given, the surface's own, or one around the surfaces of the sweep.
+fn box_of(arguments: &mut SweepArguments) -> Result<Bounds, Failure> {
+    let mut all: Option<Bounds> = None;
+    for k in 0..FITTED {
+        let share = f64::from(k) / f64::from(FITTED - 1);
+        let mut chosen = at(&mut arguments.surface, &arguments.sweep, share)?;
+        if let Some(bounds) = chosen.bounds {
+            return Ok(bounds);
+        }
+        let extent = extent::find(&mut chosen.field);
+        let room = |bounds: &Bounds| extent.with_room(arguments.sampling.settings(bounds).largest_share());
+        let fitted = room(&room(&extent.bounds));
+        all = Some(all.map_or(fitted, |all| all.joined(&fitted)));
+    }
+    Ok(all.unwrap_or(Bounds::cube(1.0)))
+}
