@@ -461,7 +461,7 @@ impl<F: Field> Run<F> {
 
     /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.
     fn end(&mut self) {
-        if self.is_surveyed {
+        if self.is_surveyed || self.sampler.progress().phase == Phase::Flow {
             self.is_surveyed = false;
             self.cancel();
         }
