@@ -34,8 +34,9 @@ pub struct Particles {
     pub twins: Vec<u32>,
     /// Pairs of particles that follow each other along a crease, each by its first row.
     pub segments: Vec<[u32; 2]>,
-    /// For each of the segments, the patches on its left and on its right, seen from outside.
-    pub sides: Vec<[u32; 2]>,
+    /// For each of the segments, pairs of a patch on its left and one on its right, seen from outside: one pair, or two where the factors of a
+    /// product cross.
+    pub sides: Vec<Vec<[u32; 2]>>,
     /// Opposite faces of a cell on which the particles are the same, see [`UnitCell`](crate::field::UnitCell).
     pub opposite: Vec<OppositeFaces>,
     /// For each row, the first row of the particle on the lowest faces of a cell of which its own is the image: of its own particle, but
@@ -186,14 +187,15 @@ impl Particles {
 
     /// For each of the first rows, the first row of the same vertex: of the same particle, but for the rows of a [tip](Self::tips), each of
     /// which is a vertex of its own.
-    pub(crate) fn joints(twins: &[u32], segments: &[[u32; 2]]) -> Vec<u32> {
-        let mut joints = twins.to_vec();
-        Self::tips(twins, segments).into_iter().for_each(|tip| joints[tip as usize] = tip);
+    pub(crate) fn joints(&self) -> Vec<u32> {
+        let mut joints = self.twins.clone();
+        self.tips().into_iter().for_each(|tip| joints[tip as usize] = tip);
         joints
     }
 
     /// The rows of tips, in ascending order: particles with rows of their own through which no crease runs.
-    pub(crate) fn tips(twins: &[u32], segments: &[[u32; 2]]) -> Vec<u32> {
+    pub(crate) fn tips(&self) -> Vec<u32> {
+        let Self { twins, segments, .. } = self;
         let mut is_tip = vec![true; twins.len()];
         segments.as_flattened().iter().for_each(|&first| is_tip[first as usize] = false);
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()

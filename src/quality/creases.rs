@@ -1,6 +1,5 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
-use super::options::Patches;
 use crate::field::Field;
 use crate::math::unkey;
 use crate::mesh::build::{MeshOptions, particles_in_slices};
@@ -24,14 +23,12 @@ pub(super) struct CreaseRows {
 }
 
 impl CreaseRows {
-    pub(super) fn new(tree: &Tree, patches: Patches<'_>) -> Self {
-        if patches.patch.is_empty() {
-            return Self::default();
-        }
-        let particle = |row: u32| patches.twins.get(row as usize).copied().unwrap_or(row);
-        let joints = Particles::joints(patches.twins, patches.segments);
+    pub(super) fn new(tree: &Tree, rows: Option<&Particles>) -> Self {
+        let Some(rows) = rows.filter(|rows| !rows.patch.is_empty()) else { return Self::default() };
+        let particle = |row: u32| rows.first_row(row as usize) as u32;
+        let joints = rows.joints();
         let vertex = |row: u32| joints.get(row as usize).copied().unwrap_or(row);
-        let mut place = vec![u32::MAX; patches.patch.len()];
+        let mut place = vec![u32::MAX; rows.patch.len()];
         for (k, &row) in (0..).zip(&tree.origin) {
             place[row as usize] = k;
         }
@@ -40,12 +37,12 @@ impl CreaseRows {
             first => first,
         };
         let mut on_creases: Vec<(u32, u32)> =
-            patches.twins.iter().copied().zip(patches.patch.iter().copied()).collect();
+            rows.twins.iter().copied().zip(rows.patch.iter().copied()).collect();
         on_creases.sort_unstable();
-        let tips = Particles::tips(patches.twins, patches.segments);
+        let tips = rows.tips();
         Self {
             is_tip: tree.origin.iter().map(|row| tips.binary_search(row).is_ok()).collect(),
-            patch: tree.origin.iter().map(|&row| patches.patch[row as usize]).collect(),
+            patch: tree.origin.iter().map(|&row| rows.patch[row as usize]).collect(),
             particle: tree.origin.iter().map(|&row| particle(row)).collect(),
             first: (0..).zip(&tree.origin).map(first).collect(),
             on_creases,
@@ -177,20 +174,13 @@ impl CreaseRows {
         &self,
         tree: &Tree,
         normal: &[Vec3],
-        patches: Patches<'_>,
+        rows: &Particles,
         options: &MeshOptions<'_>,
     ) -> Vec<[u32; 3]> {
-        let count = patches.patch.len();
+        let count = rows.patch.len();
         // Rows that are left out have no position.
-        let mut particles = Particles {
-            position: vec![Vec3::NAN; count],
-            normal: vec![Vec3::ZERO; count],
-            patch: patches.patch.to_vec(),
-            twins: patches.twins.to_vec(),
-            segments: patches.segments.to_vec(),
-            sides: patches.sides.to_vec(),
-            ..Particles::default()
-        };
+        let (position, normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);
+        let mut particles = Particles { position, normal: normals, ..rows.clone() };
         let mut place = vec![u32::MAX; count];
         for (k, &row) in tree.origin.iter().enumerate() {
             let row = row as usize;

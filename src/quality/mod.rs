@@ -43,7 +43,7 @@ mod spacing;
 mod triangles;
 
 pub use figures::Figures;
-pub use options::{MeasureOptions, Patches, Sizes};
+pub use options::{MeasureOptions, Sizes};
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
@@ -174,7 +174,7 @@ pub(crate) async fn in_slices(
         report.component[i] = component[k];
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
-        if let Some(&patch) = options.patches.patch.get(i) {
+        if let Some(patch) = options.rows.and_then(|rows| rows.patch_of(i)) {
             field.select_branch(Some(patch));
         }
         let jet = field.jet(position[i].as_dvec3());
@@ -189,7 +189,7 @@ pub(crate) async fn in_slices(
     figures.spacing.crowded = (!points.tree.position.is_empty()).then_some(pairs.crowded);
     report.figures = figures;
     report.places = Places { pairs: pairs.reported(), holes };
-    let is_first = |i: usize| options.patches.twins.get(i).is_none_or(|&first| first as usize == i);
+    let is_first = |i: usize| options.rows.is_none_or(|rows| rows.first_row(i) == i);
     let nearest = report.nearest.iter().enumerate().filter(|&(i, _)| is_first(i));
     report.histogram = Histogram::new(nearest.map(|(i, &distance)| (i, distance)), |i| match options.sizes {
         Sizes::Given(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),

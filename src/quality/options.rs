@@ -22,28 +22,8 @@ pub enum Sizes<'a> {
     },
 }
 
-/// The patches of a surface with creases: columns of [`Particles`](crate::particles::Particles). Neighbours of a particle are looked
-/// for on its own patch, and the patches are one surface by the particles on creases. All are empty where there are no creases.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Patches<'a> {
-    /// Patch of every row, by the number of its branch.
-    pub patch: &'a [u32],
-    /// For each of the first rows, the first row of the same particle.
-    pub twins: &'a [u32],
-    /// Pairs of particles that follow each other along a crease, each by its first row.
-    pub segments: &'a [[u32; 2]],
-    /// For each of them, the patches on its left and on its right, seen from outside.
-    pub sides: &'a [[u32; 2]],
-}
-
-impl<'a> From<&'a Particles> for Patches<'a> {
-    fn from(Particles { patch, twins, segments, sides, .. }: &'a Particles) -> Self {
-        Self { patch, twins, segments, sides }
-    }
-}
-
 /// Options of a measurement: known properties of the surface, and the number of random samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
@@ -54,8 +34,9 @@ pub struct MeasureOptions<'a> {
     pub sizes: Sizes<'a>,
     /// Radius of the disc of each point, for [`Coverage::uncovered`](super::figures::Coverage::uncovered); without them it is NaN.
     pub discs: &'a [f32],
-    /// The patches, where the surface has creases. Each column is then one of rows.
-    pub patches: Patches<'a>,
+    /// The particles of which patch, twins, segments and sides are used, where the surface has creases. Neighbours of a particle are looked for on
+    /// its own patch, and the patches are one surface by the particles on creases. Each column is then one of rows.
+    pub rows: Option<&'a Particles>,
     /// Smallest number of random samples for [`Coverage::quant`](super::figures::Coverage::quant). There is at least one for each
     /// particle, and there are at most 262,144.
     pub samples: usize,
@@ -66,14 +47,6 @@ pub struct MeasureOptions<'a> {
 impl Default for MeasureOptions<'_> {
     fn default() -> Self {
         // 65,536 stratified samples give `quant` to about 0.1 %.
-        Self {
-            area: None,
-            euler: None,
-            sizes: Sizes::None,
-            discs: &[],
-            patches: Patches::default(),
-            samples: 65_536,
-            seed: 0,
-        }
+        Self { area: None, euler: None, sizes: Sizes::None, discs: &[], rows: None, samples: 65_536, seed: 0 }
     }
 }

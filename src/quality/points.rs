@@ -3,9 +3,9 @@
 use super::accuracy::{NormalAngles, first_order_height};
 use super::creases::CreaseRows;
 use super::one_rings::OneRings;
-use super::options::Patches;
 use super::sheets::Sheets;
 use crate::field::Field;
+use crate::particles::Particles;
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
@@ -36,11 +36,11 @@ impl MeasuredPoints {
         field: &mut dyn Field,
         has_duplicate: &[bool],
         drop: &[bool],
-        patches: Patches<'_>,
+        rows: Option<&Particles>,
     ) -> Self {
         let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
         let tree = Tree::in_slices(kept).await;
-        let creases = CreaseRows::new(&tree, patches);
+        let creases = CreaseRows::new(&tree, rows);
         let mut normal = Vec::with_capacity(tree.len());
         let mut height = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();

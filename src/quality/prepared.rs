@@ -39,10 +39,10 @@ impl Prepared {
         bounds: Option<&Bounds>,
         options: &MeasureOptions<'_>,
     ) -> Self {
-        let patches = options.patches;
+        let rows = options.rows;
         // The further rows of a particle on a crease.
-        let is_further = |i: usize| patches.twins.get(i).is_some_and(|&first| first as usize != i);
-        let further = (0..patches.twins.len()).filter(|&i| is_further(i)).count();
+        let is_further = |i: usize| rows.is_some_and(|rows| rows.first_row(i) != i);
+        let further = rows.map_or(0, |rows| rows.twins.len() - rows.count_of_first(rows.twins.len()));
         let mut drop: Vec<bool> = position.iter().map(|p| !p.is_finite()).collect();
         let not_finite = drop.iter().filter(|&&dropped| dropped).count();
         let mut has_duplicate = vec![false; position.len()];
@@ -50,9 +50,14 @@ impl Prepared {
         drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, patches).await;
+            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows).await;
             let spacing = spacing_of(&points).await;
-            let (triangles, mesh) = if points.creases.is_empty() {
+            let patched = rows.filter(|_| !points.creases.is_empty());
+            let (triangles, mesh) = if let Some(rows) = patched {
+                let options = MeshOptions { bounds, ..MeshOptions::default() };
+                let mesh = points.creases.mesh(&points.tree, &points.normal, rows, &options).await;
+                (Triangles::seen(&points.rings, &mesh), mesh)
+            } else {
                 let mut triangles = Triangles::new(&points.rings).await;
                 let gaps = Gaps { points: &points, spacing: &spacing, bounds };
                 for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
@@ -60,10 +65,6 @@ impl Prepared {
                 }
                 let mesh = triangles.settled(&points.tree.position);
                 (triangles, mesh)
-            } else {
-                let options = MeshOptions { bounds, ..MeshOptions::default() };
-                let mesh = points.creases.mesh(&points.tree, &points.normal, patches, &options).await;
-                (Triangles::seen(&points.rings, &mesh), mesh)
             };
             pause().await;
             let area = options.area.unwrap_or_else(|| area(&points.tree.position, &mesh));

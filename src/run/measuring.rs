@@ -17,7 +17,7 @@ const MAX_KEPT: usize = 400_000;
 #[derive(Default)]
 pub(super) struct Measuring {
     /// The particles after the front, until they are measured.
-    pub(super) front: Option<Arc<ParticleCopy>>,
+    pub(super) front: Option<Arc<Particles>>,
     pub(super) front_figures: Option<Figures>,
     pub(super) work: Option<Work<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
@@ -28,7 +28,7 @@ impl Measuring {
     /// Keeps the first `count` particles as those of the front, if none are kept.
     pub(super) fn keep_front(&mut self, particles: &Particles, count: usize) {
         if self.front.is_none() && count <= MAX_KEPT {
-            self.front = Some(Arc::new(ParticleCopy::of(particles)));
+            self.front = Some(Arc::new(measured_columns(particles)));
         }
     }
 
@@ -38,52 +38,39 @@ impl Measuring {
     }
 
     /// The particles of the front that are still to be measured.
-    pub(super) fn open_front(&self) -> Option<Arc<ParticleCopy>> {
+    pub(super) fn open_front(&self) -> Option<Arc<Particles>> {
         self.front.clone().filter(|_| self.front_figures.is_none())
     }
 }
 
 /// Copy of the columns of particles that a later measurement needs.
-pub(super) struct ParticleCopy {
-    position: Vec<Vec3>,
-    normal: Vec<Vec3>,
-    radius: Vec<f32>,
-    patch: Vec<u32>,
-    twins: Vec<u32>,
-    segments: Vec<[u32; 2]>,
-    sides: Vec<[u32; 2]>,
+pub(super) fn measured_columns(particles: &Particles) -> Particles {
+    Particles {
+        position: particles.position.clone(),
+        normal: particles.normal.clone(),
+        radius: particles.radius.clone(),
+        patch: particles.patch.clone(),
+        twins: particles.twins.clone(),
+        segments: particles.segments.clone(),
+        sides: particles.sides.clone(),
+        ..Particles::default()
+    }
 }
 
-impl ParticleCopy {
-    pub(super) fn of(particles: &Particles) -> Self {
-        Self {
-            position: particles.position.clone(),
-            normal: particles.normal.clone(),
-            radius: particles.radius.clone(),
-            patch: particles.patch.clone(),
-            twins: particles.twins.clone(),
-            segments: particles.segments.clone(),
-            sides: particles.sides.clone(),
-        }
-    }
-
-    /// [`quality::measure`], a slice at a time.
-    pub(super) async fn measure(
-        &self,
-        field: &mut dyn Field,
-        bounds: &Bounds,
-        sampling: Sampling,
-    ) -> quality::Measurements {
-        let sizes = match sampling {
-            Sampling::Uniform => quality::Sizes::None,
-            Sampling::Adaptive => quality::Sizes::Given(&self.radius),
-        };
-        let Self { patch, twins, segments, sides, .. } = self;
-        let patches = quality::Patches { patch, twins, segments, sides };
-        let discs = &self.radius;
-        let options = quality::MeasureOptions { sizes, discs, patches, ..quality::MeasureOptions::default() };
-        quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
-    }
+/// [`quality::measure`], a slice at a time.
+pub(super) async fn measure(
+    particles: &Particles,
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    sampling: Sampling,
+) -> quality::Measurements {
+    let sizes = match sampling {
+        Sampling::Uniform => quality::Sizes::None,
+        Sampling::Adaptive => quality::Sizes::Given(&particles.radius),
+    };
+    let (discs, rows) = (&particles.radius[..], Some(particles));
+    let options = quality::MeasureOptions { sizes, discs, rows, ..quality::MeasureOptions::default() };
+    quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options).await
 }
 
 /// Results of a measurement.
@@ -96,8 +83,8 @@ pub(super) struct MeasuringResult {
 
 /// Input of a measurement, apart from the field.
 pub(super) struct MeasuringInput {
-    pub(super) front: Option<Arc<ParticleCopy>>,
-    pub(super) now: ParticleCopy,
+    pub(super) front: Option<Arc<Particles>>,
+    pub(super) now: Particles,
     pub(super) bounds: Bounds,
     pub(super) sampling: Sampling,
 }
@@ -117,16 +104,16 @@ impl MeasuringInput {
     async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
         let Self { front, now, bounds, sampling } = self;
         let front = match front {
-            Some(front) => Some(front.measure(field, &bounds, sampling).await.figures),
+            Some(front) => Some(measure(&front, field, &bounds, sampling).await.figures),
             None => None,
         };
-        let report = now.measure(field, &bounds, sampling).await;
+        let report = measure(&now, field, &bounds, sampling).await;
         MeasuringResult { front, now: report, facing: facing_another_sheet(&now).await }
     }
 }
 
 /// Number of particles nearer than 2r to one of the same patch that faces the other way.
-async fn facing_another_sheet(particles: &ParticleCopy) -> usize {
+async fn facing_another_sheet(particles: &Particles) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
     /// Particles looked at in one slice of work.

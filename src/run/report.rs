@@ -1,6 +1,6 @@
 //! The report of a run: the counts of the sampler, and the measurements of the particles before and after the relaxation.
 
-use super::measuring::{Measuring, MeasuringInput, MeasuringResult, ParticleCopy};
+use super::measuring::{Measuring, MeasuringInput, MeasuringResult, measure, measured_columns};
 use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
@@ -140,8 +140,18 @@ fn null_for_zero<S: Serializer>(count: &usize, serializer: S) -> Result<S::Ok, S
     Some(*count).filter(|&count| count > 0).serialize(serializer)
 }
 
-/// Number of curves of the segments along creases, and of the particles at which they meet or end.
-fn creases_of(Particles { twins, segments, .. }: &Particles) -> (usize, usize) {
+/// What the segments along creases add up to.
+pub(super) struct CreaseCounts {
+    curves: usize,
+    /// Particles at which curves meet or end.
+    corners: usize,
+    /// Curves along which sheets cross, and a particle on the first of them.
+    pub(super) crossings: usize,
+    pub(super) crossing: Option<u32>,
+}
+
+/// Counts the curves of the segments along creases.
+pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -> CreaseCounts {
     // The segments at each particle.
     let mut at = vec![Vec::new(); twins.len()];
     for (k, segment) in (0..).zip(segments) {
@@ -151,15 +161,21 @@ fn creases_of(Particles { twins, segments, .. }: &Particles) -> (usize, usize) {
     for way in at.iter().filter(|segments| segments.len() == 2) {
         curves.join(way[0], way[1]);
     }
-    let count = (0..segments.len() as u32).filter(|&k| curves.find(k) == k).count();
-    (count, at.iter().filter(|segments| !matches!(segments.len(), 0 | 2)).count())
+    let firsts: Vec<u32> = (0..segments.len() as u32).filter(|&k| curves.find(k) == k).collect();
+    let mut crossings = firsts.iter().filter(|&&k| sides[k as usize].len() > 1).copied().peekable();
+    CreaseCounts {
+        curves: firsts.len(),
+        corners: at.iter().filter(|segments| !matches!(segments.len(), 0 | 2)).count(),
+        crossing: crossings.peek().map(|&k| segments[k as usize][0]),
+        crossings: crossings.count(),
+    }
 }
 
 impl<F: Field> Run<F> {
     fn measuring_input(&self) -> MeasuringInput {
         MeasuringInput {
             front: self.measuring.open_front(),
-            now: ParticleCopy::of(self.particles()),
+            now: measured_columns(self.particles()),
             bounds: self.local_bounds(),
             sampling: self.sampler.settings().sampling,
         }
@@ -191,8 +207,7 @@ impl<F: Field> Run<F> {
     pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
         self.measuring.stop();
         let bounds = self.local_bounds();
-        let placed = ParticleCopy::of(placed);
-        self.measuring.measured = slices::complete(placed.measure(&mut self.field, &bounds, sampling));
+        self.measuring.measured = slices::complete(measure(placed, &mut self.field, &bounds, sampling));
         let measured = &self.measuring.measured;
         Measures {
             quality: (!measured.valence.is_empty()).then_some(measured.figures),
@@ -335,8 +350,8 @@ impl<F: Field> Run<F> {
             sampled,
             undecided_cells: self.sampler.undecided_cells(),
             singular_points: self.sampler.singular_points(),
-            creases: creases.map(|(curves, _)| curves),
-            corners: creases.map(|(_, corners)| corners),
+            creases: creases.as_ref().map(|creases| creases.curves),
+            corners: creases.map(|creases| creases.corners),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Warnings about a run: a typed list, whose `Display` is a sentence for each.
 
+use super::report::{CreaseCounts, creases_of};
 use super::{Report, Run, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
@@ -87,6 +88,15 @@ pub enum Warning {
         /// Number of points at which it touches itself.
         touches: usize,
         /// A place where it does.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
+    /// Sheets of the surface cross along creases.
+    Crosses {
+        /// Number of curves.
+        curves: usize,
+        /// Position of a particle on the first one.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
@@ -253,10 +263,10 @@ impl<F: Field> Run<F> {
         if not_converged > 0 || undefined > 0 {
             warnings.push(Warning::Children { not_converged, undefined });
         }
-        let meets = self.places_of_meeting();
+        let meets = [self.places_of_meeting(), self.crossing()];
         // A smaller radius takes no sheets apart that meet.
-        let is_close = !is_unresolved && meets.is_none() && facing >= CLOSE_COUNT;
-        warnings.extend(meets);
+        let is_close = !is_unresolved && meets == [None, None] && facing >= CLOSE_COUNT;
+        warnings.extend(meets.into_iter().flatten());
         if is_close && facing as f64 >= CLOSE_SHARE * total as f64 {
             warnings.push(Warning::CloseSheets { count: facing });
         }
@@ -288,7 +298,14 @@ impl<F: Field> Run<F> {
         warnings
     }
 
-    /// The warning that the surface crosses or touches itself, if it does.
+    /// The warning that sheets cross in creases, if they do.
+    fn crossing(&self) -> Option<Warning> {
+        let CreaseCounts { crossings: curves, crossing, .. } = creases_of(self.particles());
+        let position = self.particles().place(crossing? as usize).to_array();
+        Some(Warning::Crosses { curves, position, length: self.sampler.radius() })
+    }
+
+    /// The warning that the surface crosses or touches itself where its gradient vanishes, if it does.
     fn places_of_meeting(&self) -> Option<Warning> {
         let mut places = self.sampler.singular_places();
         places.retain(|place| matches!(place.kind, SingularKind::Crossing | SingularKind::Touch));
@@ -364,10 +381,17 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "The surface {meets}, first near {}. f has no gradient there, and the sheets are sampled up to it: the components \
-                     and the Euler number of the sample are not those of the sheets. Of a product, sample one factor at a time.",
+                     and the Euler number of the sample are not those of the sheets.",
                     place(*position, *length)
                 )
             }
+            Self::Crosses { curves, position, length } => write!(
+                f,
+                "Sheets of the surface cross along {}, first near {}, and share the particles there: components and Euler number \
+                 are those of all sheets together, and the mesh is no manifold along it.",
+                counted(*curves, "curve", "curves"),
+                place(*position, *length)
+            ),
             Self::EndedEarly { seeds } => write!(
                 f,
                 "The run was ended early: {seeds} seeds had stayed alone beside other particles, because the particles are larger \

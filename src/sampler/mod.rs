@@ -238,7 +238,11 @@ impl Sampler {
 
     /// The places of the surface where f has no gradient, as far as they are known.
     pub(crate) fn singular_places(&self) -> Vec<SingularPlace> {
-        singular::places(self.components.singular())
+        let mut places = singular::places(self.components.singular());
+        let passed =
+            self.creases.passed.map(|position| SingularPlace { position, kind: SingularKind::Crossing });
+        places.extend(passed.filter(|passed| places.iter().all(|place| place.kind != passed.kind)));
+        places
     }
 
     /// The scale at which the field of the last start is evaluated in double precision, if it is.
@@ -338,9 +342,10 @@ impl Sampler {
             }
             let has_one_radius = settings.sampling == Sampling::Uniform;
             let crease = if has_one_radius { self.creases.at_box() } else { self.creases.first() };
-            self.counts.refusal = match crease {
-                Some(at) => Some(Refusal::Creased { at: at.into() }),
-                None => self.attempt.refine(settings, &self.survey.position, curvature),
+            self.counts.refusal = match (crease, self.creases.passed) {
+                (_, Some(at)) => Some(Refusal::Singular { at: at.as_vec3().into() }),
+                (Some(at), _) => Some(Refusal::Creased { at: at.into() }),
+                _ => self.attempt.refine(settings, &self.survey.position, curvature),
             };
         }
         let predicted = self.attempt.predicted_count(settings);

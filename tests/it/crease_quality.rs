@@ -3,10 +3,10 @@
 use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::{DVec3, Vec3};
 use marching_particles::particles::Particles;
-use marching_particles::quality::{MeasureOptions, Measurements, Patches, measure};
+use marching_particles::quality::{MeasureOptions, Measurements, measure};
 
 fn measured(particles: &Particles, solid: Creased) -> Measurements {
-    let options = MeasureOptions { patches: Patches::from(particles), ..MeasureOptions::default() };
+    let options = MeasureOptions { rows: Some(particles), ..MeasureOptions::default() };
     measure(&particles.position, &particles.normal, &mut solid.field(), None, &options)
 }
 

@@ -70,7 +70,7 @@ impl Creased {
                 let new: Vec<u32> = new.collect();
                 places[k].1.extend(new);
                 pairs.extend(last.replace(k).map(|from| [from, k]));
-                sides.resize(pairs.len(), *patches);
+                sides.resize(pairs.len(), vec![*patches]);
             }
         }
         let mut particles = Particles::default();

@@ -46,6 +46,7 @@ mod pointcloud;
 mod pointcloud_job;
 #[cfg(feature = "points")]
 mod pointcloud_read;
+mod products;
 mod proof;
 mod quality;
 #[cfg(feature = "points")]

@@ -259,6 +259,33 @@ impl Base {
     }
 }
 
+/// Maximum number of products that are told by their factors: a product of five factors has 46 ways to them, below [`MAX_LISTED`].
+const MAX_PRODUCTS: usize = 4;
+
+/// The node of a function with the signs, and so with the zeros, of node `root`, in which products that decide them are choices: ab has the
+/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`.
+pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id {
+    match graph.node(root) {
+        Node::Unary(Unary::Neg, u) => {
+            let u = by_signs(graph, u, choices);
+            graph.neg(u)
+        }
+        Node::Binary(operation @ (Binary::Min | Binary::Max | Binary::Mul), a, b) => {
+            let [a, b] = [a, b].map(|id| by_signs(graph, id, choices));
+            let is_told = operation == Binary::Mul && choices.len() < 3 * MAX_PRODUCTS;
+            if !is_told || graph.is_uniform(a) || graph.is_uniform(b) {
+                return graph.binary(operation, a, b);
+            }
+            let (minus_a, minus_b) = (graph.neg(a), graph.neg(b));
+            let (same, other) =
+                (graph.binary(Binary::Min, a, b), graph.binary(Binary::Min, minus_a, minus_b));
+            choices.extend([same, other, graph.binary(Binary::Max, same, other)]);
+            choices[choices.len() - 1]
+        }
+        _ => root,
+    }
+}
+
 /// The branches of f that have been met, with their numbers. There are none of a formula without choices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Branches {
@@ -271,8 +298,13 @@ pub(super) struct Branches {
     numbered: Vec<usize>,
     /// The part that is evaluated in the place of f.
     selected: Option<usize>,
-    /// The branches of the surface in a box, if it was found that some meet in creases there.
-    pub(super) creased: Vec<u32>,
+    /// The factors of the branches of the surface in a box, each by its branch and its number there, if it was found that some meet in creases
+    /// in that box.
+    pub(super) factors: Vec<(u32, usize)>,
+    /// The choices that [stand for products](by_signs).
+    pub(super) products: Vec<Id>,
+    /// The graph's function, which is evaluated in the place of f where factors of a product cross: its gradient does not vanish there.
+    split: Option<Box<Compiled>>,
     walk: BranchWalk,
     /// Roles with the parameters before, kept for their memory.
     before: Vec<NodeRole>,
@@ -283,7 +315,17 @@ pub(super) struct Branches {
 impl Branches {
     /// The branches of a function, with these values of the parameters. They are looked for when first asked for.
     pub(super) fn new(f: &Compiled, values: &[f64]) -> Self {
-        let (graph, root) = (&f.graph, f.root);
+        Self::of(&f.graph, f.root, &[], values)
+    }
+
+    /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products.
+    pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
+        let (mut products, mut graph) = (Vec::new(), f.graph.clone());
+        let root = by_signs(&mut graph, f.root, &mut products);
+        (!products.is_empty()).then(|| Self::of(&graph, root, &products, values))
+    }
+
+    fn of(graph: &Graph, root: Id, products: &[Id], values: &[f64]) -> Self {
         let mut branches = Self::default();
         let is_choice = |&id: &Id| {
             let node = graph.node(id);
@@ -293,7 +335,11 @@ impl Branches {
             );
             may_choose && !graph.is_uniform(id)
         };
-        if graph.needed_by(&[root]).iter().any(is_choice) {
+        let nodes = graph.needed_by(&[root]);
+        if nodes.iter().any(is_choice) {
+            // The numbers of the nodes in the graph of these alone.
+            branches.products =
+                products.iter().filter_map(|id| nodes.binary_search(id).ok()).map(|k| k as Id).collect();
             branches.begin(graph, root, values, &[]);
         }
         branches
@@ -301,7 +347,9 @@ impl Branches {
 
     fn begin(&mut self, graph: &Graph, root: Id, values: &[f64], smooth: &[Id]) {
         let (graph, root) = graph.part(root);
-        *self = Self { base: Base { graph, smooth: smooth.to_vec(), ..Base::default() }, ..Self::default() };
+        let base = Base { graph, smooth: smooth.to_vec(), ..Base::default() };
+        let products = core::mem::take(&mut self.products);
+        *self = Self { base, products, ..Self::default() };
         self.base.extend(values);
         self.part(root);
     }
@@ -480,35 +528,15 @@ impl Branches {
         compiled.map_or(&mut [], |compiled| compiled.factors(values))
     }
 
-    /// Number of factors of the branches of a surface with creases; 0 if it has none.
-    pub(super) fn factor_count(&mut self, values: &[f64]) -> usize {
-        let creased = self.creased.clone();
-        creased.into_iter().map(|number| self.factors_of(number, values).len()).sum()
-    }
-
-    /// The branch to which a factor belongs, and the factor's number there.
-    fn branch_of_factor(&mut self, factor: usize, values: &[f64]) -> (u32, usize) {
-        let mut own = factor;
-        for k in 0..self.creased.len() {
-            let number = self.creased[k];
-            let count = self.factors_of(number, values).len();
-            if own < count {
-                return (number, own);
-            }
-            own -= count;
-        }
-        panic!("the surface has no factor {factor}");
-    }
-
     /// The program for the bounds of a factor.
     pub(super) fn factor(&mut self, factor: usize, values: &[f64]) -> &mut interval::FactorProgram {
-        let (number, own) = self.branch_of_factor(factor, values);
+        let (number, own) = self.factors[factor];
         &mut self.factors_of(number, values)[own]
     }
 
     /// Whether the branch of a factor gives f at `p`.
     pub(super) fn is_given_by(&mut self, factor: usize, values: &[f64], p: DVec3) -> bool {
-        self.branch_of_factor(factor, values).0 == self.at(values, p)
+        self.factors[factor].0 == self.at(values, p)
     }
 
     /// Empties the enclosures of a factor over boxes where its branch has no zero of f.
@@ -519,7 +547,7 @@ impl Branches {
         boxes: &[Bounds],
         out: &mut [Enclosure],
     ) {
-        let (number, _) = self.branch_of_factor(factor, values);
+        let (number, _) = self.factors[factor];
         for (bounds, out) in boxes.iter().zip(out).filter(|(_, out)| out.may_vanish) {
             if self.within(values, bounds).is_some_and(|within| !within.contains(&number)) {
                 *out = Enclosure::NOWHERE;
@@ -529,7 +557,22 @@ impl Branches {
 
     /// The compiled function that is to be evaluated: the branch that is selected, or else `whole`, f.
     pub(super) fn active<'a>(&'a mut self, whole: &'a mut Compiled) -> &'a mut Compiled {
-        self.selected.and_then(|index| self.parts[index].compiled.as_deref_mut()).unwrap_or(whole)
+        match self.selected {
+            Some(index) => self.parts[index].compiled.as_deref_mut().unwrap_or(whole),
+            None => self.split.as_deref_mut().unwrap_or(whole),
+        }
+    }
+
+    /// Takes the branches of a surface in a box as those that meet in creases there.
+    pub(super) fn crease(&mut self, values: &[f64], bounds: &Bounds) {
+        for number in self.within(values, bounds).unwrap_or_default() {
+            let count = self.factors_of(number, values).len();
+            self.factors.extend((0..count).map(|own| (number, own)));
+        }
+        if !self.products.is_empty() {
+            let (graph, root) = self.base.graph.part(self.parts[0].root);
+            self.split = Some(Box::new(Compiled::from_graph(graph, root, values)));
+        }
     }
 
     /// Recomputes everything that depends on the parameters alone. The branches begin anew, and none is selected, if another
@@ -544,7 +587,7 @@ impl Branches {
         self.base.extend(values);
         if self.base.roles == self.before {
             let compiled = self.parts.iter_mut().filter_map(|part| part.compiled.as_mut());
-            compiled.for_each(|compiled| compiled.set_parameters(values));
+            compiled.chain(&mut self.split).for_each(|compiled| compiled.set_parameters(values));
         } else {
             self.begin_again(values, &[]);
         }

@@ -8,6 +8,7 @@
 //! looked at, in which the creases are then followed.
 
 use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, taken};
+use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::{interval, scalar};
@@ -63,15 +64,39 @@ struct TieCell {
 
 impl Branches {
     /// Cells of the box, no wider than `width`, outside of which the surface has no crease. Without any, f has no choices from now on;
-    /// else only those whose operands meet smoothly on the surface are none. The branches begin anew.
-    pub(super) async fn find_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        self.begin_again(values, &[]);
+    /// else only those whose operands meet smoothly on the surface are none. The branches begin anew. Products are told by their factors if
+    /// these cross.
+    pub(super) async fn find_creases(
+        &mut self,
+        f: &Compiled,
+        values: &[f64],
+        bounds: &Bounds,
+        width: f64,
+    ) -> Vec<Bounds> {
+        if let Some(of_factors) = Self::of_factors(f, values) {
+            *self = of_factors;
+            let cells = self.search_creases(values, bounds, width).await;
+            if !cells.is_empty() {
+                return cells;
+            }
+        }
+        *self = Self::new(f, values);
+        self.search_creases(values, bounds, width).await
+    }
+
+    async fn search_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return Vec::new() };
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = Ties::new(&mut self.base, part, &choices, values);
-        let search = TieSearch { base: &self.base, part, ties, values, bounds };
-        let kinds = search.kinds(&choices).await;
+        let search = TieSearch { base: &self.base, products: &self.products, part, ties, values, bounds };
+        let mut kinds = search.kinds(&choices).await;
+        // The choices of products stand and fall together.
+        if self.products.iter().any(|id| kinds.get(id) == Some(&TieKind::Crease)) {
+            kinds.extend(self.products.iter().map(|&id| (id, TieKind::Crease)));
+        } else if !self.products.is_empty() {
+            return Vec::new();
+        }
         let creasing: Vec<Id> =
             kinds.iter().filter(|(_, kind)| **kind == TieKind::Crease).map(|(&id, _)| id).collect();
         let cells = search.cells(&creasing, width).await;
@@ -79,7 +104,7 @@ impl Branches {
         let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
         self.begin_again(values, &smooth);
         if !creasing.is_empty() {
-            self.creased = self.within(values, bounds).unwrap_or_default();
+            self.crease(values, bounds);
         }
         cells
     }
@@ -180,6 +205,8 @@ struct TieScratch {
 /// A search of a box for the places of the surface where choices are tied.
 struct TieSearch<'a> {
     base: &'a Base,
+    /// The choices that stand for products.
+    products: &'a [Id],
     part: &'a BranchPart,
     ties: Ties,
     values: &'a [f64],
@@ -198,7 +225,7 @@ impl TieSearch<'_> {
                 continue;
             }
             if left == 0 {
-                kinds.extend(cell.choices.into_iter().map(|id| (id, TieKind::Crease)));
+                kinds.extend(cell.choices.into_iter().map(|id| (id, self.kind_in_doubt(id))));
                 continue;
             }
             left -= 1;
@@ -217,7 +244,7 @@ impl TieSearch<'_> {
                     return true;
                 }
                 let known = kinds.entry(*id).or_insert(TieKind::Seam);
-                *known = (*known).max(kind.unwrap_or(TieKind::Crease));
+                *known = (*known).max(kind.unwrap_or_else(|| self.kind_in_doubt(*id)));
                 false
             });
             if !cell.choices.is_empty() {
@@ -227,6 +254,11 @@ impl TieSearch<'_> {
             }
         }
         kinds
+    }
+
+    /// Kind where nothing can be said. A product stays one unless its factors cross: as one it shows where they touch.
+    fn kind_in_doubt(&self, id: Id) -> TieKind {
+        if self.products.contains(&id) { TieKind::Seam } else { TieKind::Crease }
     }
 
     /// Cells no wider than `width`, but for those at the end of a long search, in which one of these choices may be tied on the surface.
@@ -360,7 +392,7 @@ impl TieSearch<'_> {
                 if determinant.is_nan() || determinant <= 1e-6 * gg * hh {
                     let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
                     if is_near(f, gg) && is_near(t, hh) {
-                        return Some(TieKind::Crease);
+                        return Some(self.kind_in_doubt(id));
                     }
                     break;
                 }

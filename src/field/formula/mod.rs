@@ -249,7 +249,7 @@ impl Formula {
 
     /// The program for the bounds of a factor of f, or of its branches.
     fn factor(&mut self, factor: usize) -> &mut interval::FactorProgram {
-        if self.branches.creased.is_empty() {
+        if self.branches.factors.is_empty() {
             &mut self.compiled.factors(&self.values)[factor]
         } else {
             self.branches.factor(factor, &self.values)
@@ -639,7 +639,7 @@ impl Field for Formula {
     fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
         Box::pin(async move {
-            let mut cells = self.branches.find_creases(&self.values, &bounds, width).await;
+            let mut cells = self.branches.find_creases(&self.compiled, &self.values, &bounds, width).await;
             for cell in &mut cells {
                 *cell = Bounds::new(cell.lo() - self.origin, cell.hi() - self.origin);
             }
@@ -676,14 +676,16 @@ impl Bounded for Formula {
     }
 
     fn factors(&mut self) -> usize {
-        let of_branches = self.branches.factor_count(&self.values);
-        if of_branches > 0 { of_branches } else { self.compiled.factors(&self.values).len() }
+        match self.branches.factors.len() {
+            0 => self.compiled.factors(&self.values).len(),
+            of_branches => of_branches,
+        }
     }
 
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         self.on_formula_boxes(boxes, |field, boxes| {
             field.factor(factor).first.enclose(boxes, out);
-            if !field.branches.creased.is_empty() {
+            if !field.branches.factors.is_empty() {
                 field.branches.leave_out(factor, &field.values, boxes, out);
             }
         });
@@ -691,7 +693,7 @@ impl Bounded for Formula {
 
     fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
         let place = place(self.origin, zero);
-        self.branches.creased.is_empty() || self.branches.is_given_by(factor, &self.values, place)
+        self.branches.factors.is_empty() || self.branches.is_given_by(factor, &self.values, place)
     }
 
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {

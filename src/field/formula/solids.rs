@@ -2,6 +2,7 @@
 //!
 //! Both are further nodes of the graph of f, so that derivatives, bounds and branches are found as for any formula.
 
+use super::branches::by_signs;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
@@ -28,7 +29,8 @@ impl Solid {
         let mut solid = root;
         if let Some(thickness) = self.thickness {
             graph.let_zero_annihilate();
-            solid = thickened(graph, root, thickness);
+            let apart = by_signs(graph, root, &mut Vec::new());
+            solid = thickened(graph, apart, thickness);
         }
         if let Some(bounds) = &self.closed {
             for axis in 0..3_u8 {
@@ -47,7 +49,8 @@ impl Solid {
 /// The node of |f| − t/2 |∇f|, of the places whose distance from the surface is at most t/2 to first order.
 ///
 /// Where f has choices, so has the distance: the sheets beside max(a, b) = 0 are those beside a = 0 and b = 0, each by its own gradient.
-/// These sheets meet in edges. With the one gradient of max(a, b) they would miss each other by the jump of |∇f|.
+/// These sheets meet in edges. With the one gradient of max(a, b) they would miss each other by the jump of |∇f|. Nor has a product a
+/// gradient where its factors cross: each of them has a sheet of its own.
 fn thickened(graph: &mut Graph, root: Id, thickness: f64) -> Id {
     let half = graph.constant(0.5 * thickness);
     let mut sheets = SheetBuilder { graph, half, left: MAX_SHEETS };

@@ -37,8 +37,8 @@ impl Sheet {
             let start = of_first.partition_point(|&(other, _)| other < first);
             of_first[start..].iter().take_while(move |&&(other, _)| other == first).map(|&(_, row)| row)
         };
-        for (&[a, b], &[left, right]) in particles.segments.iter().zip(&particles.sides) {
-            for (from, to, patch) in [(a, b, left), (b, a, right)] {
+        for (&[a, b], sides) in particles.segments.iter().zip(&particles.sides) {
+            for (from, to, patch) in sides.iter().flat_map(|&[left, right]| [(a, b, left), (b, a, right)]) {
                 let row = |first| rows_of(first).find(|&row| particles.patch[row as usize] == patch);
                 if let (Some(from), Some(to)) = (row(from), row(to)) {
                     let ((sheet, from), (_, to)) = (place[from as usize], place[to as usize]);
@@ -72,7 +72,7 @@ pub(super) fn repeat(
 /// particles that follow each other along a crease may become a triangle of either. The chord of the patch that it follows less is
 /// turned to the other diagonal of its two triangles, where that can be.
 pub(super) fn separate(triangles: &mut [[u32; 3]], particles: &Particles) {
-    let vertices = Particles::joints(&particles.twins, &particles.segments);
+    let vertices = particles.joints();
     // The ends of each side of a triangle between particles on creases, with the place at which it begins among all corners.
     let mut sides: Vec<(u64, usize)> = Vec::new();
     for (triangle, rows) in triangles.iter().enumerate() {

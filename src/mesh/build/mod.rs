@@ -89,7 +89,8 @@ impl Triangulation {
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
         let agreed = triangles.len();
-        Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &particles.twins).await
+        let joints = particles.joints();
+        Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &joints).await
     }
 
     /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed units of the coordinates: the sum of
@@ -203,7 +204,7 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         return in_slices(&particles.position, &particles.normal, options).await;
     }
     let mut whole = Joined::default();
-    let tips = Particles::tips(&particles.twins, &particles.segments);
+    let tips = particles.tips();
     let is_image = |row: u32| {
         particles.opposite.iter().any(|faces| particles.is_on(row as usize, Some(faces.patches[1])))
     };
@@ -226,7 +227,7 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
     }
     pause().await;
     creases::separate(&mut whole.triangles, particles);
-    whole.counted(particles.len(), &Particles::joints(&particles.twins, &particles.segments)).await
+    whole.counted(particles.len(), &particles.joints()).await
 }
 
 async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> Joined {

@@ -75,7 +75,7 @@ impl Creases {
         let mut of = |at: f64, outward: f64| {
             let slack = SAME * step;
             let is_in_plane = |p: &DVec3| (p[axis] - at).abs() <= slack;
-            let mut patches = self.curves.iter().flat_map(|curve| curve.patches);
+            let mut patches = self.curves.iter().flat_map(|curve| curve.patches.iter().copied());
             patches.find(|patch| {
                 let mut own = self.curves.iter().filter(|curve| curve.patches.contains(patch));
                 own.clone().all(|curve| curve.points.iter().all(is_in_plane))
@@ -96,7 +96,7 @@ impl Creases {
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
         faces.push(pair);
-        let mut next = Self { faces, evaluations: self.evaluations, ..Self::default() };
+        let mut next = Self { faces, passed: self.passed, evaluations: self.evaluations, ..Self::default() };
         let number = next.faces.len() - 1;
 
         // What an image repeats is on the upper face where the image is, so that both go or stay.
@@ -146,12 +146,12 @@ impl Creases {
                     None => None,
                 };
             }
-            let patches = pair.image_of(&curve.patches);
-            // The solid lies on the other side of the face.
-            let sides = curve.sides.map(|p| if p == lower { upper } else { p });
+            let moved = |p: u32| if p == lower { upper } else { p };
             next.curves.push(Crease {
-                patches: [patches[0], patches[1]],
-                sides: [sides[1], sides[0]],
+                branches: curve.branches.map(moved),
+                patches: pair.image_of(&curve.patches),
+                // The solid lies on the other side of the face.
+                sides: curve.sides.iter().map(|&[left, right]| [moved(right), moved(left)]).collect(),
                 points,
                 corners,
                 is_closed: curve.is_closed,
@@ -161,7 +161,7 @@ impl Creases {
         let mut replaced = self.curves.iter().filter(|curve| curve.patches.contains(&upper));
         let is_there = |curve: &Crease| {
             let position = curve.points[curve.points.len() / 2];
-            next.has_point(&Meeting { position, branches: curve.patches, tangent: DVec3::ZERO }, step)
+            next.has_point(&Meeting { position, branches: curve.branches, tangent: DVec3::ZERO }, step)
         };
         replaced.all(is_there).then_some(next)
     }

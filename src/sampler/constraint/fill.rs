@@ -27,7 +27,7 @@ pub(in super::super) struct CreaseParticles {
     pub(in super::super) list: Vec<CreaseParticle>,
     pub(in super::super) segments: Vec<[u32; 2]>,
     /// For each of them, the patches on its left and on its right.
-    sides: Vec<[u32; 2]>,
+    sides: Vec<Vec<[u32; 2]>>,
     /// Points that divide every segment into 2ᵏ equal parts, segment by segment from its first end to its second.
     between: Vec<Vec3>,
 }
@@ -123,14 +123,14 @@ impl Creases {
             } else {
                 images.push(filled.list.len() as u32);
                 let CreaseParticle { position, radius, .. } = filled.list[number as usize];
-                let (position, patches) = (pair.repeated(position), curve.patches.to_vec());
+                let (position, patches) = (pair.repeated(position), curve.patches.clone());
                 filled.list.push(CreaseParticle { position, radius, tangent, patches });
             }
         }
         filled.between.extend_from_within(between.clone());
         let start = filled.between.len() - between.len();
         filled.between[start..].iter_mut().for_each(|p| *p = pair.repeated(*p));
-        filled.add_segments(&images, curve.sides);
+        filled.add_segments(&images, &curve.sides);
         images
     }
 
@@ -173,7 +173,7 @@ impl Creases {
                 (a.position.lerp(b.position, share), a.radius + (b.radius - a.radius) * share);
             // The chord is left for the curve. The ends of an open curve are exact already, and lie on the box.
             let reach = a.position.distance(b.position);
-            let found = Meeting::of_branches(probe, curve.patches, place, reach, FADED).filter(|_| !is_end);
+            let found = Meeting::of_branches(probe, curve.branches, place, reach, FADED).filter(|_| !is_end);
             let position = found.map_or(place, |meeting| meeting.position).as_vec3();
             let position = self.pinned(&curve.patches, position);
             if !k.is_multiple_of(1 << halvings) {
@@ -185,19 +185,19 @@ impl Creases {
                 position,
                 radius: radius as f32,
                 tangent,
-                patches: curve.patches.to_vec(),
+                patches: curve.patches.clone(),
             });
         }
-        filled.add_segments(&numbers, curve.sides);
+        filled.add_segments(&numbers, &curve.sides);
         numbers
     }
 }
 
 impl CreaseParticles {
     /// Adds the segments between particles that follow each other, with the patches on their left and on their right.
-    fn add_segments(&mut self, numbers: &[u32], sides: [u32; 2]) {
+    fn add_segments(&mut self, numbers: &[u32], sides: &[[u32; 2]]) {
         self.segments.extend(numbers.windows(2).map(|pair| [pair[0], pair[1]]));
-        self.sides.resize(self.segments.len(), sides);
+        self.sides.resize(self.segments.len(), sides.to_vec());
     }
 
     /// Adds a row for each patch of each particle, patch by patch, to columns that are empty. Returns a unit vector along the crease for

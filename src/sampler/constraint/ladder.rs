@@ -14,7 +14,7 @@ pub(in super::super) struct CreaseLadder {
     /// Pairs of particles of the coarse front that follow each other along a crease.
     segments: Vec<[u32; 2]>,
     /// For each of them, the patches on its left and on its right.
-    sides: Vec<[u32; 2]>,
+    sides: Vec<Vec<[u32; 2]>>,
     /// Equal parts of a segment at the last level.
     parts: usize,
     /// Number of rows of the coarse front.
@@ -88,12 +88,12 @@ impl CreaseLadder {
 
     /// The pairs that follow each other along a crease at the level after which so many are to come, each with the patches on its left and
     /// on its right.
-    pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = ([u32; 2], [u32; 2])> {
+    pub(in super::super) fn pairs(&self, to_come: u32) -> impl Iterator<Item = ([u32; 2], &[[u32; 2]])> {
         let stride = 1 << to_come;
         (0..self.segments.len()).flat_map(move |segment| {
             let starts = (0..self.parts).step_by(stride);
             let pair = move |k| [k, k + stride].map(|k| self.number(segment, k));
-            starts.map(move |k| (pair(k), self.sides[segment]))
+            starts.map(move |k| (pair(k), &self.sides[segment][..]))
         })
     }
 

@@ -74,21 +74,45 @@ impl Meeting {
         None
     }
 
-    /// Whether the patches of the first and of the second branch are on the left of the crease, in the direction of its tangent and seen from
-    /// outside. There is no crease where one of the branches gives f on neither side, or on both.
-    pub(super) fn are_left(&self, probe: &mut Probe, reach: f64) -> Option<[bool; 2]> {
-        let mut are_left = [false; 2];
-        for (b, is_left) in self.branches.into_iter().zip(&mut are_left) {
-            let (_, gradient) = branch(probe, b, self.position);
-            let aside = gradient.cross(self.tangent).try_normalize()?;
-            let [left, right] =
-                [aside, -aside].map(|d| probe.field.branch_at(self.position + d * (ASIDE * reach)) == b);
+    /// Whether the patches of these branches are on the left of the crease, in the direction of its tangent and seen from outside. There is
+    /// no crease where one of the branches gives f on neither side, or on both.
+    pub(super) fn are_left(&self, probe: &mut Probe, branches: &[u32], reach: f64) -> Option<Vec<bool>> {
+        let mut are_left = Vec::with_capacity(branches.len());
+        for &b in branches {
+            let [left, right] = self.gives(probe, b, reach)?;
             if left == right {
                 return None;
             }
-            *is_left = left;
+            are_left.push(left);
         }
         Some(are_left)
+    }
+
+    /// Whether a branch gives f on its sheet to the left of the tangent, and to the right.
+    fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
+        let (_, gradient) = branch(probe, b, self.position);
+        let aside = gradient.cross(self.tangent).try_normalize()?;
+        Some([aside, -aside].map(|d| probe.field.branch_at(self.position + d * (ASIDE * reach)) == b))
+    }
+
+    /// Whether each branch gives f on both sides, so that their sheets cross, and no patch ends.
+    pub(super) fn is_passed(&self, probe: &mut Probe, reach: f64) -> bool {
+        self.branches.into_iter().all(|b| self.gives(probe, b, reach) == Some([true; 2]))
+    }
+
+    /// The patches that meet along the crease, in ascending order: those of its branches, and of the `others` that are zero on it.
+    pub(super) fn patches(&self, probe: &mut Probe, others: &[u32], reach: f64) -> Vec<u32> {
+        let mut patches = self.branches.to_vec();
+        for &other in others.iter().filter(|other| !self.branches.contains(other)) {
+            let (value, gradient) = branch(probe, other, self.position);
+            let is_zero = value.abs() <= ASIDE * ASIDE * reach * gradient.length()
+                && gradient.dot(self.tangent).abs() <= FADED * gradient.length();
+            if is_zero && self.are_left(probe, &[other], reach).is_some() {
+                patches.push(other);
+            }
+        }
+        patches.sort_unstable();
+        patches
     }
 }
 

@@ -3,7 +3,8 @@
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
 //! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches are zero; it ends at a corner, at the
-//! box, or runs back into itself.
+//! box, or runs back into itself. Where the factors of a product cross, four patches meet: each factor is two branches, one on either side
+//! of the other factor.
 //!
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
 //!    branches.
@@ -32,13 +33,15 @@ use meeting::{Meeting, SHARP};
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
 
-/// A curve along which two patches meet.
+/// A curve along which patches meet: two, or four where two sheets cross.
 #[derive(Clone, Debug)]
 pub(super) struct Crease {
-    /// The two patches.
-    patches: [u32; 2],
-    /// The patch on its left and the one on its right, seen from outside.
-    sides: [u32; 2],
+    /// Two of the patches, at an angle, whose branches are zero together on the curve.
+    branches: [u32; 2],
+    /// The patches, in ascending order.
+    patches: Vec<u32>,
+    /// Pairs of a patch on its left and one on its right, seen from outside.
+    sides: Vec<[u32; 2]>,
     /// Points along the curve, in its order.
     points: Vec<DVec3>,
     /// Corners at its start and its end; none where the curve ends at the box or is closed.
@@ -66,6 +69,8 @@ pub(crate) struct Creases {
     corners: Vec<Corner>,
     /// Opposite faces of a cell with the same creases.
     faces: Vec<FacePair>,
+    /// A place where sheets cross along a curve and no patch ends, which is not followed: three planes through one line, say.
+    pub(super) passed: Option<DVec3>,
     /// Number of evaluations that the search took.
     pub(super) evaluations: u64,
 }
@@ -87,10 +92,14 @@ impl Creases {
             for (k, &a) in branches.iter().enumerate() {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
-                        .filter(|meeting| bounds.holds(meeting.position) && !creases.has_point(meeting, step))
-                        .filter(|meeting| meeting.are_left(probe, step).is_some());
-                    if let Some(meeting) = meeting {
-                        trace::follow(probe, bounds, &mut creases, meeting, step).await;
+                        .filter(|meeting| {
+                            bounds.holds(meeting.position) && !creases.has_point(meeting, step)
+                        });
+                    let Some(meeting) = meeting else { continue };
+                    if meeting.are_left(probe, &[b, a], step).is_some() {
+                        trace::follow(probe, bounds, &mut creases, meeting, &branches, step).await;
+                    } else if creases.passed.is_none() && meeting.is_passed(probe, step) {
+                        creases.passed = Some(meeting.position);
                     }
                 }
             }
@@ -123,9 +132,9 @@ impl Creases {
                             .filter(|meeting| {
                                 bounds.holds(meeting.position) && !self.has_point(meeting, step)
                             })
-                            .filter(|meeting| meeting.are_left(probe, step).is_some());
+                            .filter(|meeting| meeting.are_left(probe, &[b, a], step).is_some());
                         if let Some(meeting) = meeting {
-                            trace::follow(probe, bounds, self, meeting, step).await;
+                            trace::follow(probe, bounds, self, meeting, &patches, step).await;
                         }
                     }
                 }
@@ -147,7 +156,8 @@ impl Creases {
                 (a + way * t).distance_squared(meeting.position) <= (NEAR * step) * (NEAR * step)
             })
         };
-        self.curves.iter().filter(|curve| curve.patches == meeting.branches).any(|curve| is_on(&curve))
+        let has_both = |curve: &&Crease| meeting.branches.iter().all(|branch| curve.patches.contains(branch));
+        self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
     }
 
     /// Number of the corner at a position, which is added if it is new.

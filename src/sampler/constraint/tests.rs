@@ -49,6 +49,10 @@ fn the_creases_of_solids_are_counted() {
         // Eight triples of cylinders meet on the diagonals of the cube, and six pairs where the third has its axis.
         ("three cylinders", "max(x^2+y^2,y^2+z^2,z^2+x^2)-1", 1.3, [24, 14]),
         ("wedge", "max(z,0.176327*x-z,abs(y)-1,-x-1.5)", 2.0, [9, 6]),
+        // Curves on which four patches meet.
+        ("crossing spheres", "((x-0.5)^2+y^2+z^2-1)*((x+0.5)^2+y^2+z^2-1)", 1.7, [1, 0]),
+        ("three planes", "x*y*z", 1.3, [6, 1]),
+        ("touching spheres", "((x-1)^2+y^2+z^2-1)*((x+1)^2+y^2+z^2-1)", 2.2, [0, 0]),
         ("smooth contact", "max(x,0)^2+y^2+z^2-1", 1.2, [0, 0]),
     ] {
         assert_eq!(counts(&creases(text, half).1), expected, "{name}: {text}");
@@ -63,7 +67,7 @@ fn a_crease_lies_where_both_branches_are_zero() {
     let exact = core::f64::consts::TAU * 0.75_f64.sqrt();
     assert!((length(curve) / exact - 1.0).abs() < 1e-3, "{} for {exact}", length(curve));
     for &p in &curve.points {
-        for patch in curve.patches {
+        for &patch in &curve.patches {
             field.select_branch(Some(patch));
             let (value, gradient) = field.value_and_gradient(p);
             assert!(value.abs() < 1e-9 * gradient.length(), "{p}: {value}");

@@ -31,17 +31,19 @@ enum WalkEnd {
     Corner(usize),
 }
 
-/// Follows the crease through `start`, and adds it with its corners.
+/// Follows the crease through `start`, along which patches of the `others` may meet as well, and adds it with its corners.
 pub(super) fn follow<'a>(
     probe: &'a mut Probe<'_>,
     bounds: &'a Bounds,
     creases: &'a mut Creases,
     start: Meeting,
+    others: &[u32],
     step: f64,
 ) -> Work<'a, ()> {
+    let patches = start.patches(probe, others, step);
     Box::pin(async move {
-        let are_left = start.are_left(probe, step);
-        let mut walk = Walk { probe, bounds, start, are_left, step };
+        let are_left = start.are_left(probe, &patches, step);
+        let mut walk = Walk { probe, bounds, start, patches: &patches, are_left: are_left.as_deref(), step };
         let mut points = vec![start.position];
         let (mut corners, mut is_closed) = ([None; 2], false);
         for (way, corner) in [start.tangent, -start.tangent].into_iter().zip(&mut corners) {
@@ -61,11 +63,15 @@ pub(super) fn follow<'a>(
             return;
         }
         let [end, first] = corners;
-        let [a, b] = start.branches;
         // The points follow the tangent of the start.
-        let sides = if are_left.is_some_and(|[is_left, _]| is_left) { [a, b] } else { [b, a] };
+        let on = |left: bool| {
+            let sides = patches.iter().zip(are_left.iter().flatten());
+            sides.filter(move |&(_, &is_left)| is_left == left).map(|(&patch, _)| patch)
+        };
+        let sides = on(true).zip(on(false)).map(|(left, right)| [left, right]).collect();
         creases.curves.push(Crease {
-            patches: start.branches,
+            branches: start.branches,
+            patches,
             sides,
             points,
             corners: [first, end],
@@ -80,8 +86,10 @@ struct Walk<'a, 'f> {
     probe: &'a mut Probe<'f>,
     bounds: &'a Bounds,
     start: Meeting,
-    /// On which side the patches are: where a ridge becomes a groove a crease ends and another one begins.
-    are_left: Option<[bool; 2]>,
+    /// The patches that meet.
+    patches: &'a [u32],
+    /// On which side they are: where a ridge becomes a groove a crease ends and another one begins.
+    are_left: Option<&'a [bool]>,
     /// Usual length of a step.
     step: f64,
 }
@@ -96,14 +104,14 @@ impl Walk<'_, '_> {
         while points.len() < MOST_STEPS {
             pause().await;
             let Some((next, length)) = self.next(here, direction) else {
-                return WalkEnd::Corner(creases.corner_at(here, &self.start.branches, ONE_END * self.step));
+                return WalkEnd::Corner(creases.corner_at(here, self.patches, ONE_END * self.step));
             };
             if (next.tangent.dot(direction) > 0.0) != is_forward {
                 let end = self.turn(here, &next, direction, is_forward);
                 points.push(end);
-                return WalkEnd::Corner(creases.corner_at(end, &self.start.branches, ONE_END * self.step));
+                return WalkEnd::Corner(creases.corner_at(end, self.patches, ONE_END * self.step));
             }
-            if next.are_left(self.probe, self.step) != self.are_left {
+            if !self.is_same_crease(&next, self.step) {
                 return self.end_before(creases, here, &next, points);
             }
             if !self.bounds.holds(next.position) {
@@ -180,7 +188,7 @@ impl Walk<'_, '_> {
                     return self.end_at_box(here, corner, points);
                 }
                 points.push(corner);
-                let patches = [branches[0], branches[1], third];
+                let patches = [self.patches, &[third]].concat();
                 return WalkEnd::Corner(creases.corner_at(corner, &patches, ONE_CORNER * self.step));
             }
         }
@@ -189,24 +197,29 @@ impl Walk<'_, '_> {
             let middle = 0.5 * (active + inactive);
             let point = Meeting::of_branches(self.probe, branches, middle, way.length(), FADED);
             match point {
-                Some(point) if point.are_left(self.probe, 1e-3 * self.step) == self.are_left => {
+                Some(point) if self.is_same_crease(&point, 1e-3 * self.step) => {
                     active = point.position;
                 }
                 _ => inactive = middle,
             }
         }
         points.push(active);
-        WalkEnd::Corner(creases.corner_at(active, &branches, ONE_END * self.step))
+        WalkEnd::Corner(creases.corner_at(active, self.patches, ONE_END * self.step))
     }
 
-    /// The branches, other than the two of the walk, that give f at a point and beside it.
+    /// Whether the patches lie beside a point of the curve as they do at its start.
+    fn is_same_crease(&mut self, point: &Meeting, reach: f64) -> bool {
+        point.are_left(self.probe, self.patches, reach).as_deref() == self.are_left
+    }
+
+    /// The branches, other than those of the walk, that give f at a point and beside it.
     fn branches_around(&mut self, point: &Meeting) -> Vec<u32> {
         let aside = 1e-2 * self.step;
         let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let mut found: Vec<u32> = Vec::new();
         for offset in offsets {
             let branch = self.probe.field.branch_at(point.position + offset * aside);
-            if !self.start.branches.contains(&branch) && !found.contains(&branch) {
+            if !self.patches.contains(&branch) && !found.contains(&branch) {
                 found.push(branch);
             }
         }

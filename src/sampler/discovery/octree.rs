@@ -427,9 +427,12 @@ impl Octree {
         if is_left_out(cell, &self.search.isolated) {
             return true;
         }
-        if known.gradient.iter().any(|slope| slope.excludes_zero()) {
-            // f need not be differentiable at the tip of a cone.
-            let tip = self.singular.iter().map(|point| point.position).find(|&at| cell.bounds.holds(at));
+        let is_steep = known.gradient.iter().any(|slope| slope.excludes_zero());
+        if is_steep || cell.level >= DEPTH {
+            // f need not be differentiable at the tip of a cone. Nor is the tip of a branch one of f where another one gives f beside it.
+            let room = if is_steep { 0.0 } else { self.region.margin };
+            let around = cell.bounds.enlarged(room);
+            let tip = self.singular.iter().map(|point| point.position).find(|&at| around.holds(at));
             return tip.is_some_and(|at| self.isolate(field, cell, at));
         }
         let Axes { sides, .. } = cell.axes();

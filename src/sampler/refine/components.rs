@@ -510,7 +510,7 @@ impl Joint {
         }
         for (pair, sides) in ladder.pairs(self.to_come) {
             self.particles.segments.push(pair.map(|number| first[number as usize]));
-            self.particles.sides.push(sides);
+            self.particles.sides.push(sides.to_vec());
         }
     }
 }

@@ -42,8 +42,9 @@ impl Rings {
         };
         let mut met = BTreeMap::new();
         for (v, &number) in (0..).zip(&net.on_crease).filter(|(_, number)| **number != NONE) {
-            // Where a patch touches itself, a particle has a vertex for each of its fans.
-            let place = *met.entry(number).or_insert(rings.order.len() as u32);
+            // Where a patch touches itself, a particle has a vertex for each of its fans. The nappes at a tip keep rows of their own.
+            let new = rings.order.len() as u32;
+            let place = if net.is_tip(v) { new } else { *met.entry(number).or_insert(new) };
             if place as usize == rings.order.len() {
                 rings.meet(v, Particles::NO_PARENT, 0);
                 rings.ready.twins.push(number);

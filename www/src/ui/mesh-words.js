@@ -18,7 +18,7 @@ export function verdictOf({ components, unfilled, left_out, volume, smallest_ang
   const euler = components.map((component) => formatCount(component.euler));
   const sum = components.reduce((total, component) => total + component.euler, 0);
   return [
-    open === 0 ? 'Watertight' : plural(open, 'open edge'),
+    open > 0 ? plural(open, 'open edge') : volume === null ? 'No open edge, but not a manifold' : 'Watertight',
     components.length > 1 ? plural(components.length, 'component') : '',
     components.length > MOST_TOLD
       ? `Euler numbers add up to ${formatCount(sum)}`
