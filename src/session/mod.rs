@@ -17,7 +17,7 @@ pub use setting::{
 
 use crate::extent::Reach;
 use crate::field::Field;
-use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, MathNode, Parameter};
+use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
@@ -26,6 +26,7 @@ use crate::run::{Report, Run, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
 use core::ops::{Deref, DerefMut};
 use fitting::Fitting;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,6 +46,8 @@ pub struct FieldRequest {
     pub declare: Vec<Parameter>,
     /// Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]).
     pub bounds: Option<Bounds>,
+    /// Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]).
+    pub pins: Vec<[f64; 3]>,
 }
 
 /// Kind of a field, by its source.
@@ -80,6 +83,8 @@ pub struct FieldAnswer {
     pub reach: Option<Reach>,
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
+    /// What has become of the surface that was to pass through the pins of the request; none without pins.
+    pub grip: Option<Grip>,
 }
 
 /// Why a field was refused. The field before it stays.
@@ -204,6 +209,7 @@ impl Session {
                 bounds: self.clip,
                 reach: self.reach,
                 mathml: Some(field.mathml()),
+                grip: None,
             },
             Source::Points { info, .. } => FieldAnswer {
                 kind: FieldKind::Points,
@@ -215,6 +221,7 @@ impl Session {
                 bounds: self.clip,
                 reach: self.reach,
                 mathml: None,
+                grip: None,
             },
         }
     }
@@ -249,13 +256,15 @@ impl Session {
             }
         };
         let declared = self.declared_for(surface, text, request);
-        let field = self.formula_field(text, &declared, request)?;
+        let mut field = self.formula_field(text, &declared, request)?;
+        let pins: Vec<DVec3> = request.pins.iter().map(|&pin| pin.into()).collect();
+        let grip = (!pins.is_empty()).then(|| field.pass_through(&pins));
         let surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
         self.take_formula(field, surface, (own, is_given));
         self.declared = declared;
-        Ok(self.answer())
+        Ok(FieldAnswer { grip, ..self.answer() })
     }
 
     /// The parameters that are declared for a formula: those of its surface or of the present formula, and those of the request.

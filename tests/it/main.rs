@@ -28,6 +28,7 @@ mod fuzz;
 mod gallery;
 mod golden;
 mod graded;
+mod grip;
 mod half_edge;
 mod holes;
 mod mesh;

@@ -28,6 +28,7 @@ mod branches;
 mod build;
 mod call;
 mod compiled;
+mod control;
 mod creases;
 mod derivative;
 mod display;
@@ -54,6 +55,7 @@ mod tests;
 mod token;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
+pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 

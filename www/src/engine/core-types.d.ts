@@ -166,6 +166,8 @@ export type FieldAnswer = {
   reach: Reach | null,
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
+  /** What has become of the surface that was to pass through the pins of the request; none without pins. */
+  grip: Grip | null,
 };
 
 /** Kind of a field, by its source. */
@@ -183,6 +185,8 @@ export type FieldRequest = {
   declare: Array<Parameter>,
   /** Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]). */
   bounds: Bounds | null,
+  /** Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]). */
+  pins: Array<[number, number, number]>,
 };
 
 /** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
@@ -347,6 +351,18 @@ export type GivenTopology = {
   euler: number,
   /** Number of border loops, where the mesh is open. */
   borders: number,
+};
+
+/** What has become of a surface that is to pass through points. */
+export type Grip = {
+  /** Whether the surface passes through all points. Otherwise it has come as near as the ranges of the parameters allow. */
+  holds: boolean,
+  /** For each point, one of the surface that is nearest to it, found down the gradient; the point itself if none is found. */
+  places: Array<[number, number, number]>,
+  /** The parameters that have changed, with their values. */
+  changed: { [key in string]: number },
+  /** Names of the parameters that all but do not move the surface at the points. */
+  idle: Array<string>,
 };
 
 /** Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.

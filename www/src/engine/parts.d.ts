@@ -4,7 +4,8 @@ import type { SampleOptions } from './points/types.js';
 import type { Runs } from './runs.js';
 import type { PictureLike } from './sampling/types.js';
 import type { Store } from './store.js';
-import type { BackendKind, Columns, Settings, State } from './types.js';
+import type { BackendKind, Columns, FieldRequest, Settings, State } from './types.js';
+import type { Stage } from './view/types.js';
 import type { Viewer } from './view/viewer.js';
 
 /** The parts of the engine, on which its commands act. */
@@ -21,9 +22,13 @@ export interface Picture {
   viewer: Viewer;
   /** reports the particle under a point of the host, or null for none */
   hover: (index: number | null, x: number, y: number, tapped?: boolean) => void;
+  /** what a press takes hold of */
+  hand: Pick<Stage, 'take'>;
   close: () => void;
 }
-export type RunOptions = SampleOptions & { settings?: Settings };
+export type RunOptions = SampleOptions & { settings?: Settings; pulled?: Pulled };
+/** Points that the surface is to pass through, and the parameters that are changed for it. */
+export type Pulled = Required<Pick<FieldRequest, 'parameters' | 'pins'>>;
 export interface PictureOptions {
   host: HTMLElement;
   store: Store;

@@ -16,7 +16,7 @@ import { Viewer } from './view/viewer.js';
  * @import { Picture, PictureOptions } from './parts.js'
  * @import { Store } from './store.js'
  * @import { Columns } from './types.js'
- * @import { Device } from './view/types.js'
+ * @import { Device, Stage } from './view/types.js'
  */
 
 /**
@@ -58,6 +58,8 @@ export function createPicture({ host, store, columns, first }) {
     if (viewer.look.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
   };
 
+  /** @type {{take: Stage['take']}} */
+  const hand = { take: () => null };
   const detach = attachControls({
     host,
     camera: viewer.camera,
@@ -66,6 +68,9 @@ export function createPicture({ host, store, columns, first }) {
     fit: () => viewer.fit(),
     point(x, y, tapped) {
       if (!tapped && store.hover.value?.tapped) return;
+      const held = tapped ? hand.take({ x, y }, false) : null;
+      // The key Enter presses the middle of the picture; of a pointer the press was taken already.
+      if (held) return held.drop();
       const index = viewer.pick(x, y);
       const { measured } = store.state.value.view;
       // While a distance is measured, a press chooses one of its ends.
@@ -77,11 +82,13 @@ export function createPicture({ host, store, columns, first }) {
     leave(pressed) {
       if (pressed || !store.hover.value?.tapped) hover(null, 0, 0);
     },
+    take: (at, shift) => hand.take(at, shift),
   });
 
   return {
     viewer,
     hover,
+    hand,
     close() {
       clearTimeout(cameraTimer);
       detach();

@@ -11,7 +11,7 @@ import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
 
 /**
- * @import { RunOptions, RunsOptions } from './parts.js'
+ * @import { Pulled, RunOptions, RunsOptions } from './parts.js'
  * @import { SampleRequest } from './sampling/types.js'
  */
 
@@ -46,17 +46,17 @@ export class Runs {
   }
 
   /**
-   * Returns the request that samples the present state.
-   * @param {Partial<SampleRequest>} [options]
+   * Returns the request that samples the present state, or the surface that is pulled.
+   * @param {RunOptions & Partial<SampleRequest>} [options]
    * @returns {SampleRequest}
    */
-  #request(options = {}) {
+  #request({ pulled, ...options } = {}) {
     const { loader } = this;
     const about = description(this.store);
     const state = loader.present();
     return {
       kind: 'sample',
-      field: fieldRequest(state, about, loader.key()),
+      field: { ...fieldRequest(state, about, loader.key()), ...pulled },
       settings: completeSettings(about, state.settings),
       grow: false,
       live: false,
@@ -70,11 +70,14 @@ export class Runs {
     if (this.#begin(options)) this.sampling.sample(this.#request(options));
   }
 
-  /** Samples the present state during a drag, coarsely if necessary, and fully once the drag pauses. */
-  resampleLive() {
+  /**
+   * Samples the present state during a drag, coarsely if necessary, and fully once the drag pauses.
+   * @param {Pulled} [pulled]
+   */
+  resampleLive(pulled) {
     if (!this.#begin({})) return;
-    this.sampling.sampleLive(this.#request(), this.#diagonal());
-    this.#timer = setTimeout(() => this.sampling.sample(this.#request({ rests: true })), REST_MS);
+    this.sampling.sampleLive(this.#request({ pulled }), this.#diagonal());
+    this.#timer = setTimeout(() => this.sampling.sample(this.#request({ pulled, rests: true })), REST_MS);
   }
 
   /**

@@ -40,6 +40,7 @@ export function createStore() {
     state: signal(emptyState()),
     description: signal(null),
     field: signal(null),
+    grip: signal(null),
     fieldError: signal(null),
     progress: signal(idleProgress()),
     report: signal(null),

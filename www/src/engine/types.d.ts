@@ -4,6 +4,7 @@
 import type { Columns, MEASURED } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
 import type { LessonClientOptions, Surface } from './lesson/types.js';
+import type { Stage } from './view/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
@@ -27,6 +28,7 @@ export type PointModel = import('./core-types.js').Model;
 export type ModelInfo = import('./core-types.js').ModelInfo;
 /** The description that the core reads together with a solved system. */
 export type SolvedModel = import('./core-types.js').SolvedModel;
+export type Grip = import('./core-types.js').Grip;
 export type MathNode = import('./core-types.js').MathNode;
 export type FieldFault = import('./core-types.js').Fault;
 /** The answer of the core to one step. */
@@ -245,6 +247,8 @@ export interface EngineSignals {
   description: ReadonlySignal<Description | null>;
   /** the last good field */
   field: ReadonlySignal<FieldOk | null>;
+  /** what has become of the surface that was pulled last; null if something else has changed it since */
+  grip: ReadonlySignal<Grip | null>;
   /** the error in the present formula */
   fieldError: ReadonlySignal<FieldFault | null>;
   progress: ReadonlySignal<Progress>;
@@ -306,6 +310,13 @@ export interface EngineCommands {
   setParameter: (name: string, value: number, options?: { live?: boolean }) => void;
   /** restores the value of the gallery or of the declaration */
   resetParameter: (name: string) => void;
+  /**
+   * changes these parameters as little as possible so that the surface passes through the pins; `live` during a drag, once
+   * more without it at the end
+   */
+  pull: (parameters: Record<string, number>, pins: readonly Vec3[], options?: { live?: boolean }) => void;
+  /** has a press on the picture take hold of something in place of the camera */
+  takeWith: (take: Stage['take']) => void;
   /** declares unknown names of the formula as parameters */
   declareParameters: (names: readonly string[]) => void;
   setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;

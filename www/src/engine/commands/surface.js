@@ -19,7 +19,7 @@ import {
 import { change, changeView, description, showAll } from '../store.js';
 
 /**
- * @import { Parts } from '../parts.js'
+ * @import { Parts, Pulled } from '../parts.js'
  * @import { EngineCommands, Shape } from '../types.js'
  */
 
@@ -28,8 +28,8 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameters' | 'setBounds' | 'setPlane' |
- *   'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'declareParameters' | 'setBounds' |
+ *   'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
@@ -101,11 +101,11 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
 /** @param {Parts} parts @returns {InputCommands} */
 export function inputCommands({ store, runs }) {
   const { state } = store;
-  /** @param {boolean} live */
-  const resample = (live) => {
+  /** @param {boolean} live @param {Pulled} [pulled] */
+  const resample = (live, pulled = undefined) => {
     store.dragging.value = live;
-    if (live) runs.resampleLive();
-    else runs.resample();
+    if (live) runs.resampleLive(pulled);
+    else runs.resample({ pulled });
   };
   return {
     setParameter(name, value, { live = false } = {}) {
@@ -118,6 +118,7 @@ export function inputCommands({ store, runs }) {
       change(store, { parameters });
       runs.resample();
     },
+    pull: (parameters, pins, { live = false } = {}) => resample(live, { parameters, pins: [...pins] }),
     declareParameters(names) {
       const { declared } = state.value;
       const fresh = names.filter((name) => !declared.some((p) => p.name === name));

@@ -13,7 +13,7 @@ import { change } from '../store.js';
 
 /**
  * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' |
- *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands
+ *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'takeWith' | 'dismissNotice'>} ViewCommands
  */
 
 /** @param {Parts} parts @returns {ViewCommands} */
@@ -57,6 +57,9 @@ export function viewCommands({ store, picture }) {
     pick: (x, y) => viewer.pick(x, y),
     project: (place) => viewer.project(place),
     rayThrough: (x, y) => viewer.rayThrough(x, y),
+    takeWith(take) {
+      picture.hand.take = take;
+    },
     dismissNotice() {
       store.notice.value = null;
     },

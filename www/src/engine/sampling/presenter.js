@@ -5,7 +5,7 @@
  */
 import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
-import { idleProgress } from '../store.js';
+import { change, idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
 import { timingOf } from './pace.js';
 
@@ -71,6 +71,10 @@ export class Presenter {
     if (store.notice.value?.id === 'size') store.notice.value = null;
     store.field.value = field.points !== undefined ? { ...answer, surface: field.surface ?? null } : answer;
     store.model.value = answer.model ?? null;
+    const { grip } = answer;
+    // The sliders follow the surface that is pulled.
+    if (grip) change(store, { parameters: { ...field.parameters, ...grip.changed } });
+    store.grip.value = grip;
     if (!restoring) store.fieldError.value = null;
   }
 

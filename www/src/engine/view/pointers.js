@@ -1,12 +1,13 @@
 /**
- * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap.
+ * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap. A press may
+ * take hold of something in the picture instead, and the others wait until it is let go.
  *
  * A drag ends with the release, the cancellation or the lost capture of its pointer.
  *
  * @module
  */
 
-/** @import { Place, Stage } from './types.js' */
+/** @import { Hold, Place, Stage } from './types.js' */
 
 /** Rotation of a drag across the whole shorter side. */
 const TURN_PER_SIDE_RAD = Math.PI * 0.9;
@@ -42,13 +43,16 @@ export class Pointers {
     this.#panning = false;
     /** The press that may still become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
     this.press = null;
+    /** What the first pointer holds. @type {Hold | null} */
+    this.hold = null;
     /** The last steps of a rotation. @type {{dx: number, dy: number, atMs: number}[]} */
     this.trail = [];
   }
 
   /** @param {PointerEvent} event */
   down(event) {
-    const { host, camera, leave } = this.stage;
+    const { host, camera, leave, take } = this.stage;
+    if (this.hold) return;
     camera.rest();
     const at = placeOn(host, event);
     this.held.set(event.pointerId, at);
@@ -61,6 +65,7 @@ export class Pointers {
     this.trail = [];
     this.press = this.held.size === 1 ? { ...at, atMs: event.timeStamp, still: true } : null;
     leave(true);
+    if (event.button === 0 && this.held.size === 1) this.hold = take(at, event.shiftKey);
   }
 
   /** @param {PointerEvent} event  of a pressed pointer */
@@ -72,6 +77,7 @@ export class Pointers {
     if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
     if (held.size === 1) {
       if (press?.still) return;
+      if (this.hold) return this.hold.drag(at);
       this.#drag(at.x - before.x, at.y - before.y, event.timeStamp);
     } else if (held.size === 2) {
       const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
@@ -119,6 +125,11 @@ export class Pointers {
     const trail = this.trail;
     this.press = null;
     this.trail = [];
+    if (this.hold) {
+      this.hold.drop();
+      this.hold = null;
+      return;
+    }
     if (held.size > 0) {
       // The remaining finger continues from its position.
       this.#panning = false;
