@@ -18,7 +18,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a commit of its own, which
 /// says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 82.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 83.0;
 
 /// The same of the lesson's page, whose figures come to life after that.
 const LESSON_PAGE_BUDGET_KB: f64 = 60.0;
@@ -27,7 +27,7 @@ const LESSON_PAGE_BUDGET_KB: f64 = 60.0;
 /// holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        Bundle::Core => 690.0,
+        Bundle::Core => 700.0,
         Bundle::Points => 145.0,
         Bundle::Lesson => 172.0,
         Bundle::Webgpu => 90.0,

@@ -62,7 +62,7 @@ impl ByParameters {
         let parts = (0..count.max(1))
             .step_by(3)
             .map(|first| {
-                graph.part_with(root, |node| match node {
+                graph.part_with(root, &|node| match node {
                     Node::Coordinate(axis) => Node::Parameter(count as u32 + u32::from(axis)),
                     Node::Parameter(k) if (first..first + 3).contains(&(k as usize)) => {
                         Node::Coordinate((k as usize - first) as u8)
@@ -189,9 +189,14 @@ fn solve_positive(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// The number with five significant digits, which a link and a box for numbers hold as well.
+/// The number with five significant digits or as a whole one, as a link and a box for numbers hold it.
 fn rounded(value: f64) -> f64 {
-    format!("{value:.4e}").parse().unwrap_or(value)
+    let mut scale = 1.0;
+    while (value * scale).abs() < 1e4 && scale < 1e12 {
+        scale *= 10.0;
+    }
+    // Of a whole number, the quotient by a power of ten is the number nearest to the decimal one.
+    (value * scale).round() / scale
 }
 
 impl Formula {

@@ -208,11 +208,11 @@ impl Graph {
 
     /// The graph of node `root` alone, in the same order, with the node's index in it.
     pub(super) fn part(&self, root: Id) -> (Self, Id) {
-        self.part_with(root, |leaf| leaf)
+        self.part_with(root, &|leaf| leaf)
     }
 
     /// [`Graph::part`] with other coordinates, parameters and constants.
-    pub(super) fn part_with(&self, root: Id, leaf: impl Fn(Node) -> Node) -> (Self, Id) {
+    pub(super) fn part_with(&self, root: Id, leaf: &dyn Fn(Node) -> Node) -> (Self, Id) {
         let mut part = Self::default();
         let mut map = vec![0; self.len()];
         for id in self.needed_by(&[root]) {

@@ -4,8 +4,7 @@ import type { SampleOptions } from './points/types.js';
 import type { Runs } from './runs.js';
 import type { PictureLike } from './sampling/types.js';
 import type { Store } from './store.js';
-import type { BackendKind, Columns, FieldRequest, Settings, State } from './types.js';
-import type { Stage } from './view/types.js';
+import type { BackendKind, Columns, FieldRequest, Settings, State, Take } from './types.js';
 import type { Viewer } from './view/viewer.js';
 
 /** The parts of the engine, on which its commands act. */
@@ -23,7 +22,7 @@ export interface Picture {
   /** reports the particle under a point of the host, or null for none */
   hover: (index: number | null, x: number, y: number, tapped?: boolean) => void;
   /** what a press takes hold of */
-  hand: Pick<Stage, 'take'>;
+  hand: { take: Take };
   close: () => void;
 }
 export type RunOptions = SampleOptions & { settings?: Settings; pulled?: Pulled };

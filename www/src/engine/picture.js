@@ -16,7 +16,7 @@ import { Viewer } from './view/viewer.js';
  * @import { Picture, PictureOptions } from './parts.js'
  * @import { Store } from './store.js'
  * @import { Columns } from './types.js'
- * @import { Device, Stage } from './view/types.js'
+ * @import { Device } from './view/types.js'
  */
 
 /**
@@ -58,7 +58,7 @@ export function createPicture({ host, store, columns, first }) {
     if (viewer.look.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
   };
 
-  /** @type {{take: Stage['take']}} */
+  /** @type {Picture['hand']} */
   const hand = { take: () => null };
   const detach = attachControls({
     host,

@@ -4,7 +4,6 @@
 import type { Columns, MEASURED } from './columns.js';
 import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
 import type { LessonClientOptions, Surface } from './lesson/types.js';
-import type { Stage } from './view/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
 export type ReadonlySignal<T> = import('@preact/signals-core').ReadonlySignal<T>;
@@ -187,6 +186,13 @@ export type Spot = { x: number; y: number; perPx: number };
  * seen, and what stands beside them. An `outline` goes through the positions in the place of rings.
  */
 export type Place = { places: Vec3[]; radius: number; normal: Vec3; text: string; outline?: boolean };
+/** Something in the picture that a pointer holds, at places in CSS pixels of the canvas host. */
+export interface Hold {
+  drag: (at: { x: number; y: number }) => void;
+  drop: () => void;
+}
+/** Returns what a press takes hold of in place of the camera, if anything. */
+export type Take = (at: { x: number; y: number }, shift: boolean) => Hold | null;
 /** A ray from the eye; the direction has length 1. */
 export type Ray = { eye: Vec3; direction: Vec3 };
 /** colour is `#rrggbb` */
@@ -311,12 +317,12 @@ export interface EngineCommands {
   /** restores the value of the gallery or of the declaration */
   resetParameter: (name: string) => void;
   /**
-   * changes these parameters as little as possible so that the surface passes through the pins; `live` during a drag, once
-   * more without it at the end
+   * changes these parameters as little as possible so that the surface passes through the pins; `live` during a drag,
+   * once more without it at the end
    */
   pull: (parameters: Record<string, number>, pins: readonly Vec3[], options?: { live?: boolean }) => void;
   /** has a press on the picture take hold of something in place of the camera */
-  takeWith: (take: Stage['take']) => void;
+  takeWith: (take: Take) => void;
   /** declares unknown names of the formula as parameters */
   declareParameters: (names: readonly string[]) => void;
   setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;

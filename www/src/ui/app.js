@@ -24,7 +24,7 @@ import { createToolbar } from './view/toolbar.js';
 /**
  * @import { Description, Engine, ReadonlySignal, Signal } from '../engine/types.js'
  * @import { Told } from './levels/types.js'
- * @import { Dialog, Motion, Shortcut, ShortcutTargets, Toast } from './types.js'
+ * @import { Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
 /** @param {Engine} engine @returns shows a notice of the page */
@@ -52,6 +52,8 @@ export function mountInterface(engine) {
     inset: (insets) => engine.setInsets(insets),
   });
   const motion = createMotion(engine, stage);
+  /** @type {Pins} */
+  const pins = signal(null);
   const history = createHistory(
     engine,
     computed(
@@ -100,7 +102,7 @@ export function mountInterface(engine) {
   byId('tabs').append(goButton(engine));
 
   void described.then((description) => {
-    mountField(byId('field-body'), engine, description, motion);
+    mountField(byId('field-body'), engine, description, { motion, pins });
     const mesh = createMeshButton(engine, toast);
     mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] });
     mountReport(byId('report-body'), engine, description);
@@ -110,7 +112,7 @@ export function mountInterface(engine) {
     view.prepend(legend, createToolbar(engine, tools));
     layout.follow(legend);
     shell.dataset.ready = '';
-    loadMarks(engine, { stage, view });
+    loadMarks(engine, { stage, view, pins });
   });
   void timeline.then((made) => {
     levels.hidden = made === null;
@@ -121,11 +123,11 @@ export function mountInterface(engine) {
 /**
  * Loads the marks on the picture, which is as good as before without them.
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, view: HTMLElement }} parts
+ * @param {{ stage: HTMLElement, view: HTMLElement, pins: Pins }} parts
  */
-function loadMarks(engine, { stage, view }) {
+function loadMarks(engine, { stage, view, pins }) {
   import('./view/marks/index.js').then(
-    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view }),
+    ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view, pins }),
     () => {},
   );
 }

@@ -1,7 +1,7 @@
 // Types of the interface's parts: what elements are created from, and what panels share.
 
-import type { ReadonlySignal } from '@preact/signals-core';
-import type { Bounds, CameraState, Notice, Parameter, Shape } from '../engine/types.js';
+import type { ReadonlySignal, Signal } from '@preact/signals-core';
+import type { Bounds, CameraState, Notice, Parameter, Shape, Vec3 } from '../engine/types.js';
 import type { createDialog } from './dialog.js';
 import type { createHistory } from './history.js';
 import type { IconName } from './icons.js';
@@ -162,6 +162,8 @@ export type Range = Pick<Parameter, 'name' | 'min' | 'max' | 'step'>;
 /** `bounce`: to the end and back; `loop`: to the end, and again from the beginning. */
 export type Course = 'bounce' | 'loop';
 export type Motion = ReturnType<typeof createMotion>;
+/** Places of the surface that are pulled or held; null unless the surface is to be grabbed. */
+export type Pins = Signal<readonly Vec3[] | null>;
 export interface Scale {
   min: number;
   max: number;

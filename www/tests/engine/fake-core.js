@@ -25,6 +25,7 @@ const field = (formula, bounds) => ({
   bounds,
   reach: 'bounded',
   mathml: null,
+  grip: null,
 });
 
 /**
@@ -120,6 +121,7 @@ export function fakeCore({
         bounds,
         reach: null,
         mathml: null,
+        grip: null,
       };
     },
     /**

@@ -13,7 +13,8 @@ import { change } from '../store.js';
 
 /**
  * @typedef {Pick<EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'lookFrom' | 'zoom' |
- *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'takeWith' | 'dismissNotice'>} ViewCommands
+ *   'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'takeWith' |
+ *   'dismissNotice'>} ViewCommands
  */
 
 /** @param {Parts} parts @returns {ViewCommands} */

@@ -1,13 +1,16 @@
 /**
- * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap. A press may
- * take hold of something in the picture instead, and the others wait until it is let go.
+ * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap. A press
+ * may take hold of something in the picture instead, and the others wait until it is let go.
  *
  * A drag ends with the release, the cancellation or the lost capture of its pointer.
  *
  * @module
  */
 
-/** @import { Hold, Place, Stage } from './types.js' */
+/**
+ * @import { Hold } from '../types.js'
+ * @import { Place, Stage } from './types.js'
+ */
 
 /** Rotation of a drag across the whole shorter side. */
 const TURN_PER_SIDE_RAD = Math.PI * 0.9;

@@ -8,6 +8,7 @@ import type {
   CuttingPlane,
   Legend,
   Reveal,
+  Take,
   Vec3,
   ViewState,
 } from '../types.js';
@@ -111,13 +112,7 @@ export interface Stage {
   centre: () => Place | null;
   /** the pointer left, or was `pressed` */
   leave: (pressed: boolean) => void;
-  /** what a press takes hold of in place of the camera, if anything */
-  take: (at: Place, shift: boolean) => Hold | null;
-}
-/** Something in the picture that a pointer holds. */
-export interface Hold {
-  drag: (at: Place) => void;
-  drop: () => void;
+  take: Take;
 }
 /** The options of the view that the picture shows, and the rest of what it shows. */
 export type Look = Omit<ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'> &

@@ -13,21 +13,21 @@ import { storyOf } from './story.js';
 
 /**
  * @import { Description, Engine } from '../../engine/types.js'
- * @import { Motion } from '../types.js'
+ * @import { Motion, Pins } from '../types.js'
  */
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
- * @param {Motion} motion
+ * @param {{ motion: Motion, pins: Pins }} shared
  */
-export function mountField(body, engine, description, motion) {
+export function mountField(body, engine, description, shared) {
   fill(
     body,
     createFormula(engine, description),
     createModel(engine, description),
-    createParameters(engine, motion),
+    createParameters(engine, shared),
     createGallery(engine, description),
     ...createLoading(engine),
     createStory(engine, description),

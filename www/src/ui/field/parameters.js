@@ -10,14 +10,14 @@ import { createSlider } from '../slider.js';
 
 /**
  * @import { Engine, Parameter, ReadonlySignal } from '../../engine/types.js'
- * @import { Motion } from '../types.js'
+ * @import { Motion, Pins } from '../types.js'
  */
 
 /** Speeds at which a parameter is played, as multiples of the usual one. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
-/** @param {Engine} engine @param {Motion} motion */
-export function createParameters(engine, motion) {
+/** @param {Engine} engine @param {{ motion: Motion, pins: Pins }} shared */
+export function createParameters(engine, { motion, pins }) {
   // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
     JSON.stringify(
@@ -28,13 +28,24 @@ export function createParameters(engine, motion) {
   return h(
     'div',
     { class: 'section parameters', hidden: () => !engine.field.value?.parameters.length },
-    h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), resetAll(engine)),
+    h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), h('span', null, resetAll(engine), grabbing(pins))),
     h('div', { class: 'rows' }, () => {
       void shape.value;
       return engine.field.peek()?.parameters.map((parameter) => createRow(engine, parameter, { values, motion }));
     }),
     createCourse(motion),
   );
+}
+
+/** Creates the switch by which the surface itself is dragged. @param {Pins} pins */
+function grabbing(pins) {
+  const isOn = computed(() => pins.value !== null);
+  const press = () => {
+    pins.value = isOn.peek() ? null : [];
+  };
+  return explain(button({ class: 'plain small', 'aria-pressed': () => String(isOn.value), press }, 'Grab'), () => ({
+    text: 'Drag the surface: the parameters follow. Shift and drag does it once.',
+  }));
 }
 
 /** @param {Engine} engine */

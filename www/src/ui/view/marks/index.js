@@ -3,23 +3,28 @@ import { axesMark, createScaleBar } from './axes.js';
 import { boxMark } from './box.js';
 import { mountMarks } from './layer.js';
 import { createMeasureCard, measureMark } from './measure.js';
+import { createPinCard, pinMark } from './pins.js';
 import { planeMark } from './plane.js';
 import { spotMark } from './spot.js';
 
-/** @import { Engine } from '../../../engine/types.js' */
+/**
+ * @import { Engine } from '../../../engine/types.js'
+ * @import { Pins } from '../../types.js'
+ */
 
 /**
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement }} parts  `host` holds the picture and lies in
- *   `stage`; `view` is the part that no panel covers
+ * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement, pins: Pins }} parts  `host` holds the picture and
+ *   lies in `stage`; `view` is the part that no panel covers
  */
-export function mountAllMarks(engine, { stage, host, view }) {
+export function mountAllMarks(engine, { stage, host, view, pins }) {
   mountMarks(stage, engine, [
     axesMark(engine),
     boxMark(engine, stage),
     planeMark(engine, stage),
     measureMark(engine, host),
+    pinMark(engine, stage, pins),
     spotMark(engine),
   ]);
-  view.append(createScaleBar(engine), createMeasureCard(engine));
+  view.append(createScaleBar(engine), createMeasureCard(engine), createPinCard(engine, pins));
 }

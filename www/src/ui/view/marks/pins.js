@@ -1,0 +1,207 @@
+/**
+ * Pins: points of the surface that are dragged, or stay where they are while others are. The parameters follow
+ * (Witkin and Heckbert 1994, §3).
+ */
+import { along, distance, dot, triple } from '../../../engine/vector.js';
+import { button } from '../../button.js';
+import { h, live } from '../../dom.js';
+import { towardEye } from '../../space.js';
+import { createHandle } from './handle.js';
+
+/**
+ * @import { Columns, Engine, Grip, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Pins } from '../../types.js'
+ * @import { Mark } from '../types.js'
+ */
+
+/** Most pins at a time: more than most formulas have parameters. */
+const MOST_PINS = 6;
+/** Way of a pin by an arrow key, in radii of a particle, and its share with Shift. */
+const KEY_RADII = 1;
+const FINE = 0.1;
+
+/** @param {Engine} engine @param {HTMLElement} stage @param {Pins} pins @returns {Mark} */
+export function pinMark(engine, stage, pins) {
+  const hand = new Hand(engine, pins);
+  const handles = Array.from({ length: MOST_PINS }, (_, k) => {
+    const handle = createHandle(engine, stage, {
+      name: `Pin ${k + 1}, along the normal`,
+      kind: 'pin',
+      grab: () => hand.grab(k),
+      drag: (ray) => hand.drag(ray),
+      drop: () => {
+        if (!hand.drop()) hand.takeOff(k);
+      },
+      cancel: () => hand.cancel(),
+      press: (presses, fine) => hand.push(k, presses * KEY_RADII * (fine ? FINE : 1)),
+    });
+    handle.knob.addEventListener('keydown', (event) => {
+      if (event.key === 'Delete' || event.key === 'Backspace') hand.takeOff(k);
+    });
+    return handle;
+  });
+  engine.takeWith((at, shift) => hand.take(at, shift));
+  live(stage, () => hand.follow());
+  live(stage, () => void stage.toggleAttribute('data-grabs', pins.value !== null));
+  return {
+    handles: handles.map(({ knob }) => knob),
+    shown: () => pins.value !== null,
+    draw() {
+      const places = pins.value ?? [];
+      for (const [k, { put, tell }] of handles.entries()) {
+        put(places[k] ? engine.project(places[k]) : null);
+        tell(0, -1, 1, 'Arrow keys pull it out or push it in, Delete takes it off');
+      }
+    },
+  };
+}
+
+/** Pulls one pin at a time. */
+class Hand {
+  #engine;
+  #pins;
+  /** The pin that is held, and whether it is taken off once it is let go. */
+  #held = 0;
+  #isFleeting = false;
+  /** The parameters and the pins when the drag began. @type {Record<string, number>} */
+  #parameters = {};
+  /** @type {readonly Vec3[]} */
+  #before = [];
+  /** Where the pins are to be; null until the first motion. @type {readonly Vec3[] | null} */
+  #wanted = null;
+  /** The field to which the pins belong, and what became of it at the last pull. */
+  #of = '';
+  /** @type {Grip | null} */
+  #grip = null;
+
+  /** @param {Engine} engine @param {Pins} pins */
+  constructor(engine, pins) {
+    this.#engine = engine;
+    this.#pins = pins;
+  }
+
+  /**
+   * Takes hold of the particle under a place of the picture, with Shift for one drag only.
+   * @param {{x: number, y: number}} at @param {boolean} shift
+   */
+  take(at, shift) {
+    const [engine, pins] = [this.#engine, this.#pins.peek() ?? []];
+    const isOn = this.#pins.peek() !== null;
+    if (!(isOn || shift) || !engine.field.peek()?.parameters.length || pins.length === MOST_PINS) return null;
+    const index = engine.pick(at.x, at.y);
+    if (index === null) return null;
+    this.#pins.value = [...pins, triple(engine.columns.shown, index)];
+    this.#of = fieldOf(engine);
+    this.grab(pins.length);
+    this.#isFleeting = !isOn;
+    return {
+      drag: (/** @type {{x: number, y: number}} */ { x, y }) => this.drag(engine.rayThrough(x, y)),
+      drop: () => void this.drop(),
+    };
+  }
+
+  /** @param {number} k */
+  grab(k) {
+    this.#held = k;
+    this.#isFleeting = false;
+    this.#parameters = this.#engine.state.peek().parameters;
+    this.#before = this.#pins.peek() ?? [];
+    this.#wanted = null;
+  }
+
+  /** Moves the pin in the plane through its place that faces the camera. @param {Ray} ray */
+  drag({ eye, direction }) {
+    const place = this.#before[this.#held];
+    const facing = towardEye(this.#engine.state.peek().view.camera);
+    const t = dot(along(place, eye, -1), facing) / dot(direction, facing);
+    if (Number.isFinite(t) && t > 0) this.#pull(along(eye, direction, t), true);
+  }
+
+  /** @param {Vec3} to @param {boolean} live */
+  #pull(to, live) {
+    this.#wanted = this.#before.map((pin, k) => (k === this.#held ? to : pin));
+    this.#engine.pull(this.#parameters, this.#wanted, { live });
+  }
+
+  /** @returns whether the pin was moved */
+  drop() {
+    const wanted = this.#wanted;
+    this.#wanted = null;
+    if (wanted) this.#engine.pull(this.#parameters, wanted);
+    if (this.#isFleeting) this.#pins.value = null;
+    return wanted !== null;
+  }
+
+  cancel() {
+    this.#wanted = null;
+    this.#engine.pull(this.#parameters, this.#before);
+  }
+
+  /** Moves a pin by so many radii of a particle along the normal. @param {number} k @param {number} radii */
+  push(k, radii) {
+    this.grab(k);
+    const { columns } = this.#engine;
+    const near = nearest(columns, this.#before[k]);
+    this.#pull(along(this.#before[k], triple(columns.normals, near), radii * columns.radii[near]), false);
+    this.#wanted = null;
+  }
+
+  /** @param {number} k */
+  takeOff(k) {
+    this.#pins.value = (this.#pins.peek() ?? []).filter((_, other) => other !== k);
+  }
+
+  /** Puts the pins where the surface has come; those of a surface that something else has changed are gone. */
+  follow() {
+    const grip = this.#engine.grip.value;
+    const field = fieldOf(this.#engine);
+    const pins = this.#pins.peek();
+    const isNew = grip !== this.#grip;
+    this.#grip = grip;
+    if (!pins?.length) return;
+    if (isNew && grip?.places.length === pins.length) {
+      this.#pins.value = grip.places;
+      this.#of = field;
+    } else if (field !== this.#of) {
+      this.#pins.value = [];
+    }
+  }
+}
+
+/** Returns a text by which fields are compared. @param {Engine} engine */
+const fieldOf = ({ field: { value } }) => JSON.stringify(value && [value.kind, value.formula, value.parameters]);
+
+/** Returns the particle nearest to a place. @param {Columns} columns @param {Vec3} place */
+function nearest({ positions, count }, place) {
+  let best = 0;
+  let least = Infinity;
+  for (let i = 0; i < count; i += 1) {
+    const away = distance(triple(positions, i), place);
+    if (away < least) [best, least] = [i, away];
+  }
+  return best;
+}
+
+/** Creates the card that says what a pull has come to. @param {Engine} engine @param {Pins} pins */
+export function createPinCard(engine, pins) {
+  const text = h('span', { role: 'status' }, () => {
+    if (pins.value === null) return '';
+    const grip = engine.grip.value;
+    if (grip && pins.value.length > 0) {
+      const names = grip.idle.join(', ');
+      if (grip.idle.length === engine.field.value?.parameters.length) return 'No parameter moves the surface here';
+      if (!grip.holds) return 'The ranges of the parameters end here';
+      if (names) return `${names} cannot move it here`;
+    }
+    return 'Drag the surface; a press pins a place';
+  });
+  const done = () => {
+    pins.value = null;
+  };
+  return h(
+    'div',
+    { class: 'measure-card', hidden: () => pins.value === null },
+    text,
+    button({ class: 'small', press: done }, 'Done'),
+  );
+}

@@ -1,0 +1,150 @@
+/** The surface pulled by hand: with Shift, with the tool, with pins, by finger and by keyboard, and what cannot move. */
+import { expect, test } from '@playwright/test';
+import { afresh, atRest, open, scan, settled, state } from './helpers.js';
+
+/** @import { Page } from '@playwright/test' */
+
+/**
+ * The particle that lies farthest in a direction of the window, of those that are seen.
+ * @param {Page} page @param {[number, number]} way
+ * @returns {Promise<{x: number, y: number}>}
+ */
+const outermost = (page, way) =>
+  page.evaluate(([wx, wy]) => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const { columns } = engine;
+    const host = document.querySelector('#canvas-host')?.getBoundingClientRect() ?? new DOMRect();
+    let best = { x: 0, y: 0, far: -Infinity };
+    for (let i = 0; i < columns.count; i += 1) {
+      const { x, y } = engine.project(columns.shown.subarray(3 * i, 3 * i + 3));
+      const far = wx * x + wy * y;
+      if (far > best.far && engine.pick(x, y) === i) best = { x, y, far };
+    }
+    return { x: host.left + best.x, y: host.top + best.y };
+  }, way);
+
+/** Where the pins of the last pull are in the window, and whether the surface passes through them. @param {Page} page */
+const grip = (page) =>
+  page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const host = document.querySelector('#canvas-host')?.getBoundingClientRect() ?? new DOMRect();
+    const { holds, idle, places } = engine.grip.value;
+    const spots = places.map((/** @type {number[]} */ place) => engine.project(place));
+    return {
+      holds,
+      idle,
+      spots: spots.map((/** @type {{x: number, y: number}} */ { x, y }) => ({ x: host.left + x, y: host.top + y })),
+    };
+  });
+
+/** @param {Page} page @param {{x: number, y: number}} from @param {{x: number, y: number}} to */
+async function drag(page, from, to) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y, { steps: 6 });
+  await page.mouse.up();
+  await atRest(page);
+}
+
+test('the surface is pulled, and the parameters follow', async ({ page }) => {
+  const { clean } = await open(page);
+  const start = (await state(page)).parameters;
+  const { yaw } = (await state(page)).view.camera;
+  const right = await outermost(page, [1, 0]);
+  const beyond = { x: right.x + 24, y: right.y };
+
+  await test.step('with Shift, once', async () => {
+    await page.keyboard.down('Shift');
+    await drag(page, right, beyond);
+    await page.keyboard.up('Shift');
+    const { holds, spots } = await grip(page);
+    expect(holds).toBe(true);
+    expect(Math.hypot(spots[0].x - beyond.x, spots[0].y - beyond.y)).toBeLessThan(2);
+    expect((await state(page)).parameters.a).toBeGreaterThan(1);
+    expect((await state(page)).view.camera.yaw).toBe(yaw);
+    await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(0);
+    await expect(page.getByRole('button', { name: 'Grab' })).toHaveAttribute('aria-pressed', 'false');
+  });
+
+  await test.step('one step back undoes it', async () => {
+    await page.keyboard.press('Control+z');
+    await settled(page);
+    expect((await state(page)).parameters).toEqual(start);
+    await expect(page.getByRole('button', { name: 'Undo' })).toBeDisabled();
+  });
+
+  await test.step('a place that is pressed stays where it is', async () => {
+    await page.getByRole('button', { name: 'Grab' }).click();
+    const below = await outermost(page, [0, 1]);
+    await page.mouse.click(below.x, below.y - 2);
+    await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(1);
+    await drag(page, right, beyond);
+    const { holds, spots } = await grip(page);
+    expect(holds).toBe(true);
+    expect(Math.hypot(spots[0].x - below.x, spots[0].y - below.y)).toBeLessThan(6);
+    expect(Math.hypot(spots[1].x - beyond.x, spots[1].y - beyond.y)).toBeLessThan(2);
+    await scan(page);
+  });
+
+  await test.step('by keyboard', async () => {
+    const pin = page.getByRole('slider', { name: 'Pin 2' });
+    const before = (await state(page)).parameters;
+    await pin.focus();
+    await page.keyboard.press('ArrowDown');
+    await settled(page);
+    expect((await state(page)).parameters.a).toBeLessThan(before.a);
+    await page.keyboard.press('Delete');
+    await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(1);
+    // What a slider changes the pins no longer lie on.
+    const slider = page.getByRole('slider', { name: /^Semi-axis a|a$/ }).first();
+    await slider.focus();
+    await page.keyboard.press('ArrowLeft');
+    await settled(page);
+    await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(0);
+    await page.getByRole('button', { name: 'Done' }).click();
+    await expect(page.getByRole('button', { name: 'Grab' })).toHaveAttribute('aria-pressed', 'false');
+  });
+  await clean();
+});
+
+test('what cannot be pulled says so, and the picture turns instead', async ({ page }) => {
+  const { clean } = await open(page);
+  const set = (/** @type {object} */ patch) =>
+    page.evaluate((patch) => /** @type {any} */ (window).marchingParticles.set(patch), patch);
+
+  await test.step('beyond the ranges of the parameters', async () => {
+    await page.getByRole('button', { name: 'Grab' }).click();
+    const right = await outermost(page, [1, 0]);
+    const far = { x: right.x + 150, y: right.y };
+    await drag(page, right, far);
+    await expect(page.getByText('The ranges of the parameters end here')).toBeVisible();
+    const { holds, spots } = await grip(page);
+    expect(holds).toBe(false);
+    expect(far.x - spots[0].x).toBeGreaterThan(20);
+    const { parameters } = await state(page);
+    expect(parameters).toEqual({ a: 1.2, b: 1, c: 0.8 });
+    await page.getByRole('button', { name: 'Done' }).click();
+    await afresh(page);
+  });
+
+  await test.step('where no parameter moves the surface', async () => {
+    await set({ formula: 'x^2 + y^2 + z^2 + 0*t = 1' });
+    await page.getByRole('button', { name: 'Grab' }).click();
+    const right = await outermost(page, [1, 0]);
+    await drag(page, right, { x: right.x + 30, y: right.y });
+    await expect(page.getByText('No parameter moves the surface here')).toBeVisible();
+    expect((await grip(page)).holds).toBe(false);
+    await page.getByRole('button', { name: 'Done' }).click();
+  });
+
+  await test.step('without parameters Shift moves the camera', async () => {
+    await set({ formula: 'x^2 + y^2 + z^2 = 1' });
+    const right = await outermost(page, [1, 0]);
+    const { target } = (await state(page)).view.camera;
+    await page.keyboard.down('Shift');
+    await drag(page, { x: right.x - 10, y: right.y }, { x: right.x + 30, y: right.y });
+    await page.keyboard.up('Shift');
+    await expect.poll(async () => (await state(page)).view.camera.target).not.toEqual(target);
+  });
+  await clean();
+});
