@@ -101,6 +101,8 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
+    /// The particles have followed the surface while it moved.
+    Moved,
     /// The run was ended because too many seeds stayed alone beside other particles.
     EndedEarly {
         /// Number of seeds taken back.
@@ -263,6 +265,9 @@ impl<F: Field> Run<F> {
         if not_converged > 0 || undefined > 0 {
             warnings.push(Warning::Children { not_converged, undefined });
         }
+        if !self.particles().identity.is_empty() {
+            warnings.push(Warning::Moved);
+        }
         let meets = [self.places_of_meeting(), self.crossing()];
         // A smaller radius takes no sheets apart that meet.
         let is_close = !is_unresolved && meets == [None, None] && facing >= CLOSE_COUNT;
@@ -391,6 +396,10 @@ impl fmt::Display for Warning {
                  are those of all sheets together, and the mesh is no manifold along it.",
                 counted(*curves, "curve", "curves"),
                 place(*position, *length)
+            ),
+            Self::Moved => f.write_str(
+                "The particles have followed the surface while it moved: they are even, not in order, and components were looked \
+                 for by the survey alone. A new run places them in order.",
             ),
             Self::EndedEarly { seeds } => write!(
                 f,

@@ -2,7 +2,7 @@
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::{Phase, Run, Sampling, Settings};
+use marching_particles::{Phase, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
@@ -44,6 +44,10 @@ fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
             let mut fresh = started(TANGLECUBE, way[1], 2.6, &settings);
             let (report, fresh) = (run.report(), fresh.report());
             let of = format!("{sampling:?}, {way:?}");
+            assert!(
+                report.warnings.contains(&Warning::Moved) && !fresh.warnings.contains(&Warning::Moved),
+                "{of}"
+            );
             let figures = report.measures.quality.expect("figures");
             assert_eq!(
                 (figures.connectivity.euler, figures.connectivity.components),

@@ -25,7 +25,8 @@ export interface Picture {
   hand: { take: Take };
   close: () => void;
 }
-export type RunOptions = SampleOptions & { settings?: Settings; pulled?: Pulled };
+/** `changed`: only a control has changed the surface, so that the particles may follow it. */
+export type RunOptions = SampleOptions & { settings?: Settings; pulled?: Pulled; changed?: boolean };
 /** Points that the surface is to pass through, and the parameters that are changed for it. */
 export type Pulled = Required<Pick<FieldRequest, 'parameters' | 'pins'>>;
 export interface PictureOptions {

@@ -50,14 +50,16 @@ export class Runs {
    * @param {RunOptions & Partial<SampleRequest>} [options]
    * @returns {SampleRequest}
    */
-  #request({ pulled, ...options } = {}) {
+  #request({ pulled, changed = false, ...options } = {}) {
     const { loader } = this;
     const about = description(this.store);
     const state = loader.present();
+    const settings = completeSettings(about, state.settings);
     return {
       kind: 'sample',
       field: { ...fieldRequest(state, about, loader.key()), ...pulled },
-      settings: completeSettings(about, state.settings),
+      settings,
+      following: changed && state.view.flow ? [settings] : [],
       grow: false,
       live: false,
       fit: false,
@@ -77,7 +79,10 @@ export class Runs {
   resampleLive(pulled) {
     if (!this.#begin({})) return;
     this.sampling.sampleLive(this.#request({ pulled }), this.#diagonal());
-    this.#timer = setTimeout(() => this.sampling.sample(this.#request({ pulled, rests: true })), REST_MS);
+    this.#timer = setTimeout(
+      () => this.sampling.sample(this.#request({ pulled, changed: true, rests: true })),
+      REST_MS,
+    );
   }
 
   /**

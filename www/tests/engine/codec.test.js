@@ -27,6 +27,7 @@ const elaborate = () => ({
     edges: false,
     marks: false,
     theme: 'dark',
+    flow: true,
     ghost: true,
     box: true,
     axes: true,

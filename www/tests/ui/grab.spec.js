@@ -1,6 +1,6 @@
 /** The surface pulled by hand: with Shift, with the tool, with pins, by finger and by keyboard, and what cannot move. */
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, report, scan, settled, state } from './helpers.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -146,5 +146,23 @@ test('what cannot be pulled says so, and the picture turns instead', async ({ pa
     await page.keyboard.up('Shift');
     await expect.poll(async () => (await state(page)).view.camera.target).not.toEqual(target);
   });
+  await clean();
+});
+
+test('particles that have followed stay, if they are to', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ flow: true }));
+  const right = await outermost(page, [1, 0]);
+  await page.keyboard.down('Shift');
+  await drag(page, right, { x: right.x + 16, y: right.y });
+  await page.keyboard.up('Shift');
+  await settled(page);
+  const moved = await report(page);
+  expect(moved.warnings.join()).toContain('followed the surface while it moved');
+  expect(moved.count).toBeGreaterThan(1000);
+  // What a run has made is in order again, and its link makes it again.
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await settled(page);
+  expect((await report(page)).warnings.join()).not.toContain('followed');
   await clean();
 });

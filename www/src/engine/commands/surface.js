@@ -105,7 +105,7 @@ export function inputCommands({ store, runs }) {
   const resample = (live, pulled = undefined) => {
     store.dragging.value = live;
     if (live) runs.resampleLive(pulled);
-    else runs.resample({ pulled });
+    else runs.resample({ pulled, changed: true });
   };
   return {
     setParameter(name, value, { live = false } = {}) {

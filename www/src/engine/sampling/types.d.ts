@@ -35,7 +35,7 @@ export interface SampleJob {
   field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
   settings: Settings;
-  /** settings of the runs whose particles may follow the surface instead; none unless a control is being dragged */
+  /** settings of the runs whose particles may follow the surface instead */
   following: Settings[];
   grow: boolean;
   live: boolean;

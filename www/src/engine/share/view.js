@@ -106,6 +106,8 @@ export const VIEW = {
   },
   /** Whether the centres of a model are drawn. */
   points: flag(true, 'points of the model'),
+  /** Whether particles that have followed a moving surface stay at rest. */
+  flow: flag(false, 'particles at rest'),
   /** The newest generation level drawn, null for all of them; a level beyond the last counts as the last. */
   level: place('generation level'),
   /** The relaxation step after which the particles are drawn, null for the last one. */

@@ -52,6 +52,9 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
       ]),
       ...drawing(engine),
       scale(engine),
+      switches(engine, 'At rest', [
+        ['flow', 'Keep flowing', 'Particles that followed a moving surface stay, without their order.'],
+      ]),
       theme(engine),
       choice('Measure a distance', () => engine.setView({ measured: [] })),
       choice('Hide the panels', hide),
@@ -181,8 +184,8 @@ function choices(engine, name, key, values, hidden) {
  * Creates a line of buttons that switch parts of the view on and off.
  * @param {Engine} engine
  * @param {string} name
- * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label,
- *   explanation
+ * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar' | 'flow', string, string][]} parts  key,
+ *   label, explanation
  * @param {() => boolean} [hidden]
  */
 function switches(engine, name, parts, hidden) {
