@@ -21,19 +21,22 @@ const mesh = (components, more) => ({
 });
 
 it('a mesh is told in a line: closed or where it is open, and its topology', () => {
-  expect(verdictOf(mesh([[2, 0]]))).toBe('Watertight · Euler number 2');
+  expect(verdictOf(mesh([[4, 0]]))).toBe('No open edge, but not a manifold · Euler number 4');
   expect(verdictOf(mesh([[2, 0]], { volume: 4.18879, smallest_angle: 38.04 }))).toBe(
     'Watertight · Euler number 2 · volume 4.189 · smallest angle 38.0°',
   );
   expect(verdictOf(mesh([[-8, 1204]]))).toBe('1,204 open edges · Euler number −8');
   expect(
     verdictOf(
-      mesh([
-        [2, 0],
-        [0, 0],
-      ]),
+      mesh(
+        [
+          [2, 0],
+          [0, 0],
+        ],
+        { volume: 2 },
+      ),
     ),
-  ).toBe('Watertight · 2 components · Euler numbers 2, 0');
+  ).toBe('Watertight · 2 components · Euler numbers 2, 0 · volume 2');
   expect(
     verdictOf(
       mesh([

@@ -38,3 +38,47 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
   });
   await clean();
 });
+
+test('a unit cell has the same particles on opposite faces', async ({ page }) => {
+  const { clean } = await open(page);
+  const [closed, periodic] = ['Closed', 'Periodic'].map((name) => page.getByRole('checkbox', { name }));
+  await expect(periodic).toBeHidden();
+  for (const surface of ['gyroid', 'schwarz-p', 'schwarz-d']) {
+    await test.step(surface, async () => {
+      await page.evaluate(
+        (id) => /** @type {any} */ (window).marchingParticles.set({ surface: id, settings: { radius_share: 0.014 } }),
+        surface,
+      );
+      await closed.check();
+      await settled(page);
+      expect((await report(page)).pairs).toBeNull();
+      await periodic.check();
+      await settled(page);
+      const { pairs, cut, warnings } = await report(page);
+      expect(pairs).toBeGreaterThan(100);
+      expect([cut, warnings]).toEqual([null, []]);
+      // One period, wherever the cell lies.
+      await expect(page.getByText('6.28 × 6.28 × 6.28')).toBeVisible();
+      expect((await state(page)).settings.box_cell).toBe('periodic');
+    });
+  }
+  await test.step('the switches stay within the panel', async () => {
+    const { room, over } = await page.getByRole('group', { name: 'Solid' }).evaluate((group) => {
+      const of = (/** @type {Element} */ element) => element.getBoundingClientRect();
+      const controls = [...group.querySelectorAll('input')].map(of);
+      return {
+        room: of(group).right - Math.max(...controls.map((box) => box.right)),
+        over: group.scrollWidth - group.clientWidth,
+      };
+    });
+    expect(room).toBeGreaterThanOrEqual(0);
+    expect(over).toBe(0);
+  });
+  await test.step('an open solid has no cell', async () => {
+    await closed.uncheck();
+    await settled(page);
+    await expect(periodic).toBeHidden();
+    expect((await report(page)).pairs).toBeNull();
+  });
+  await clean();
+});
