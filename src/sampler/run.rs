@@ -4,7 +4,7 @@ use super::{Output, Sampler, Tools};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
-use crate::sampler::constraint::tips;
+use crate::sampler::constraint::tips::{self, Tip};
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
@@ -473,7 +473,13 @@ impl Sampler {
             }
             refining => {
                 let failure = refining.as_ref().and_then(|refining| refining.failure);
-                self.counts.refusal = failure.or(Some(refusal));
+                let mut refusal = failure.unwrap_or(refusal);
+                let at = refusal.at().map(|at| Vec3::from(at.0).as_dvec3());
+                // Within two spacings of a tip it is the tip that cannot be had.
+                let is_near =
+                    |tip: &&Tip| at.is_some_and(|at| tip.position.distance(at) <= 4.0 * self.attempt.radius);
+                let tip = self.tips.iter().find(is_near).map(|tip| tip.position.as_vec3().into());
+                self.counts.refusal = Some(tip.map_or(refusal, |at| Refusal::Tip { at }));
                 self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
             }
         }

@@ -6,6 +6,7 @@ use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, triangulate_particles};
 use marching_particles::sampler::{Method, Sampling, Settings};
 use marching_particles::session::{FieldRequest, Session};
+use marching_particles::{Formula, Refusal, Warning, sample};
 
 /// A surface with its tips and its topology in a cube, whose nappes are sheets of their own.
 struct Tipped {
@@ -125,4 +126,21 @@ fn one_particle_stands_at_a_tip_and_the_sheets_close_around_it() {
             }
         }
     }
+}
+
+#[test]
+fn a_tip_in_a_plane_that_ends_it_leaves_nothing_undecided() {
+    for formula in ["max(x^2+y^2-z^2, abs(z+0.5)-0.5)", "max(x^2/4+y^2-(z+1)^2, abs(z-0.3)-1.3)"] {
+        let sample = sample(Formula::parse(formula).unwrap(), &Settings::with_count(2_000)).unwrap();
+        assert_eq!(sample.report().proof.undecided_cells, Some(0), "{formula}");
+    }
+}
+
+#[test]
+fn a_narrow_tip_is_named_where_it_is_not_refined() {
+    let bounds = Some(Bounds::cube(1.0));
+    let settings = settings!(bounds; ..Settings::with_count(4_000).refined());
+    let sample = sample(Formula::parse("x^2+y^2=z^2/16").unwrap(), &settings).unwrap();
+    let is_tip = |warning: &Warning| matches!(warning, Warning::NotRefined(Refusal::Tip { .. }));
+    assert!(sample.report().warnings.iter().any(is_tip), "{:?}", sample.report().warnings);
 }

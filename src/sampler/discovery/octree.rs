@@ -384,7 +384,7 @@ impl Octree {
                 continue;
             }
             if !(known.defined && known.continuous) {
-                self.halve(cell, IRREGULAR_DEPTH);
+                self.halve(field, cell, IRREGULAR_DEPTH);
             } else if !is_discarded(&cell, &known) {
                 self.batch.open[kept] = cell;
                 kept += 1;
@@ -413,7 +413,7 @@ impl Octree {
                     self.batch.tall.push(Tall { cell, room, rise: None });
                 }
                 _ if self.is_isolated(field, &cell, &known) => {}
-                _ => self.halve(cell, DEPTH),
+                _ => self.halve(field, cell, DEPTH),
             }
         }
         if !self.batch.tall.is_empty() {
@@ -427,13 +427,9 @@ impl Octree {
         if is_left_out(cell, &self.search.isolated) {
             return true;
         }
-        let is_steep = known.gradient.iter().any(|slope| slope.excludes_zero());
-        if is_steep || cell.level >= DEPTH {
-            // f need not be differentiable at the tip of a cone. Nor is the tip of a branch one of f where another one gives f beside it.
-            let room = if is_steep { 0.0 } else { self.region.margin };
-            let around = cell.bounds.enlarged(room);
-            let tip = self.singular.iter().map(|point| point.position).find(|&at| around.holds(at));
-            return tip.is_some_and(|at| self.isolate(field, cell, at));
+        if known.gradient.iter().any(|slope| slope.excludes_zero()) {
+            // f need not be differentiable at the tip of a cone.
+            return self.isolate_tip(field, cell, 0.0);
         }
         let Axes { sides, .. } = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
@@ -457,6 +453,13 @@ impl Octree {
         }
         // A curve of such points passes through the faces of the box.
         point.is_alone && self.isolate(field, cell, at)
+    }
+
+    /// Leaves out a box around a singular point that is known and in the cell, or within `room` of it; whether the cell lies in that box.
+    fn isolate_tip(&mut self, field: &mut dyn Bounded, cell: &Cell, room: f64) -> bool {
+        let around = cell.bounds.enlarged(room);
+        let tip = self.singular.iter().map(|point| point.position).find(|&at| around.holds(at));
+        tip.is_some_and(|at| self.isolate(field, cell, at))
     }
 
     /// Leaves out a box around a singular point, if it can; whether the cell lies in it.
@@ -495,7 +498,7 @@ impl Octree {
             let Tall { cell, rise, .. } = self.batch.tall[k];
             let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
             if rise.is_none() || !bottom.excludes_zero() || !top.excludes_zero() {
-                self.halve(cell, DEPTH);
+                self.halve(field, cell, DEPTH);
             } else if (bottom.lo > 0.0) != (top.lo > 0.0) {
                 let up = cell.axes().up;
                 let [lo, hi] = [2 * k, 2 * k + 1].map(|end| self.bounds.boxes[end].min[up]);
@@ -518,7 +521,7 @@ impl Octree {
                 position[up] = height;
                 self.witnesses.push(Witness { position, factor: self.search.factor });
             } else {
-                self.halve(cell, DEPTH);
+                self.halve(field, cell, DEPTH);
             }
         }
     }
@@ -558,9 +561,12 @@ impl Octree {
     }
 
     /// Halves a cell along its longer sides, unless it has been halved `depth` times.
-    fn halve(&mut self, cell: Cell, depth: u8) {
+    fn halve(&mut self, field: &mut dyn Bounded, cell: Cell, depth: u8) {
         if cell.level >= depth {
-            self.undecided.push(cell.bounds);
+            // The tip of a branch need be none of f, where another branch gives f beside it.
+            if !self.isolate_tip(field, &cell, self.region.margin) {
+                self.undecided.push(cell.bounds);
+            }
             return;
         }
         let size = cell.bounds.size();

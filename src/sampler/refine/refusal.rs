@@ -80,6 +80,14 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
+    /// Particles beside a tip could not be joined, or halving their edges led off the surface.
+    #[error(
+        "The front stands, and is not refined: near {at} the surface has a tip that is too narrow for particles of this size."
+    )]
+    Tip {
+        /// Position of the tip.
+        at: Spot,
+    },
     /// A refinement has left the surface, or has led onto another sheet.
     #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
     Folded {
@@ -110,8 +118,16 @@ impl Refusal {
     /// Returns the refusal with its place in the coordinates of the formula, from one whose place is relative to `origin`.
     #[must_use]
     pub(crate) fn counted_from_zero(mut self, origin: DVec3) -> Self {
-        match &mut self {
-            Self::Few { .. } | Self::Full => {}
+        if let Some(at) = self.at() {
+            *at = (origin + Vec3::from(at.0).as_dvec3()).as_vec3().into();
+        }
+        self
+    }
+
+    /// The place that it names, if it names one.
+    pub(crate) fn at(&mut self) -> Option<&mut Spot> {
+        match self {
+            Self::Few { .. } | Self::Full => None,
             Self::Bent { at }
             | Self::Creased { at }
             | Self::Singular { at }
@@ -119,9 +135,9 @@ impl Refusal {
             | Self::Cut { at }
             | Self::Small { at }
             | Self::Doubtful { at }
-            | Self::Folded { at } => *at = (origin + Vec3::from(at.0).as_dvec3()).as_vec3().into(),
+            | Self::Tip { at }
+            | Self::Folded { at } => Some(at),
         }
-        self
     }
 
     /// Whether a finer front may do.
