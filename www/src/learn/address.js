@@ -4,7 +4,10 @@
  */
 
 /** Parts that a fragment may have beside the stop. */
-const PARTS = ['surface', 'mode', 'task'];
+const PARTS = ['surface', 'mode', 'task', 'left', 'right'];
+/** The stops of comparisons begin with this; only theirs have the values of the two sides. */
+export const BENCH = 'what-if';
+const OF_BENCH = ['left', 'right'];
 
 /** @typedef {{ stop: string, parts: Record<string, string> }} Address */
 
@@ -33,7 +36,9 @@ function decoded(text) {
 
 /** @param {Address} address */
 export function writeAddress({ stop, parts }) {
-  const pairs = PARTS.filter((name) => parts[name]).map((name) => `${name}=${encodeURIComponent(parts[name])}`);
+  const isBench = stop.startsWith(`${BENCH}-`);
+  const own = PARTS.filter((name) => parts[name] && (isBench || !OF_BENCH.includes(name)));
+  const pairs = own.map((name) => `${name}=${encodeURIComponent(parts[name])}`);
   const pieces = [...(stop ? [encodeURIComponent(stop)] : []), ...pairs];
   return pieces.length > 0 ? `#${pieces.join('&')}` : '';
 }

@@ -10,7 +10,7 @@ import { createBench } from './bench.js';
 import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
-import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.js';
+import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, particleTable, tableOf } from './task.js';
 import { WHAT_IFS } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
@@ -51,23 +51,28 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   const { text, keep } = kept(`assignment.${packTask(task)}`);
   for (const [k, value] of text.split('\0').entries()) if (boxes[k]) boxes[k].value = value;
   host.addEventListener('input', () => keep(boxes.map(({ value }) => value).join('\0')));
-  const save = async (/** @type {'json' | 'csv'} */ format) => {
-    const { pair } = bench;
-    await pair.settled;
+  /** @returns {Work} */
+  const workOf = () => {
+    const { runs, scores } = bench.pair;
     const labels = [bench.setup().left, bench.setup().right];
-    /** @type {Work} */
-    const work = {
+    return {
       assignment: task.title,
       surface,
       name: name.box.value,
       group: group.box.value,
       answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
       predictions: stops.predictions(),
-      runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run, pair.scores?.[k])),
+      runs: (runs ?? []).map((run, k) => recordOf(labels[k], run, scores?.[k])),
     };
-    const text = format === 'json' ? `${JSON.stringify(work, null, 2)}\n` : tableOf(work);
-    const type = format === 'json' ? 'application/json' : 'text/csv;charset=utf-8';
-    download(new Blob([text], { type }), `${fileName([task.title, group.box.value, name.box.value])}.${format}`);
+  };
+  const particles = () => {
+    const labels = [bench.setup().left, bench.setup().right];
+    return particleTable((bench.pair.runs ?? []).map(({ end }, k) => ({ label: labels[k], end })));
+  };
+  const save = async (/** @type {string} */ ending, /** @type {() => string} */ write) => {
+    await bench.pair.settled;
+    const type = ending.endsWith('json') ? 'application/json' : 'text/csv;charset=utf-8';
+    download(new Blob([write()], { type }), fileName([task.title, group.box.value, name.box.value]) + ending);
   };
   fill(
     host,
@@ -81,8 +86,12 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
     h(
       'div',
       { class: 'controls' },
-      button({ class: 'primary', press: () => void save('json') }, 'Save as JSON'),
-      button({ press: () => void save('csv') }, 'Save as CSV'),
+      button(
+        { class: 'primary', press: () => void save('.json', () => `${JSON.stringify(workOf(), null, 2)}\n`) },
+        'Save as JSON',
+      ),
+      button({ press: () => void save('.csv', () => tableOf(workOf())) }, 'Save as CSV'),
+      button({ press: () => void save('-particles.csv', particles) }, 'Save the particles'),
       h(
         'span',
         { class: 'quiet' },
@@ -156,6 +165,7 @@ export function createMaker({ setup, linkOf }) {
       { class: 'controls' },
       button({ class: 'primary', press: () => void copy() }, 'Copy the link'),
       button({ press: () => dialog.close() }, 'Close'),
+      h('a', { class: 'button plain', href: '#collect', on: { click: () => dialog.close() } }, 'Collect answers'),
     ),
     told,
   );

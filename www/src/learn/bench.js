@@ -2,6 +2,7 @@
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
+import { BENCH } from './address.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
 import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
@@ -9,15 +10,19 @@ import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 /** @import { Control, Lab, Setup } from './types.js' */
 
 /** Stops of the bench in the address: one for each choice. */
-export const STOP = 'what-if';
-export const stopsOfBench = WHAT_IFS.map(({ id }) => `${STOP}-${id}`);
+export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);
 
 /**
  * @param {HTMLElement} host
  * @param {Lab} lab
- * @param {{ setup?: Setup, locks?: readonly Control[] }} [how]  `locks`: controls that stay as they are
+ * @param {{ setup?: Setup, locks?: readonly Control[], onChoice?: (setup: Setup) => void }} [how]
+ *   `locks`: controls that stay as they are; `onChoice` is told what the learner chooses
  */
-export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id), locks = [] } = {}) {
+export function createBench(
+  host,
+  lab,
+  { setup: first = setupOf(WHAT_IFS[0].id), locks = [], onChoice = () => {} } = {},
+) {
   const pair = createPair(lab);
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
@@ -26,9 +31,15 @@ export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id),
     name: 'What changes',
     choices: WHAT_IFS.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
-    change: (id) => void show(setupOf(id)),
+    change: (id) => choose(setupOf(id)),
   });
   what.select.disabled = locks.includes('what');
+
+  /** @param {Setup} next */
+  function choose(next) {
+    void show(next);
+    onChoice(next);
+  }
 
   /** @param {Setup} next */
   async function show(next) {
@@ -41,14 +52,14 @@ export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id),
         name: k === 0 ? 'Left' : 'Right',
         choices: withOwn(whatIf.values, setup[side]),
         value: setup[side],
-        change: (value) => void show({ ...setup, [side]: value }),
+        change: (value) => choose({ ...setup, [side]: value }),
       });
       control.select.disabled = locks.includes(side);
       return control.element;
     });
     fill(chosen, what.element, sides);
     // The picture on the right begins where one of the two is pressed.
-    const seeds = (/** @type {number[]} */ place) => void show({ ...setup, right: seedAt(place) });
+    const seeds = (/** @type {number[]} */ place) => choose({ ...setup, right: seedAt(place) });
     pair.pickWith(setup.what === 'seed' && !locks.includes('right') ? seeds : null);
     await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf.colouring);
   }

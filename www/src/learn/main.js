@@ -7,7 +7,6 @@ import { byId, query, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
 import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
-import { createMaker, mountAssignment } from './assignment.js';
 import { createBench, mountCards, stopsOfBench } from './bench.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
@@ -16,8 +15,7 @@ import { Lab, NoSurface, PARTICLES } from './lab.js';
 import { createPair } from './pair.js';
 import { mountPrediction, Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
-import { mountRace } from './race.js';
-import { mountStops } from './stops.js';
+import { keepSetup, mountStops } from './stops.js';
 import { subjectOf } from './surface.js';
 import { unpackTask } from './task.js';
 import { setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
@@ -75,22 +73,27 @@ const figures = queryAll(document, '[data-figure]').map((host) => {
 for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
 const bench = lab.then((ready) => {
   mountCards(byId('cards'), ready);
-  mountRace(byId('race-box'), ready);
-  return createBench(byId('bench'), ready);
+  void import('./race.js').then(({ mountRace }) => mountRace(byId('race-box'), ready));
+  return createBench(byId('bench'), ready, { onChoice: keepSetup });
 });
 const { present } = mountStops({
   stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
   others: stopsOfBench,
-  onBench: async (id) => {
+  questions: stops,
+  onBench: async (id, given) => {
     const { show, setup } = await bench;
-    await show(id ? setupOf(id) : setup());
+    await show(id ? setupOf(id, given) : setup());
+  },
+  onCollect: async () => {
+    const { mountCollect } = await import('./collect.js');
+    await mountCollect(byId('collect'));
   },
   say: (words) => {
     notice.textContent = words;
   },
 });
 
-/** The dialog for teachers, once it is asked for. @type {ReturnType<typeof createMaker> | null} */
+/** The dialog for teachers, once it is asked for. @type {{ open: () => void } | null} */
 let maker = null;
 const handout = createHandout(byId('answers'), {
   figures,
@@ -108,7 +111,8 @@ byId('tools').append(
   tool('Present', present),
   handout.button,
   tool('Assignment', async () => {
-    maker ??= createMaker({ setup: (await bench).setup, linkOf });
+    const [{ createMaker }, { setup }] = await Promise.all([import('./assignment.js'), bench]);
+    maker ??= createMaker({ setup, linkOf });
     maker.open();
   }),
 );
@@ -125,7 +129,7 @@ if (address.parts.task) {
   const task = unpackTask(address.parts.task);
   if (!task) notice.textContent = 'The link holds no assignment that can be read. The lesson is complete without it.';
   else
-    void lab.then((ready) =>
+    void Promise.all([import('./assignment.js'), lab]).then(([{ mountAssignment }, ready]) =>
       mountAssignment(byId('assignment'), task, { lab: ready, surface: surfaceWords(ready.surface), stops }),
     );
 }

@@ -67,7 +67,7 @@ export function createPlay(range, { label, totalMs }) {
   const element = button({ press: () => (timer.peek() ? stop() : play()) }, () =>
     timer.value ? [icon('pause'), 'Pause'] : [icon('play'), label],
   );
-  range.input.addEventListener('pointerdown', stop);
+  range.input.addEventListener('input', stop);
   return { element, play, stop };
 }
 

@@ -28,7 +28,7 @@ export class Stops {
     this.outcomes = new Map();
     /**
      * The present entries of a learner, by the stop.
-     * @type {Map<string, { question: string, get: () => string | number | null }>}
+     * @type {Map<string, { question: string, get: () => string | number | null, reveal: () => Promise<void> }>}
      */
     this.entries = new Map();
   }
@@ -78,7 +78,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   const { id } = host;
   const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
   const input = inputOf(prediction, question, stops.pickOf(id));
-  stops.entries.set(id, { question, get: input.get });
+  stops.entries.set(id, { question, get: input.get, reveal: () => answer(input.get()) });
   const result = h('div', { class: 'predict-result', role: 'status' });
   const reveal = button({ type: 'submit', class: 'primary' }, 'Reveal');
   const skip = button({ class: 'plain', press: () => void answer(null) }, 'Skip');
@@ -116,7 +116,6 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     }
   }
   host.append(form, result);
-  return { answer };
 }
 
 /** @param {string | number} guess @param {string | number} right */

@@ -1,47 +1,61 @@
 /** Stops in the address: each chapter, question and comparison has its own. */
-import { nearestStop, readAddress, writeAddress } from './address.js';
-import { STOP } from './bench.js';
-import { createPresenter } from './presenter.js';
+import { BENCH, nearestStop, readAddress, writeAddress } from './address.js';
 
-/** @import { StopsOptions } from './types.js' */
+/** @import { Setup, StopsOptions } from './types.js' */
 
 /** Value of the address's `mode` while presenting. */
 const PRESENT = 'present';
+/** The part of the page where work is collected. */
+const COLLECT = 'collect';
 /** Height of what stays at the top of the window, in pixels. */
 const HEAD_PX = 60;
 
 /** @param {StopsOptions} about */
-export function mountStops({ stops, others, onBench, say }) {
-  const all = [...stops, ...others];
+export function mountStops({ stops, others, questions, onBench, onCollect, say }) {
+  const all = [...stops, ...others, COLLECT];
   let isBenchShown = false;
-  const showBench = (/** @type {string} */ id) => {
+  const showBench = (/** @type {string} */ id, /** @type {Record<string, string>} */ parts = {}) => {
     isBenchShown = true;
-    void onBench(id);
+    void onBench(id, parts);
   };
 
-  const presenter = createPresenter({
-    stops,
-    to(stop, isPresenting) {
-      const { parts } = readAddress(location.hash);
-      location.hash = writeAddress({ stop, parts: { ...parts, mode: isPresenting ? PRESENT : '' } });
-    },
-  });
+  /** @type {ReturnType<typeof import('./presenter.js').createPresenter> | null} */
+  let loaded = null;
+  /** The presenter, which is loaded when it is asked for. */
+  const presenter = () => {
+    loaded ??= import('./presenter.js').then(({ createPresenter }) =>
+      createPresenter({
+        stops,
+        questions,
+        to(stop, isPresenting) {
+          const { parts } = readAddress(location.hash);
+          location.hash = writeAddress({ stop, parts: { ...parts, mode: isPresenting ? PRESENT : '' } });
+        },
+      }),
+    );
+    return loaded;
+  };
 
   /** Goes where the address says. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
     const isPresenting = parts.mode === PRESENT;
     const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
-    if (!isPresenting) presenter.end();
+    if (!isPresenting) void loaded?.then(({ end }) => end());
     if (!found) return;
     if (!found.isExact) {
       say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`);
       history.replaceState(history.state, '', writeAddress({ stop: found.stop, parts }));
     }
     const isBench = others.includes(found.stop);
-    if (isBench) showBench(found.stop.slice(STOP.length + 1));
-    const target = isBench ? STOP : found.stop;
-    if (isPresenting) presenter.show(target);
+    if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
+    if (found.stop === COLLECT) void onCollect();
+    const target = isBench ? BENCH : found.stop;
+    if (isPresenting)
+      presenter().then(
+        ({ show }) => show(target),
+        () => say('The presentation did not load. The lesson is complete without it.'),
+      );
     else settleOn(document.getElementById(target));
   }
 
@@ -78,7 +92,7 @@ export function mountStops({ stops, others, onBench, say }) {
     if (next === location.hash) go();
     else location.hash = next;
     // The focus moves to the target, as it does with an anchor.
-    const target = document.getElementById(others.includes(stop) ? STOP : stop);
+    const target = document.getElementById(others.includes(stop) ? BENCH : stop);
     target?.setAttribute('tabindex', '-1');
     target?.focus({ preventScroll: true });
   });
@@ -86,7 +100,7 @@ export function mountStops({ stops, others, onBench, say }) {
   go();
 
   // The comparison runs when it comes near, as figures do.
-  const bench = document.getElementById(STOP);
+  const bench = document.getElementById(BENCH);
   const observer = new IntersectionObserver(
     (entries) => {
       if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
@@ -104,4 +118,11 @@ export function mountStops({ stops, others, onBench, say }) {
       location.hash = writeAddress({ stop: seen ?? stops[0], parts: { ...parts, mode: PRESENT } });
     },
   };
+}
+
+/** Puts a comparison with its values into the address. @param {Setup} setup */
+export function keepSetup({ what, left, right }) {
+  const { parts } = readAddress(location.hash);
+  const address = writeAddress({ stop: `${BENCH}-${what}`, parts: { ...parts, left, right } });
+  history.replaceState(history.state, '', address);
 }

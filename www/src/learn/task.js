@@ -1,8 +1,13 @@
 /** Assignments as plain data: in a link, and as what a learner hands in. */
+import { NO_PARENT } from '../engine/core-numbers.js';
+import { triple } from '../engine/vector.js';
 import { packed, unpacked } from '../ui/surface-link.js';
-import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
+import { setupOf, WHAT_IFS } from './whatifs.js';
 
-/** @import { Control, Task, Work } from './types.js' */
+/**
+ * @import { LessonParticles } from '../engine/types.js'
+ * @import { Control, Task, Work } from './types.js'
+ */
 
 export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;
@@ -45,12 +50,9 @@ export function unpackTask(text) {
   if (typeof raw !== 'object' || raw === null || !Array.isArray(raw.questions)) return null;
   const whatIf = WHAT_IFS.find(({ id }) => id === raw.setup?.what);
   if (!whatIf) return null;
-  const usual = setupOf(whatIf.id);
-  const sideOf = (/** @type {'left' | 'right'} */ side) =>
-    hasValue(whatIf, raw.setup[side]) ? raw.setup[side] : usual[side];
   return {
     title: String(raw.title ?? '').slice(0, LONGEST_TITLE),
-    setup: { what: whatIf.id, left: sideOf('left'), right: sideOf('right') },
+    setup: setupOf(whatIf.id, raw.setup),
     locks: CONTROLS.map(({ value }) => value).filter((control) => raw.locks?.includes?.(control)),
     questions: raw.questions
       .slice(0, MOST_QUESTIONS)
@@ -83,25 +85,92 @@ const flat = (record) =>
     });
   });
 
+/** The lines of a table. @param {readonly (readonly unknown[])[]} rows */
+const written = (rows) => `${rows.map((row) => row.map(cell).join(',')).join('\r\n')}\r\n`;
+
+const COLUMNS = ['part', 'name', 'number', 'value'];
+
+/** The work in rows of these columns. @param {Work} work @returns {unknown[][]} */
+const rowsOf = ({ assignment, surface, name: learner, group, answers, predictions, runs }) => [
+  ...Object.entries({ title: assignment, surface, name: learner, class: group }).map((pair) => [
+    'assignment',
+    pair[0],
+    '',
+    pair[1],
+  ]),
+  ...answers.map(({ question, answer }) => ['answer', question, '', answer]),
+  ...predictions.flatMap(({ question, guess, answer }) => [
+    ['prediction', question, '', guess],
+    ['run', question, '', answer],
+  ]),
+  ...runs.flatMap((run, k) => flat(run).map((row) => [`run ${k + 1}`, ...row])),
+];
+
 /**
  * The work as a table with one value in a row: of an answer, a setting, a figure, a level or a step.
  * @param {Work} work
  */
-export function tableOf({ assignment, surface, name: learner, group, answers, predictions, runs }) {
-  const rows = [
-    ['part', 'name', 'number', 'value'],
-    ...Object.entries({ title: assignment, surface, name: learner, class: group }).map((pair) => [
-      'assignment',
-      pair[0],
-      '',
-      pair[1],
+export const tableOf = (work) => written([COLUMNS, ...rowsOf(work)]);
+
+/** The works of many as one table, whose first column is the number of the work. @param {readonly Work[]} works */
+export const tableOfAll = (works) =>
+  written([['work', ...COLUMNS], ...works.flatMap((work, k) => rowsOf(work).map((row) => [k + 1, ...row]))]);
+
+const VECTORS = ['x', 'y', 'z', 'normal_x', 'normal_y', 'normal_z'];
+
+/**
+ * The particles of runs at their ends, one in a row. A seed has no parent.
+ * @param {readonly { label: string, end: LessonParticles }[]} runs
+ */
+export function particleTable(runs) {
+  const rows = runs.flatMap(({ label, end: { positions, normals, radii, levels, parents } }) =>
+    Array.from(radii, (radius, i) => [
+      label,
+      i,
+      levels[i],
+      parents[i] === NO_PARENT ? '' : parents[i],
+      radius,
+      ...triple(positions, i),
+      ...triple(normals, i),
     ]),
-    ...answers.map(({ question, answer }) => ['answer', question, '', answer]),
-    ...predictions.flatMap(({ question, guess, answer }) => [
-      ['prediction', question, '', guess],
-      ['run', question, '', answer],
-    ]),
-    ...runs.flatMap((run, k) => flat(run).map((row) => [`run ${k + 1}`, ...row])),
-  ];
-  return `${rows.map((row) => row.map(cell).join(',')).join('\r\n')}\r\n`;
+  );
+  return written([['run', 'particle', 'level', 'parent', 'radius', ...VECTORS], ...rows]);
 }
+
+/**
+ * Reads the work of a learner from a file, in which anything may stand; null if it is none.
+ * @param {string} text
+ * @returns {Work | null}
+ */
+export function readWork(text) {
+  let raw = null;
+  try {
+    raw = JSON.parse(text);
+  } catch {
+    return null;
+  }
+  const lists = [raw?.answers, raw?.predictions, raw?.runs];
+  if (typeof raw?.assignment !== 'string' || !lists.every(isListOfObjects)) return null;
+  const word = (/** @type {unknown} */ value) => String(value ?? '');
+  return {
+    assignment: raw.assignment,
+    surface: word(raw.surface),
+    name: word(raw.name),
+    group: word(raw.group),
+    answers: raw.answers.map((/** @type {any} */ { question, answer }) => ({
+      question: word(question),
+      answer: word(answer),
+    })),
+    predictions: raw.predictions.map((/** @type {any} */ { stop, question, guess, answer }) => ({
+      stop: word(stop),
+      question: word(question),
+      guess: typeof guess === 'number' || typeof guess === 'string' ? guess : null,
+      answer: word(answer),
+    })),
+    runs: raw.runs,
+  };
+}
+
+/** @param {unknown} value */
+const isListOfObjects = (value) =>
+  Array.isArray(value) && value.every((one) => typeof one === 'object' && one !== null && !Array.isArray(one));

@@ -127,6 +127,7 @@ export interface HandoutOptions {
 export interface PresenterOptions {
   /** ids of elements, in their order */
   stops: readonly string[];
+  questions: Stops;
   /** leads the address to a stop */
   to: (stop: string, isPresenting: boolean) => void;
 }
@@ -135,7 +136,10 @@ export interface StopsOptions {
   stops: readonly string[];
   /** stops of the bench: `what-if-…` */
   others: readonly string[];
+  questions: Stops;
   /** shows a comparison; the one that is there for an empty id */
-  onBench: (id: string) => Promise<void>;
+  onBench: (id: string, given: Record<string, string>) => Promise<void>;
+  /** opens the part of the page where work is collected */
+  onCollect: () => Promise<void>;
   say: (words: string) => void;
 }

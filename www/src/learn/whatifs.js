@@ -22,7 +22,7 @@ export const seedAt = (place) => AT + place.map((v) => Number(v.toPrecision(4)))
 const isPlace = (value) => value.startsWith(AT) && parsePlace(value).every(Number.isFinite);
 
 /** Whether a choice has a value, which may be anything. @param {WhatIf} whatIf @param {unknown} value */
-export const hasValue = ({ id, values: all }, value) =>
+const hasValue = ({ id, values: all }, value) =>
   all.some((known) => known.value === value) || (id === 'seed' && typeof value === 'string' && isPlace(value));
 
 /** @param {string} value @returns {[number, number, number]} */
@@ -212,8 +212,15 @@ export function sidesOf({ values: all, make }, [left, right]) {
 /** The choice of this name, else the first. @param {string} id */
 export const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? WHAT_IFS[0];
 
-/** The setup with which a choice is first shown. @param {string} id @returns {Setup} */
-export function setupOf(id) {
-  const { id: what, values } = whatIfOf(id);
-  return { what, left: values[0].value, right: values[1].value };
+/**
+ * The setup of a choice with the values that are given, and those that are first shown where there is none of its own.
+ * @param {string} id @param {{ left?: unknown, right?: unknown }} [given]
+ * @returns {Setup}
+ */
+export function setupOf(id, given = {}) {
+  const whatIf = whatIfOf(id);
+  const [left, right] = [given.left, given.right].map((value, k) =>
+    hasValue(whatIf, value) ? String(value) : whatIf.values[k].value,
+  );
+  return { what: whatIf.id, left, right };
 }

@@ -4,7 +4,7 @@ import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.
 import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
 import { bestOf, ROWS, scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
-import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
+import { packTask, readWork, tableOf, unpackTask } from '../../src/learn/task.js';
 import { seedAt } from '../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
@@ -174,6 +174,33 @@ test('a table of the work quotes what needs it and starts no formula', () => {
     'run 1,fates_per_level: added,0,6',
     '',
   ]);
+});
+
+test('a work is read from the file that it was saved as, and nothing else is one', () => {
+  const work = {
+    assignment: 'Seams',
+    surface: 'x = 1',
+    name: 'Ada',
+    group: '7b',
+    answers: [{ question: 'Why?', answer: 'So.' }],
+    predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
+    runs: [{ label: 'queue', figures: null }],
+  };
+  expect(readWork(JSON.stringify(work))).toEqual(work);
+  // A file from before there were names.
+  const { name: _name, group: _group, ...old } = work;
+  expect(readWork(JSON.stringify(old))).toMatchObject({ name: '', group: '' });
+  for (const bad of [
+    '',
+    '{',
+    'null',
+    '[]',
+    '3',
+    '{}',
+    JSON.stringify({ ...work, answers: 'no' }),
+    JSON.stringify({ ...work, runs: [null] }),
+  ])
+    expect(readWork(bad), bad).toBe(null);
 });
 
 test('of two figures the better one is marked, unless they are written alike', () => {

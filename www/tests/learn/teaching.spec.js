@@ -1,10 +1,13 @@
 /** The lesson in a class: presenting, the hand-out, assignments and the race. */
-import { readFile } from 'node:fs/promises';
+import { readFile, writeFile } from 'node:fs/promises';
 import { expect, test } from '@playwright/test';
 import { axe } from '../axe.js';
 import { live, openLesson, overflow, TORUS } from './helpers.js';
+import { settledSlide } from './rehearsal.js';
 
-test('a clicker goes from stop to stop, and each has its own address', async ({ page }) => {
+test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', async ({
+  page,
+}) => {
   const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
   await live(page, 'rings');
   await expect(page.locator('.chapter:visible')).toHaveCount(1);
@@ -13,54 +16,89 @@ test('a clicker goes from stop to stop, and each has its own address', async ({ 
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring&mode=present');
   await expect(page.locator('#predict-ring')).toBeVisible();
   await expect(page.locator('#predict-order')).toBeHidden();
-  // Letters in a box are text.
-  await page.getByLabel('Particles in ring 12').fill('7');
-  await expect(page.locator('#rings .notes')).toBeHidden();
-  await page.getByRole('button', { name: 'Notes' }).click();
-  await expect(page.locator('#rings .notes')).toBeVisible();
-  await page.keyboard.press('PageUp');
-  await expect(page.locator('#predict-ring')).toBeHidden();
+  // In a box, letters and spaces are text.
+  await page.getByLabel('Particles in ring 12').fill('70');
+  await page.keyboard.press('b');
+  await expect(page.locator('.present-blank')).toBeHidden();
+  // The guess is revealed, then the figure goes through its levels, and back.
+  await page.keyboard.press('PageDown');
+  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open');
+  const level = page.locator('#rings').getByRole('slider', { name: 'Level' });
+  await page.keyboard.press('PageDown');
+  await expect(level).toHaveValue('0');
+  await page.keyboard.press('ArrowRight');
+  await expect(level).toHaveValue('5');
+  await page.keyboard.press('ArrowLeft');
+  await expect(level).toHaveValue('0');
+  // On a blank wall a key only ends the blank.
+  await page.keyboard.press('b');
+  await expect(page.locator('.present-blank')).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect(page.locator('.present-blank')).toBeHidden();
+  await expect(level).toHaveValue('0');
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   await page.keyboard.press('Escape');
   await expect(page.locator('.chapter:visible')).toHaveCount(12);
-  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring');
   clean();
 });
 
-test('no slide has a control or a caption under the bar of the presenter', async ({ page }) => {
-  test.slow();
-  const sizes = [
-    { width: 1280, height: 800 },
-    { width: 1920, height: 1080 },
-  ];
-  await openLesson(page, { hash: '#why&mode=present', ...sizes[0] });
-  await expect(page.locator('.present-bar')).toBeVisible();
-  const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
-  expect(stops).toHaveLength(21);
-  // Comparison, race and cards are longer than a window, and are scrolled.
-  for (const stop of stops.filter((id) => !['what-if', 'race', 'differences'].includes(id))) {
-    await page.evaluate((id) => {
-      location.hash = `#${id}&mode=present`;
-    }, stop);
-    await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
-    for (const stage of await page.locator('[data-current] [data-figure]').filter({ visible: true }).all())
-      await expect(stage).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
-    for (const size of sizes) {
-      await page.setViewportSize(size);
-      const below = () =>
-        page.evaluate(() => {
-          const bar = document.querySelector('.present-bar')?.getBoundingClientRect().top ?? 0;
-          const parts = document.querySelectorAll('[data-current] :is(input, button, select, figcaption, .scale)');
-          return [...parts]
-            .filter((part) => /** @type {HTMLElement} */ (part).offsetParent)
-            .filter((part) => part.getBoundingClientRect().bottom > bar + 1)
-            .map((part) => part.outerHTML.slice(0, 80));
-        });
-      // A figure takes its new size with the next frame.
-      await expect.poll(below, { message: `${stop} at ${size.width}` }).toEqual([]);
-    }
-  }
+test('the notes have a window of their own, with the next stop and a clock, which steers, too', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
+  await live(page, 'rings');
+  const [notes] = await Promise.all([page.waitForEvent('popup'), page.keyboard.press('n')]);
+  await expect(notes.getByRole('heading', { name: 'Rings' })).toBeVisible();
+  await expect(notes.getByText('Breadth first and depth first')).toBeVisible();
+  await expect(notes.getByText('Next: On a plane, ring 12 has 72')).toBeVisible();
+  await expect(notes.getByText(/0:0\d since/)).toBeVisible();
+  await expect(page.locator('#rings .notes')).toBeHidden();
+  await notes.keyboard.press('PageDown');
+  await expect(notes.getByRole('heading', { name: 'On a plane, ring 12 has 72' })).toBeVisible();
+  await expect(page.locator('#predict-ring')).toBeVisible();
+  const [closed] = await Promise.all([notes.waitForEvent('close'), page.keyboard.press('Escape')]);
+  expect(closed.isClosed()).toBe(true);
+  clean();
 });
+
+for (const [width, height, letters] of [
+  [1920, 1080, 24],
+  [1280, 800, 16],
+])
+  test(`a rehearsal at ${width} × ${height}: every slide is whole, with a large figure and large letters`, async ({
+    page,
+  }, info) => {
+    test.setTimeout(300_000);
+    const { clean } = await openLesson(page, { hash: '#why&mode=present', width, height });
+    await expect(page.locator('.present-bar')).toBeVisible();
+    const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
+    const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
+    for (const stop of stops) {
+      await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
+      let presses = 0;
+      let least = 1;
+      let seen = await settledSlide(page);
+      for (;;) {
+        const name = `${stop}, press ${presses}`;
+        expect(seen.beyond, name).toEqual([]);
+        expect(seen.letters, `${name}: ${seen.smallest}`).toBeGreaterThanOrEqual(letters);
+        expect(seen.words, name).toBeGreaterThan(2);
+        // A figure, or words that fill the slide.
+        if (seen.figure === null) expect(seen.words, name).toBeGreaterThan(20);
+        else expect(seen.figure, name).toBeGreaterThanOrEqual(0.6);
+        least = Math.min(least, seen.figure ?? 1);
+        if (stop === stops.at(-1) && presses === 15) break;
+        await page.keyboard.press('Space');
+        presses += 1;
+        // The address changes before the slide does.
+        if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
+        seen = await settledSlide(page);
+      }
+      const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
+      rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
+    }
+    await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
+    clean();
+  });
 
 test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
   await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
@@ -163,6 +201,15 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   const holes = work.runs.map((/** @type {any} */ { figures }) => figures['Largest hole, over the ideal']);
   expect(holes[0]).toBeLessThan(holes[1]);
   expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,,"The left one, ""clearly""."');
+  const particles = (await saved('Save the particles')).trim().split('\r\n');
+  expect(particles[0]).toBe('run,particle,level,parent,radius,x,y,z,normal_x,normal_y,normal_z');
+  const counts = work.runs.map((/** @type {any} */ run) => run.particles);
+  expect(particles).toHaveLength(1 + counts[0] + counts[1]);
+  // The torus of the formula, in the coordinates of each row.
+  for (const row of particles.slice(1)) {
+    const [, , , , , x, y, z] = row.split(',').map(Number);
+    expect(Math.hypot(Math.hypot(x, y) - 0.7, z)).toBeCloseTo(0.3, 3);
+  }
   // A reload loses nothing, and the file bears the name.
   await task.getByLabel('Your name').fill('Ada L.');
   await page.reload();
@@ -171,6 +218,78 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   const [file] = await Promise.all([page.waitForEvent('download'), button.click()]);
   expect(file.suggestedFilename()).toBe('Seams-Ada-L.json');
   clean();
+});
+
+/** Works of a class as its learners save them, each with a guess of its own. @param {number} count */
+const classOf = (count) =>
+  Array.from({ length: count }, (_, k) => ({
+    name: `work-${k}.json`,
+    mimeType: 'application/json',
+    buffer: Buffer.from(
+      JSON.stringify({
+        assignment: 'Seams',
+        surface: 'a torus',
+        name: `Learner ${String(k).padStart(2, '0')}`,
+        group: k % 2 ? '7b' : '7a',
+        answers: [{ question: 'Why?', answer: `<b>Because</b> of ${k}` }],
+        predictions: [
+          { stop: 'predict-cost', question: 'What takes more?', guess: 'alike', answer: 'Placing took 13.' },
+        ],
+        runs: [{ label: '0.7', figures: { 'Largest hole, over the ideal': 1.23 } }],
+      }),
+    ),
+  }));
+
+test('a lecturer drops thirty files and sees the answers beside what the run says', async ({ page }) => {
+  const { clean } = await openLesson(page);
+  await page.getByRole('button', { name: 'Assignment' }).click();
+  await page.getByRole('link', { name: 'Collect answers' }).click();
+  const box = page.getByLabel(/Drop the JSON files/);
+  const damaged = { name: 'notes.json', mimeType: 'application/json', buffer: Buffer.from('{"answers": 3}') };
+  await box.setInputFiles([...classOf(30), damaged]);
+  const collected = page.locator('#collect');
+  await expect(collected.getByRole('status')).toHaveText(
+    '30 works collected. Not the work of a learner, and left out: notes.json.',
+  );
+  // A file that comes again counts once, and a file that is none takes nothing away.
+  await box.setInputFiles([...classOf(1), damaged]);
+  await expect(collected.getByRole('status')).toContainText('30 works collected.');
+  const table = collected.getByRole('region', { name: 'Answers to Seams, on a torus' });
+  await expect(table.locator('tbody tr')).toHaveCount(31);
+  await expect(table.locator('tbody tr').first()).toContainText('Placing took 13.');
+  const second = table.locator('tbody tr').nth(2);
+  await expect(second).toContainText('Learner 02');
+  await expect(second).toContainText('<b>Because</b> of 2');
+  await expect(second).toContainText('Both about the same');
+  const runs = collected.getByRole('region', { name: 'What their runs give' });
+  await expect(runs.getByRole('row', { name: '0.7' })).toContainText(/1\.23.*30/);
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    collected.getByRole('button', { name: 'Save all as one CSV' }).click(),
+  ]);
+  const rows = (await readFile(await file.path(), 'utf8')).trim().split('\r\n');
+  expect(rows[0]).toBe('work,part,name,number,value');
+  expect(rows).toContain('16,answer,Why?,,<b>Because</b> of 1');
+  expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+  for (const width of [1280, 390, 320]) {
+    await page.setViewportSize({ width, height: 760 });
+    expect(await overflow(page)).toBe(0);
+  }
+  clean();
+});
+
+test('the values of a comparison are part of the address', async ({ page }) => {
+  await openLesson(page, { hash: '#what-if-tolerance&left=0.55&right=none' });
+  const bench = page.locator('#bench');
+  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.55', { timeout: 60_000 });
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.4');
+  await bench.getByLabel('Right', { exact: true }).selectOption('0.95');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-tolerance&left=0.55&right=0.95');
+  await page.reload();
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.95', { timeout: 60_000 });
+  // They do not follow to another stop.
+  await page.getByRole('link', { name: 'Rings', exact: true }).click();
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
 });
 
 test('a damaged assignment is named, and the lesson stays', async ({ page }) => {

@@ -44,17 +44,17 @@ export async function cost({ lab, stops }) {
     ['rounds', 'Rounds'],
   ]);
   const most = kinds.map(([kind]) => Math.max(1e-9, ...rows.map((row) => row[kind])));
+  const isOpen = () => stops.isOpen('predict-cost');
   const cell = (/** @type {number} */ value, /** @type {number} */ of) =>
     h(
       'td',
       null,
-      h('span', { class: 'cost-number' }, formatSignificant(value, 3)),
-      h('span', { class: 'cost-bar', style: { width: `${(100 * value) / of}%` } }),
+      h('span', { class: 'cost-number' }, () => (isOpen() ? formatSignificant(value, 3) : '?')),
+      h('span', { class: 'cost-bar', style: { width: () => `${isOpen() ? (100 * value) / of : 0}%` } }),
     );
-  const isOpen = () => stops.isOpen('predict-cost');
   const table = h(
     'table',
-    { class: 'cost', hidden: () => !isOpen() },
+    { class: 'cost' },
     h('caption', null, `Here: ${formatCount(particles)} particles of the front, ${formatCount(others)} of the system`),
     h(
       'thead',
@@ -79,6 +79,5 @@ export async function cost({ lab, stops }) {
       ),
     ),
   );
-  const waiting = h('p', { class: 'figure-count', hidden: isOpen }, 'The bars come with the answer.');
-  return [table, waiting];
+  return [table];
 }

@@ -7,7 +7,7 @@ import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
 import { FATES, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
-import { fill, h, s } from '../../ui/dom.js';
+import { fill, h, live, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { createChart, createRange } from '../parts.js';
 
@@ -95,6 +95,10 @@ export async function sixChildren({ lab, stops }) {
     fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
   }
   await choose(0);
+  // The answer is about the first child.
+  live(place, () => {
+    if (stops.isOpen('predict-children') && chosen.peek() === 0) void choose(1);
+  });
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 

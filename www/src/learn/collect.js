@@ -1,0 +1,217 @@
+/**
+ * Collect: a lecturer drops the files that learners saved, and sees their answers side by side with what the run says.
+ * The files are read in this page and go nowhere.
+ */
+import { button } from '../ui/button.js';
+import { fill, h, uniqueId } from '../ui/dom.js';
+import { formatCount, MISSING, plural } from '../ui/format.js';
+import { download } from '../ui/share.js';
+import { loadSheet } from '../ui/sheet.js';
+import sheet from './collect.css?url';
+import { PREDICTIONS } from './predictions.js';
+import { ROWS } from './score.js';
+import { readWork, tableOfAll } from './task.js';
+
+/** @import { Guessed, Work } from './types.js' */
+
+/** A file that is larger, in bytes, is not read. */
+const LARGEST = 8e6;
+
+/** @param {HTMLElement} host */
+export async function mountCollect(host) {
+  await loadSheet(sheet);
+  host.hidden = false;
+  if (host.childElementCount > 0) return;
+  /** What was read, by its text, so that a file counts once. @type {Map<string, Work>} */
+  const works = new Map();
+  const id = uniqueId('files');
+  const input = h('input', {
+    type: 'file',
+    id,
+    accept: '.json,application/json',
+    prop: { multiple: true },
+    on: { change: () => void take([...(input.files ?? [])]) },
+  });
+  const told = h('p', { role: 'status' });
+  const tables = h('div', { class: 'collected' });
+  const save = button(
+    {
+      hidden: true,
+      press: () => download(new Blob([tableOfAll(inOrder())], { type: 'text/csv;charset=utf-8' }), 'collected.csv'),
+    },
+    'Save all as one CSV',
+  );
+  const clear = button(
+    {
+      hidden: true,
+      press: () => {
+        works.clear();
+        write([]);
+      },
+    },
+    'Clear',
+  );
+  fill(
+    host,
+    h('h2', { id: 'collect-title' }, 'Collect answers'),
+    h('label', { class: 'drop', for: id }, 'Drop the JSON files of your learners here, or choose them: ', input),
+    h('p', { class: 'quiet' }, 'They are read in this page and sent nowhere. A reload forgets them.'),
+    told,
+    h('div', { class: 'controls' }, save, clear),
+    tables,
+  );
+  const inOrder = () =>
+    [...works.values()].sort((a, b) => a.group.localeCompare(b.group) || a.name.localeCompare(b.name));
+
+  /** @param {readonly File[]} files */
+  async function take(files) {
+    const refused = [];
+    for (const file of files) {
+      const text = file.size > LARGEST ? '' : await file.text().catch(() => '');
+      const work = readWork(text);
+      if (work) works.set(text, work);
+      else refused.push(file.name);
+    }
+    input.value = '';
+    write(refused);
+  }
+
+  /** @param {readonly string[]} refused  names of files */
+  function write(refused) {
+    told.textContent = [
+      `${plural(works.size, 'work')} collected.`,
+      refused.length > 0 ? `Not the work of a learner, and left out: ${refused.join(', ')}.` : '',
+    ].join(' ');
+    for (const one of [save, clear]) one.hidden = works.size === 0;
+    /** @type {Map<string, Work[]>} */
+    const groups = new Map();
+    for (const work of inOrder()) {
+      const key = `${work.assignment || 'Assignment'}, on ${work.surface}`;
+      groups.set(key, [...(groups.get(key) ?? []), work]);
+    }
+    fill(
+      tables,
+      [...groups].map(([title, group]) => [answerTable(title, group), runTable(group)]),
+    );
+  }
+
+  for (const type of ['dragenter', 'dragover'])
+    host.addEventListener(type, (event) => {
+      event.preventDefault();
+      host.dataset.over = '';
+    });
+  host.addEventListener('dragleave', () => {
+    delete host.dataset.over;
+  });
+  host.addEventListener('drop', (event) => {
+    event.preventDefault();
+    delete host.dataset.over;
+    void take([...(event.dataTransfer?.files ?? [])]);
+  });
+}
+
+/** A table that is wider than the page is scrolled by itself. @param {string} name @param {Node} table */
+const scrolled = (name, table) =>
+  h('div', { class: 'collect-table', role: 'region', 'aria-label': name, tabindex: 0 }, table);
+
+/** The questions of works in the order of their first appearance. @param {readonly { question: string }[]} all */
+const questionsOf = (all) => [...new Set(all.map(({ question }) => question))];
+
+/** A guess in the words of the page. @param {Guessed | undefined} guessed */
+function guessWords(guessed) {
+  if (!guessed || guessed.guess === null) return MISSING;
+  const choices = Object.hasOwn(PREDICTIONS, guessed.stop) ? PREDICTIONS[guessed.stop].choices : undefined;
+  return choices?.find(({ value }) => value === guessed.guess)?.label ?? String(guessed.guess);
+}
+
+/**
+ * What learners wrote and guessed, one in a row, below what the run says.
+ * @param {string} title @param {readonly Work[]} works
+ */
+function answerTable(title, works) {
+  const asked = questionsOf(works.flatMap(({ answers }) => answers));
+  const all = works.flatMap(({ predictions }) => predictions);
+  const guessed = questionsOf(all);
+  const cell = (/** @type {string | undefined} */ words) => h('td', null, words || MISSING);
+  const says = guessed.map((question) => all.find((one) => one.question === question && one.answer)?.answer);
+  const table = h(
+    'table',
+    { class: 'compare' },
+    h('caption', null, `${title}: ${plural(works.length, 'work')}`),
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        ['Name', 'Class', ...asked, ...guessed].map((name) => h('th', { scope: 'col' }, name)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      guessed.length > 0
+        ? h(
+            'tr',
+            { class: 'says' },
+            h('th', { scope: 'row', colspan: 2 + asked.length }, 'The run says'),
+            says.map(cell),
+          )
+        : null,
+      works.map(({ name, group, answers, predictions }) =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, name || MISSING),
+          cell(group),
+          asked.map((question) => cell(answers.find((one) => one.question === question)?.answer)),
+          guessed.map((question) => cell(guessWords(predictions.find((one) => one.question === question)))),
+        ),
+      ),
+    ),
+  );
+  return scrolled(`Answers to ${title}`, table);
+}
+
+/** The figures of the runs that learners made, each with the number of its learners. @param {readonly Work[]} works */
+function runTable(works) {
+  /** @type {Map<string, { run: any, count: number }>} */
+  const found = new Map();
+  for (const run of works.flatMap(({ runs }) => runs)) {
+    const { label, figures } = /** @type {any} */ (run);
+    const key = JSON.stringify([label, figures]);
+    found.set(key, { run, count: (found.get(key)?.count ?? 0) + 1 });
+  }
+  if (found.size === 0) return null;
+  const table = h(
+    'table',
+    { class: 'compare' },
+    h('caption', null, 'What their runs give'),
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        ['Run', ...ROWS.map(({ name }) => name), 'Learners'].map((name) => h('th', { scope: 'col' }, name)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      [...found.values()].map(({ run, count }) =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, String(run.label)),
+          ROWS.map(({ name, write }) => {
+            const value = run.figures?.[name];
+            return h('td', null, typeof value === 'number' ? write(value) : MISSING);
+          }),
+          h('td', null, formatCount(count)),
+        ),
+      ),
+    ),
+  );
+  return scrolled('What their runs give', table);
+}
