@@ -5,13 +5,20 @@
  */
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
-import { fill, h } from '../ui/dom.js';
+import { byId, fill, h } from '../ui/dom.js';
+import { FIGURES } from './chapters/index.js';
 import { reasonOf } from './figure.js';
+import { Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
 
 /** @import { HandoutOptions } from './types.js' */
 
 const UNKNOWN = 'The run has not been asked yet. Print from the page’s own button to have the answer here.';
+
+/** After so many frames a picture has turned. */
+const FRAMES = 60;
+/** The questions whose figure withholds something until they are answered: it is shown with the answer. */
+const WITHHELD = ['predict-cost', 'predict-ring', 'predict-hole'];
 
 /**
  * @param {HTMLElement} host  the last page
@@ -22,11 +29,21 @@ export function createHandout(host, { figures, lab, compare, say }) {
   /** The answers of the run, by the id of the question. @type {Map<string, string>} */
   const known = new Map();
   const ids = Object.keys(PREDICTIONS);
+  /** Figures of questions that are answered. @type {Map<string, Element>} */
+  const shown = new Map();
+  const open = new Stops();
+  for (const id of ids) open.state(id).value = true;
 
   function write() {
     const rows = ids.map((id) => {
       const question = document.querySelector(`#${id} .predict-question`)?.textContent ?? '';
-      return h('li', null, h('p', { class: 'answer-question' }, question), h('p', null, known.get(id) ?? UNKNOWN));
+      return h(
+        'li',
+        null,
+        h('p', { class: 'answer-question' }, question),
+        h('p', null, known.get(id) ?? UNKNOWN),
+        shown.get(id),
+      );
     });
     fill(host, title, h('ol', { class: 'answer-list' }, rows));
   }
@@ -45,6 +62,12 @@ export function createHandout(host, { figures, lab, compare, say }) {
       for (const { id } of stage.closest('.chapter')?.querySelectorAll('.predict') ?? []) await ask(id).catch(() => {});
     });
 
+  /** Makes the figure of an answered question. @param {string} id */
+  async function show(id) {
+    const name = byId(id).closest('.chapter')?.querySelector('figure > .stage')?.getAttribute('data-figure') ?? '';
+    if (!shown.has(id)) shown.set(id, h('div', { class: 'stage' }, await FIGURES[name]({ lab, stops: open })));
+  }
+
   /** Makes every figure and asks the run for every answer. */
   async function prepare() {
     for (const { load } of figures) await load();
@@ -56,7 +79,10 @@ export function createHandout(host, { figures, lab, compare, say }) {
       image.loading = 'eager';
       await image.decode().catch(() => {});
     }
+    for (const id of WITHHELD) await show(id).catch(() => {});
     write();
+    // The pictures take their sizes, and that of the hole turns to it.
+    for (let frame = 0; frame < FRAMES; frame += 1) await new Promise(requestAnimationFrame);
   }
 
   const isWhole = () => known.size === ids.length;

@@ -131,7 +131,17 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   // The figures of a scorecard that lead to a place are buttons on the screen.
   await expect(page.locator('button:not(.figure-place)').filter({ visible: true })).toHaveCount(0);
   for (const name of ['why', 'rest']) await expect(page.locator(`[data-figure="${name}"] canvas`)).toBeVisible();
-  expect((await page.pdf({ format: 'A4' })).length).toBeGreaterThan(100_000);
+  // What the questions withhold is printed with the answers: the bars and the ring around the hole.
+  await expect(page.locator('.answer-list .cost')).not.toContainText('?');
+  await expect(page.locator('.answer-list .chart .fate-new').first()).toBeVisible();
+  await expect(page.locator('.answer-list .picture[data-drawn]')).toHaveCount(2);
+  // A question stands beside its figure.
+  const [asked, drawn] = [page.locator('#predict-newton'), page.locator('#circle figure')];
+  const [left, right] = [await asked.boundingBox(), await drawn.boundingBox()];
+  expect(left && right && left.x + left.width <= right.x && Math.abs(left.y - right.y) < 20).toBe(true);
+  const sheets = await page.pdf({ format: 'A4', preferCSSPageSize: true });
+  expect(sheets.length).toBeGreaterThan(100_000);
+  expect(sheets.toString('latin1').match(/\/Type\s*\/Page\b/g)?.length).toBeLessThanOrEqual(12);
 });
 
 test('what the browser prints by itself has the answers of the figures that are live, and the page says what is missing', async ({
