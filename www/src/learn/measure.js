@@ -3,8 +3,9 @@ import { NO_PARENT } from '../engine/core-numbers.js';
 import { between, createGrid } from '../ui/neighbours.js';
 
 /**
+ * @import { Lane } from '../engine/lesson/types.js'
  * @import { LessonParticles } from '../engine/types.js'
- * @import { LabRun } from './types.js'
+ * @import { LabRun, Snapshot } from './types.js'
  */
 
 /**
@@ -82,3 +83,9 @@ export function asFineEverywhere(radii) {
   const least = Math.min(...all);
   return all.reduce((sum, radius) => sum + (radius / least) ** 2, 0);
 }
+
+/**
+ * The last snapshot that had cost no more than this; the first where each had.
+ * @param {readonly Snapshot[]} shots  in their order @param {(lane: Lane) => number} costOf @param {number} cost
+ */
+export const shotAt = (shots, costOf, cost) => shots.findLast(({ lane }) => costOf(lane) <= cost) ?? shots[0];

@@ -47,7 +47,7 @@ export function createRange({ name, max, value = 0, say, change }) {
 
 /**
  * A button that moves a range from its beginning to its end. Under reduced motion it goes there at once.
- * @param {ReturnType<typeof createRange>} range @param {{ label: string, totalMs: number }} about
+ * @param {ReturnType<typeof createRange>} range @param {{ label: string, totalMs: number | (() => number) }} about
  */
 export function createPlay(range, { label, totalMs }) {
   const max = Number(range.input.max);
@@ -59,10 +59,13 @@ export function createPlay(range, { label, totalMs }) {
   function play() {
     if (reducedMotion()) return range.set(max);
     if (range.get() >= max) range.set(0);
-    timer.value = window.setInterval(() => {
-      range.set(range.get() + 1);
-      if (range.get() >= max) stop();
-    }, totalMs / Math.max(1, max));
+    timer.value = window.setInterval(
+      () => {
+        range.set(range.get() + 1);
+        if (range.get() >= max) stop();
+      },
+      (typeof totalMs === 'number' ? totalMs : totalMs()) / Math.max(1, max),
+    );
   }
   const element = button({ press: () => (timer.peek() ? stop() : play()) }, () =>
     timer.value ? [icon('pause'), 'Pause'] : [icon('play'), label],

@@ -12,13 +12,12 @@ import { USUAL } from './lab.js';
 import { nearestDistances } from './measure.js';
 import { createSelect } from './parts.js';
 import { byValue, Orbit, Picture } from './picture.js';
-import { scoreOf } from './score.js';
-import { createScorecard } from './scorecard.js';
+import { createReplay, MOST_SHOTS } from './replay.js';
 
 /**
  * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
  * @import { LessonParticles, Signal } from '../engine/types.js'
- * @import { Lab } from './types.js'
+ * @import { Lab, Snapshot } from './types.js'
  */
 
 /** Particles of the front: enough to see the difference, few enough to wait for the other. */
@@ -162,7 +161,9 @@ class Course {
   async run() {
     const kind = this.kind.peek();
     const { orbit, lanes, names } = this.lay();
-    const own = raceOn(lanes);
+    /** @type {[Snapshot[], Snapshot[]]} */
+    const films = [[], []];
+    const own = raceOn(lanes, films);
     const isOver = () => this.race.peek() !== own;
     this.race.value = own;
     this.status.value = 'Both are running. You may turn the pictures.';
@@ -176,26 +177,28 @@ class Course {
       const done = own.start(this.#lab.surface, [settings, opponentOf(settings)]);
       if (this.isPaused.peek()) own.pause();
       await done;
-      const ends = [await own.particles(0), await own.particles(1)];
       if (isOver()) return;
-      for (const [k, particles] of ends.entries()) lanes[k].show(particles);
       const ratio = own.lanes[1].workMs / own.lanes[0].workMs;
-      const scorecard = createScorecard((place, side) => {
-        for (const [k, { picture }] of lanes.entries()) picture.ringed.value = k === side ? place : null;
-        if (place) orbit.turnTo(place.normal);
+      // The last snapshots are answered in their order.
+      await Promise.all([own.particles(0), own.particles(1)]);
+      if (isOver()) return;
+      const replay = createReplay(this.#lab, {
+        films,
+        names,
+        isAdaptive: kind === 'adaptive',
+        show: (k, { lane, particles }) => {
+          lanes[k].tell(lane);
+          lanes[k].show(particles);
+        },
+        point: (place, side) => {
+          for (const [k, { picture }] of lanes.entries()) picture.ringed.value = k === side ? place : null;
+          if (place) orbit.turnTo(place.normal);
+        },
       });
-      fill(this.result, scorecard.element, marksOf(kind, ratio));
+      fill(this.result, replay.element, marksOf(kind, ratio));
       this.stop();
       this.status.value = 'Measuring both';
-      const scores = [];
-      for (const [k, { progress }] of own.lanes.entries())
-        scores.push(
-          await scoreOf(this.#lab, ends[k], {
-            evaluations: progress?.evaluations ?? 0,
-            isAdaptive: kind === 'adaptive',
-          }),
-        );
-      scorecard.tell(names, scores);
+      await replay.seek();
       if (!this.race.peek()) this.status.value = '';
     } catch (error) {
       if (isOver() || kindOf(error) === 'given_up') return;
@@ -205,21 +208,36 @@ class Course {
   }
 }
 
-/** A race that shows itself on its lanes. @param {readonly ReturnType<typeof createLane>[]} lanes */
-function raceOn(lanes) {
+/**
+ * A race that shows itself on its lanes, and keeps snapshots of both.
+ * @param {readonly ReturnType<typeof createLane>[]} lanes @param {[Snapshot[], Snapshot[]]} films
+ */
+function raceOn(lanes, films) {
   const lastMs = [-Infinity, -Infinity];
+  const [turns, strides] = [
+    [0, 0],
+    [1, 1],
+  ];
   const race = new Race({
-    onLane(k, lane) {
+    onLane(k, { progress, workMs }) {
+      const lane = { progress, workMs };
+      const isDone = progress?.is_done ?? false;
       lanes[k].tell(lane);
-      const now = performance.now();
-      if (!lane.progress?.is_done && now - lastMs[k] < PICTURE_MS) return;
-      lastMs[k] = now;
-      race.particles(k).then(
-        (particles) => {
-          if (particles.radii.length > 0) lanes[k].show(particles);
-        },
-        () => {},
-      );
+      turns[k] += 1;
+      if (!isDone && turns[k] % strides[k] !== 0) return;
+      const keep = (/** @type {LessonParticles} */ particles) => {
+        if (particles.radii.length === 0) return;
+        films[k].push({ lane, particles });
+        if (films[k].length > MOST_SHOTS && !isDone) {
+          films[k].splice(0, Infinity, ...films[k].filter((_, shot) => shot % 2 === 0));
+          strides[k] *= 2;
+        }
+        const now = performance.now();
+        if (!isDone && now - lastMs[k] < PICTURE_MS) return;
+        lastMs[k] = now;
+        lanes[k].show(particles);
+      };
+      race.particles(k).then(keep, () => {});
     },
   });
   return race;

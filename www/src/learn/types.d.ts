@@ -1,5 +1,5 @@
 // Types of the learn page: its runs, its pictures, its questions and its choices.
-import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
+import type { Lane, LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
 import type { LessonClient, LessonParticles } from '../engine/types.js';
 import type { Palette } from '../engine/view/types.js';
 import type { FormulaSurface } from '../ui/types.js';
@@ -96,6 +96,17 @@ export type Work = {
   predictions: Guessed[];
   runs: object[];
 };
+/** A lane of a race at the end of one of its turns. */
+export type Snapshot = { lane: Lane; particles: LessonParticles };
+export interface ReplayOptions {
+  /** the snapshots of each lane in their order, the last at its end */
+  films: readonly Snapshot[][];
+  names: readonly string[];
+  isAdaptive: boolean;
+  show: (side: number, shot: Snapshot) => void;
+  /** shows a place of the particles on a side; null: none */
+  point: (place: ScorePlace | null, side: number) => void;
+}
 /** `ready` is fulfilled once it is live, and never if it cannot be made. */
 export type Figure = { stage: HTMLElement; load: () => Promise<void>; ready: Promise<void> };
 

@@ -1,7 +1,14 @@
 /** The parts of the lesson that need no browser. */
 import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.js';
-import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
+import {
+  asFineEverywhere,
+  nearestDistances,
+  ringsOf,
+  sharpestBend,
+  shotAt,
+  stepOfRest,
+} from '../../src/learn/measure.js';
 import { bestOf, ROWS, scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { packTask, readWork, tableOf, unpackTask } from '../../src/learn/task.js';
@@ -201,6 +208,12 @@ test('a work is read from the file that it was saved as, and nothing else is one
     JSON.stringify({ ...work, runs: [null] }),
   ])
     expect(readWork(bad), bad).toBe(null);
+});
+
+test('at a cost a lane stands where it last had spent no more', () => {
+  const shots = /** @type {any[]} */ ([{ lane: 10 }, { lane: 20 }, { lane: 20 }, { lane: 40 }]);
+  const at = (/** @type {number} */ cost) => shots.indexOf(shotAt(shots, (lane) => Number(lane), cost));
+  expect([0, 10, 19, 20, 39, 40, 1e9].map(at)).toEqual([0, 0, 0, 2, 2, 3, 3]);
 });
 
 test('of two figures the better one is marked, unless they are written alike', () => {

@@ -329,6 +329,26 @@ for (const [kind, other] of [
     expect(Number(rounds[1].replace(/\D/g, ''))).toBeGreaterThan(50);
     await expect(race.locator('.picture[data-drawn]')).toHaveCount(2);
     await expect(race.getByRole('img', { name: /times as long as the front/ })).toBeVisible();
+    // Both at the same cost: the front is done where the other has hardly begun, and neither has spent more.
+    const counts = async (/** @type {string} */ name) => {
+      const cells = await race.locator('.lane dt', { hasText: name }).locator('+ dd').allTextContents();
+      return cells.map((cell) => Number(cell.replace(/\D/g, '')));
+    };
+    const ends = await counts('Evaluations');
+    await race.getByRole('slider', { name: 'Spent' }).fill('100');
+    const half = await counts('Evaluations');
+    expect(half[0]).toBe(Math.min(ends[0], half[0]));
+    expect(half[1]).toBeLessThanOrEqual(Math.max(...ends) / 2);
+    expect(half[1]).toBeGreaterThan(Math.max(...ends) / 4);
+    expect(Number(await race.locator('.picture').last().getAttribute('data-drawn'))).toBe(
+      (await counts('Particles'))[1],
+    );
+    await race.getByRole('slider', { name: 'Spent' }).fill('0');
+    expect((await counts('Particles'))[1]).toBeLessThan(100);
+    await race.getByLabel('Both at the same').selectOption('seconds');
+    await race.getByRole('button', { name: 'Replay' }).click();
+    await expect.poll(() => counts('Evaluations')).toEqual(ends);
+    await expect(race.getByRole('columnheader', { name: other })).toBeVisible();
     await expect(page.getByRole('cell', { name: '373' })).toBeVisible();
     clean();
   });
