@@ -1,12 +1,16 @@
 //! Particles that follow a moving surface, beside fresh runs: `docs/flow.md` is what this writes.
 //!
 //! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles. `--count N` takes
-//! another number, `--adaptive` takes sizes that follow the curvature, and names of sweeps take these alone.
+//! another number, `--adaptive` takes sizes that follow the curvature, and `--random N` the motions of N random surfaces instead, on which the
+//! constants of the flow are chosen.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
 use marching_particles::{Figures, Run, Sampling, Settings, SizeMode};
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 
@@ -22,15 +26,30 @@ const COMPARED_EVERY: u32 = 25;
 
 /// A surface, the parameter `q` that moves it, and the half-width of the box.
 struct Sweep {
-    name: &'static str,
-    formula: &'static str,
+    name: Cow<'static, str>,
+    formula: Cow<'static, str>,
     from: f64,
     to: f64,
     half: f64,
 }
 
 const fn sweep(name: &'static str, formula: &'static str, [from, to]: [f64; 2], half: f64) -> Sweep {
-    Sweep { name, formula, from, to, half }
+    Sweep { name: Cow::Borrowed(name), formula: Cow::Borrowed(formula), from, to, half }
+}
+
+/// A level set of three waves, each of which runs at a speed of its own.
+fn random_sweep(seed: u64) -> Sweep {
+    let mut random = Pcg32::new(seed, 0);
+    let mut within = |most: f64| most * (f64::from(random.next_u32()) / f64::from(u32::MAX) * 2.0 - 1.0);
+    let waves: Vec<String> = (0..3)
+        .map(|_| {
+            let [x, y, z] = [(); 3].map(|()| within(3.0));
+            let [phase, speed] = [PI, 1.5].map(&mut within);
+            format!("sin({x:.3}*x+{y:.3}*y+{z:.3}*z+{phase:.3}+{speed:.3}*q)")
+        })
+        .collect();
+    let formula = format!("{}+{:.3}+{:.3}*q", waves.join("+"), within(0.8), within(0.5));
+    Sweep { name: format!("`{formula}`").into(), formula: formula.into(), from: 0.0, to: 1.0, half: 1.5 }
 }
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
@@ -74,19 +93,19 @@ const COLUMNS: &str = "\
 | --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |";
 
 fn main() {
-    let (mut counts, mut sampling, mut names) = (Vec::new(), Sampling::Uniform, Vec::new());
+    let (mut counts, mut sampling, mut sweeps) = (Vec::new(), Sampling::Uniform, Vec::from(SWEEPS));
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
+        let mut number = || -> u32 {
+            arguments.next().and_then(|number| number.parse().ok()).expect("a number after the option")
+        };
         match argument.as_str() {
-            "--count" => {
-                counts.push(
-                    arguments.next().and_then(|number| number.parse().ok()).expect("--count takes a number"),
-                );
-            }
+            "--count" => counts.push(number()),
             "--adaptive" => sampling = Sampling::Adaptive,
+            "--random" => sweeps = (0..u64::from(number())).map(random_sweep).collect(),
             // From cargo.
             "--bench" => {}
-            name => names.push(name.to_owned()),
+            unknown => panic!("unknown option {unknown}"),
         }
     }
     if counts.is_empty() {
@@ -95,10 +114,8 @@ fn main() {
     println!("{HEAD}");
     for count in counts {
         println!("## About {count} particles\n\n{COLUMNS}");
-        for sweep in &SWEEPS {
-            if names.is_empty() || names.iter().any(|name| name == sweep.name) {
-                measure(sweep, count, sampling);
-            }
+        for sweep in &sweeps {
+            measure(sweep, count, sampling);
         }
         println!();
     }
@@ -137,7 +154,7 @@ fn measure(sweep: &Sweep, count: u32, sampling: Sampling) {
     let by_count = settings!(sampling; ..Settings::with_count(count).in_box(bounds));
     let field = |frame: u32| {
         let q = sweep.from + (sweep.to - sweep.from) * f64::from(frame) / f64::from(FRAMES);
-        Formula::parse(sweep.formula).and_then(|formula| formula.with("q", q)).expect("a formula")
+        Formula::parse(&sweep.formula).and_then(|formula| formula.with("q", q)).expect("a formula")
     };
     // A uniform run has one radius for all of the sweep: that with the wanted count in the middle.
     let settings = match sampling {
