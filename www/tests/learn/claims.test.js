@@ -1,0 +1,155 @@
+/**
+ * The numbers that the lesson's text states, each with where it comes from: a run on the ellipsoid, the paper's tables as
+ * `docs/paper.md` prints them, or a constant of the core. A claim names its words, so that a changed text fails, too.
+ */
+import { readFileSync } from 'node:fs';
+import { beforeAll, expect, test } from 'vitest';
+import { LessonClient } from '../../src/engine/lesson/client.js';
+import { follow } from '../../src/engine/lesson/follow.js';
+import { Lab } from '../../src/learn/lab.js';
+import { energiesOf, nearestDistances, parentDistances, ringsOf } from '../../src/learn/measure.js';
+import { subjectOf } from '../../src/learn/surface.js';
+import { initSync, Lesson } from '../../src/wasm/lesson/lesson.js';
+
+/** @param {string} path  from `www` */
+const read = (path) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
+
+const page = read('learn/index.html');
+const sources = ['predictions', 'whatifs', 'race'].map((name) => read(`src/learn/${name}.js`)).join('\n');
+const paper = read('../docs/paper.md');
+
+/** Has the text of the lesson say it. @param {string} words */
+const says = (words) => expect(page.includes(words) || sources.includes(words), words).toBe(true);
+
+/** A section of `docs/paper.md`. @param {string} title */
+const section = (title) => paper.split(/^##+ /m).find((part) => part.startsWith(title)) ?? '';
+
+/** A worker of the lesson that runs in this thread. @returns {any} */
+function spawn() {
+  const worker = {
+    onmessage: (/** @type {any} */ _event) => {},
+    terminate() {},
+    postMessage: (/** @type {any} */ _data) => {},
+  };
+  const follower = follow(new Lesson(), {
+    nowMs: () => performance.now(),
+    pause: () => new Promise((resolve) => setTimeout(resolve)),
+    post: (data) => queueMicrotask(() => worker.onmessage({ data })),
+  });
+  worker.postMessage = (data) => void follower.receive(data);
+  return worker;
+}
+
+/** @type {Lab} */
+let lab;
+beforeAll(() => {
+  initSync({ module: readFileSync(new URL('../../src/wasm/lesson/lesson_bg.wasm', import.meta.url)) });
+  const noMeter = /** @type {any} */ (null);
+  lab = new Lab(subjectOf(undefined).surface, async () => new LessonClient({ spawn }), noMeter);
+});
+
+test('the tables on the page are those of the paper', () => {
+  const rows = [...page.matchAll(/<tr><th scope="row">([^<]+)<\/th>(.*?)<\/tr>/g)].map(([, head, cells]) => ({
+    head,
+    cells: [...cells.matchAll(/<td>([^<]+)<\/td>/g)].map(([, cell]) => cell),
+  }));
+  expect(rows).toHaveLength(8);
+  const plain = (/** @type {string} */ text) => text.replace(/(\d),(?=\d{3})/g, '$1');
+  for (const { head, cells } of rows) {
+    const of = /^Ellipsoid, ([\d,]+) .*, (one size|by curvature)$/.exec(head);
+    if (of) {
+      const kind = of[2] === 'one size' ? 'uniform' : 'non-uniform';
+      const told = plain(section(`Ellipsoid, ${kind}, ${of[1]} particles`));
+      for (const cell of cells) expect(told, head).toContain(plain(cell).replace(', stopped', ''));
+      continue;
+    }
+    const line = section('Table 2')
+      .split('\n')
+      .find((one) => one.startsWith(`| ${head.replace(' particles', '')} |`));
+    const [placing, relaxing, total] = cells.map((cell) => Number(plain(cell)));
+    const printed = (line ?? '').split('|').map((cell) => Number(plain(cell)));
+    expect([printed[4], printed[7]], head).toEqual([placing, relaxing]);
+    expect(placing + relaxing, head).toBeCloseTo(total, 2);
+  }
+});
+
+test('what the text states of the paper is in its tables', () => {
+  says('The paper counts 373 for 10,633 particles, and 1,613 without an end for some 50,000.');
+  expect(section('Ellipsoid, uniform, 13,923')).toMatch(/10,633[\s\S]*\| 373 \|/);
+  expect(section('Ellipsoid, uniform, 55,748')).toMatch(/≈ 50,000, cut off[\s\S]*\| 1,613 \|/);
+  says('94 % of the time in the paper’s Table 2');
+  expect(Math.round((100 * 18.58) / 19.8)).toBe(94);
+  // The ratios of the race are quotients of the table.
+  for (const [other, own] of [...sources.matchAll(/ratio: ([\d.]+) \/ ([\d.]+)/g)].map(([, ...both]) =>
+    both.map(Number),
+  ))
+    for (const value of [other, own])
+      expect(page).toContain(`<td>${value.toLocaleString('en', { minimumFractionDigits: 2 })}</td>`);
+});
+
+test('what the text states of the core are its constants', () => {
+  says('by at most 23° at a time');
+  const turn = /MAX_TURN: f64 = ([\d.]+)/.exec(read('../src/paper/projection.rs'));
+  expect(Math.round((2 * Math.atan(Number(turn?.[1])) * 180) / Math.PI)).toBe(23);
+  says('count as 1.15 times as large as they are');
+  expect(read('../src/paper/relaxation.rs')).toContain('OVERLAP_REACH: f64 = 1.15;');
+});
+
+test('what the text states of the first particles is so in the coarse run', async () => {
+  const run = await lab.coarse();
+  says('in a run with some 180 large particles');
+  expect(Math.abs(run.end.radii.length / 180 - 1)).toBeLessThan(0.12);
+  says('All six children of the seed are new.');
+  expect(run.chapters[0].fates.added).toBe(6);
+  says('Five slots are left.');
+  const { added, matched } = run.chapters[1].fates;
+  expect(added + matched).toBe(6 * 5);
+  // Every particle but a seed is the new child of exactly one other.
+  says('every particle but a seed is the new child of exactly one other');
+  expect(run.chapters.reduce((sum, { fates }) => sum + fates.added, 0)).toBe(run.end.radii.length - 1);
+});
+
+test('what the text states of rings, tolerance and rest is so in the run', async () => {
+  const run = await lab.run({}, { keep: true });
+  says('some 1,500 discs');
+  expect(Math.abs(run.end.radii.length / 1500 - 1)).toBeLessThan(0.12);
+  says('On a plane, ring 12 has 72 particles.');
+  // On a dome the rings fall behind 6k.
+  says('on a dome the rings fall behind that number and shrink again');
+  const rings = ringsOf(run.placed);
+  expect(rings[12]).toBeLessThan(72);
+  expect(rings[rings.length - 1]).toBeLessThan(Math.max(...rings));
+  says('Here it is 0.7 · 2<i>r</i>.');
+  expect((await lab.run({ match_tolerance: 0.7 })).end.positions).toEqual(run.end.positions);
+  says('No two particles are then nearer than the tolerance.');
+  expect(Math.min(...nearestDistances(run.placed))).toBeGreaterThanOrEqual(0.7 - 1e-4);
+  says('how many they are can be fixed beforehand: ten');
+  expect(run.progress.steps).toBe(10);
+  says('It falls from step to step, by a small part only.');
+  const energies = await energiesOf(run);
+  for (const [k, energy] of energies.entries()) if (k > 0) expect(energy).toBeLessThan(energies[k - 1]);
+  expect(energies[10]).toBeGreaterThan(0.9 * energies[0]);
+});
+
+test('what is said of a choice is so where it is made', async () => {
+  const usual = await lab.run({ relax_steps: 0 });
+  says('The circle keeps 2r everywhere; Newton’s method falls short of it where the surface bends.');
+  for (const far of parentDistances(usual.placed, usual.radius)) expect(far).toBeCloseTo(1, 3);
+  const newton = await lab.run({ projection: 'newton', relax_steps: 0 });
+  expect(Math.min(...parentDistances(newton.placed, newton.radius))).toBeLessThan(0.98);
+  says('a start where the parent’s curvature expects the surface needs fewer steps');
+  const curved = await lab.run({ start: 'curvature', relax_steps: 0 });
+  expect(curved.progress.evaluations).toBeLessThan(usual.progress.evaluations);
+  says('and so needs far fewer evaluations');
+  const levels = await lab.run({ placing: 'level_by_level', relax_steps: 0 });
+  expect(levels.progress.evaluations).toBeLessThan(0.8 * usual.progress.evaluations);
+  says('one of them is added beside it');
+  expect((await lab.run({ matched: 'leave', relax_steps: 0 })).end.radii.length).toBeGreaterThan(
+    usual.end.radii.length,
+  );
+  says('The number of particles and the spacing hardly change.');
+  for (const seed of [1, 2, 3])
+    expect(
+      Math.abs((await lab.run({ seed, relax_steps: 0 })).end.radii.length / usual.end.radii.length - 1),
+    ).toBeLessThan(0.03);
+});
