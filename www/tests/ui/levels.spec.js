@@ -61,6 +61,8 @@ test('the timeline of the levels', async ({ page }) => {
     await page.keyboard.press(',');
     expect(await state(page)).toMatchObject({ view: { level: null, step: 9 } });
     await expect(page.locator('.caption')).toContainText('Relaxation step 9 of 10');
+    // Each step has its own words.
+    await expect(page.locator('.caption')).toContainText(/The energy is \d[\d.]*\s?% below that of the placing\./);
     for (let k = 0; k < 9; k += 1) await page.keyboard.press(',');
     expect(await state(page)).toMatchObject({ view: { level: last, step: null } });
     await page.keyboard.press('.');

@@ -8,7 +8,7 @@ import { clamp } from '../../engine/vector.js';
 import { button } from '../button.js';
 import { fill, h, live, s } from '../dom.js';
 import { explain } from '../explain.js';
-import { formatCount } from '../format.js';
+import { formatCount, formatShare } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSelect } from '../select.js';
 import { isMeant, moveOf } from './keys.js';
@@ -81,7 +81,11 @@ function describe(engine, { table, newest, kept, some, whole, relaxed, text }, p
   if (!some.value) return null;
   if (player.grain.value !== 'level') return { title: player.track.value.text.value, text: '' };
   if (whole.value) return null;
-  if (relaxed.value !== null) return { title: text.value, text: 'All particles, on their way to even distances.' };
+  if (relaxed.value !== null) {
+    const energy = engine.report.value?.energy ?? [];
+    const fallen = formatShare(1 - energy[relaxed.value] / energy[0]);
+    return { title: text.value, text: energy.length > 0 ? `The energy is ${fallen} below that of the placing.` : '' };
+  }
   const isMesh = engine.state.value.view.draw === 'mesh';
   const asPlaced = kept.value > 0 && !isMesh;
   return describeLevel(table.value, newest.value, asPlaced ? null : engine.progress.value.relax_step);
