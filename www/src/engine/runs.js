@@ -69,7 +69,11 @@ export class Runs {
 
   /** Samples the present state. @param {RunOptions} [options] */
   resample(options = {}) {
-    if (this.#begin(options)) this.sampling.sample(this.#request(options));
+    if (!this.#begin(options)) return;
+    const request = this.#request(options);
+    // The end of a pull is known by its answer.
+    if (options.pulled) this.sampling.submit(request);
+    else this.sampling.sample(request);
   }
 
   /**

@@ -73,6 +73,19 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
     await expect(page.getByRole('button', { name: 'Undo' })).toBeDisabled();
   });
 
+  await test.step('Escape gives it up', async () => {
+    await page.keyboard.down('Shift');
+    await page.mouse.move(right.x, right.y);
+    await page.mouse.down();
+    await page.mouse.move(beyond.x, beyond.y, { steps: 6 });
+    await expect.poll(async () => (await state(page)).parameters.a).toBeGreaterThan(1);
+    await page.keyboard.press('Escape');
+    await page.mouse.up();
+    await page.keyboard.up('Shift');
+    await settled(page);
+    expect({ a: 1, ...(await state(page)).parameters }.a).toBe(1);
+  });
+
   await test.step('a place that is pressed stays where it is', async () => {
     await page.getByRole('button', { name: 'Grab' }).click();
     const below = await outermost(page, [0, 1]);

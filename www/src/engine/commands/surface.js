@@ -103,7 +103,8 @@ export function inputCommands({ store, runs }) {
   const { state } = store;
   /** @param {boolean} live @param {Pulled} [pulled] */
   const resample = (live, pulled = undefined) => {
-    store.dragging.value = live;
+    // A pull ends with the parameters that the core answers.
+    store.dragging.value = live || pulled !== undefined;
     if (live) runs.resampleLive(pulled);
     else runs.resample({ pulled, changed: true });
   };

@@ -263,6 +263,7 @@ export class Sampler {
     this.#happened({ type: 'accepted', id, bounds: answer.bounds });
     this.#presenter.begin(id, request);
     if (this.#isTold(request)) this.#presenter.field(request.field, answer, request.restoring);
+    if (answer.grip && !request.live && !request.rests) this.store.dragging.value = false;
   }
 
   /**

@@ -41,6 +41,7 @@ export function pinMark(engine, stage, pins) {
     return handle;
   });
   engine.takeWith((at, shift) => hand.take(at, shift));
+  stage.addEventListener('keydown', (event) => hand.escape(event), true);
   live(stage, () => hand.follow());
   live(stage, () => void stage.toggleAttribute('data-grabs', pins.value !== null));
   return {
@@ -63,6 +64,8 @@ class Hand {
   /** The pin that is held, and whether it is taken off once it is let go. */
   #held = 0;
   #isFleeting = false;
+  /** Whether it was taken hold of in the picture. */
+  #isTaken = false;
   /** The parameters and the pins when the drag began. @type {Record<string, number>} */
   #parameters = {};
   /** @type {readonly Vec3[]} */
@@ -94,10 +97,25 @@ class Hand {
     this.#of = fieldOf(engine);
     this.grab(pins.length);
     this.#isFleeting = !isOn;
+    this.#isTaken = true;
     return {
-      drag: (/** @type {{x: number, y: number}} */ { x, y }) => this.drag(engine.rayThrough(x, y)),
-      drop: () => void this.drop(),
+      drag: (/** @type {{x: number, y: number}} */ { x, y }) => {
+        if (this.#isTaken) this.drag(engine.rayThrough(x, y));
+      },
+      drop: () => {
+        if (this.#isTaken) this.drop();
+        this.#isTaken = false;
+      },
     };
+  }
+
+  /** Gives up the drag of a particle, if there is one. @param {KeyboardEvent} event */
+  escape(event) {
+    if (event.key !== 'Escape' || !this.#isTaken) return;
+    event.stopPropagation();
+    this.#isTaken = false;
+    this.cancel();
+    if (this.#isFleeting) this.#pins.value = null;
   }
 
   /** @param {number} k */
