@@ -145,7 +145,7 @@ function wordsOf(id) {
 
 /**
  * Returns what goes one step within a stop, and says whether there was one: the answer of its question, then the steps
- * of its figure if no later question shows it, or the next of its cards.
+ * of its figure if no later question shows it, the start of its race, or the next of its cards.
  * @param {string} id @param {PresenterOptions['questions']} questions
  */
 function createWalk(id, questions) {
@@ -156,6 +156,7 @@ function createWalk(id, questions) {
     (one) => !one.querySelector(':scope.predict .stage'),
   );
   const stage = own ?? (stop === asking.at(-1) ? chapter.querySelector('figure > .stage') : null);
+  const start = stop.querySelector('.race > .controls .primary');
   const cards = [...stop.querySelectorAll('.card')];
   let [isAsked, isBegun] = [questions.isOpen(id), false];
   /** @param {1 | -1} by */
@@ -164,6 +165,11 @@ function createWalk(id, questions) {
     if (question && !isAsked && by > 0) {
       isAsked = true;
       void question.reveal();
+      return true;
+    }
+    if (start instanceof HTMLElement && !isBegun && by > 0) {
+      isBegun = true;
+      start.click();
       return true;
     }
     const card = cards[cards.findIndex((one) => one.hasAttribute('data-current')) + by];

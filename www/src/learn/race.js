@@ -11,13 +11,13 @@ import { reasonOf } from './figure.js';
 import { USUAL } from './lab.js';
 import { nearestDistances } from './measure.js';
 import { createSelect } from './parts.js';
-import { byValue, Orbit, Picture } from './picture.js';
+import { byLevel, byValue, Orbit, Picture } from './picture.js';
 import { createReplay, MOST_SHOTS } from './replay.js';
 
 /**
  * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
  * @import { LessonParticles, Signal } from '../engine/types.js'
- * @import { Lab, Snapshot } from './types.js'
+ * @import { Lab, LabRun, Snapshot } from './types.js'
  */
 
 /** Particles of the front: enough to see the difference, few enough to wait for the other. */
@@ -140,6 +140,14 @@ class Course {
       lanes.map(({ element }) => element),
     );
     fill(this.result);
+    // Before the start there is the body alone.
+    const bare = (/** @type {LabRun} */ { placed }) => {
+      if (this.race.peek() || lanes.some(({ picture }) => picture.scene.peek())) return;
+      orbit.fitTo(placed);
+      orbit.faceFront(placed);
+      for (const { picture } of lanes) picture.show({ particles: placed, count: 0, colours: byLevel(placed) });
+    };
+    this.#lab.run({}, { keep: true }).then(bare, () => {});
     return { orbit, lanes, names };
   }
 
