@@ -64,6 +64,11 @@ export class Lab {
     this.#last = Promise.resolve();
   }
 
+  /** The same on another surface. @param {FormulaSurface} surface */
+  beside(surface) {
+    return new Lab(surface, this.#open, this.#meter);
+  }
+
   /** @template T @param {() => Promise<T>} job */
   #queued(job) {
     const done = this.#last.then(job, job);

@@ -1,6 +1,6 @@
 // Types of the learn page: its runs, its pictures, its questions and its choices.
 import type { Lane, LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
-import type { LessonClient, LessonParticles } from '../engine/types.js';
+import type { LessonClient, LessonEvent, LessonParticles } from '../engine/types.js';
 import type { Palette } from '../engine/view/types.js';
 import type { FormulaSurface } from '../ui/types.js';
 import type { Lab } from './lab.js';
@@ -34,6 +34,26 @@ export interface Prediction {
   most?: number;
   answer: (lab: Lab, guess: string | number | null) => Promise<Answer>;
   judge?: (guess: string | number, right: string | number) => string;
+}
+/** What is said of a slot. `particle`: the one that holds it; of a new one, its number in the run. */
+export type Verdict = { fate: 'parent' | 'matched' | 'added'; particle: number | null };
+/** A surface on which the learner is the algorithm. `ends`: what is said at the end. */
+export interface Patch {
+  id: string;
+  name: string;
+  surface: FormulaSurface;
+  radius: number;
+  seed: [number, number, number];
+  ends: string;
+}
+/** What the run decides at a slot: after event `at`, told by event `end`. `met`: the front meets itself there. */
+export interface Decision {
+  slot: number;
+  at: number;
+  end: number;
+  compared: Extract<LessonEvent, { type: 'compared' }> | null;
+  met: LessonEvent | null;
+  verdict: Verdict;
 }
 /** A learner's guess and the answer of the run. */
 export type Guessed = { stop: string; question: string; guess: string | number | null; answer: string };

@@ -12,6 +12,7 @@ import { sizes } from './sizes.js';
 export const FIGURES = {
   why: opening,
   cost,
+  plane: async (context) => (await import('./plane.js')).plane(context),
   six: sixChildren,
   circle,
   first: whoWasFirst,

@@ -2,6 +2,7 @@
  * The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm.
  */
 import { adaptivePlane } from '../../figures/adaptive.js';
+import { algorithmList } from '../../figures/algorithm.js';
 import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { isAdaptive } from '../../figures/moment.js';
 import { fateShape } from '../../figures/svg.js';
@@ -212,13 +213,5 @@ function numbersOfPush(child, radius, pushed) {
 function algorithmView({ events }, { event }) {
   const lines = isAdaptive(events) ? ADAPTIVE : ALGORITHM;
   const now = lineOf(event, lines);
-  return [
-    h(
-      'ol',
-      { class: 'algorithm' },
-      lines.map(({ depth, text }, k) =>
-        h('li', { 'data-depth': depth, 'aria-current': k === now ? 'step' : null }, text),
-      ),
-    ),
-  ];
+  return [algorithmList(now, lines)];
 }

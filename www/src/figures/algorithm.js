@@ -1,0 +1,13 @@
+/** The paper's algorithm as a list of lines, in which one is live. */
+import { h } from '../ui/dom.js';
+import { ALGORITHM } from './words.js';
+
+/** @param {number} now  the live line; −1 for none @param {typeof ALGORITHM} [lines] */
+export const algorithmList = (now, lines = ALGORITHM) =>
+  h(
+    'ol',
+    { class: 'algorithm' },
+    lines.map(({ depth, text }, k) =>
+      h('li', { 'data-depth': depth, 'data-line': k, 'aria-current': k === now ? 'step' : null }, text),
+    ),
+  );
