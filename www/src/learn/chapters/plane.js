@@ -195,6 +195,8 @@ class Exercise {
     const stop = `plane-${id}`;
     const question = `${name}, ten particles slot by slot: number of mistakes`;
     const answer = [parts.join(', '), ...this.#mistakes].join('; ');
+    // Nothing is answered before the first decision.
+    if (right + left + this.#mistakes.length === 0) return;
     this.#stops.outcomes.set(stop, { stop, question, guess: this.#mistakes.length, answer });
   }
 
