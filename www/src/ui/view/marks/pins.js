@@ -218,7 +218,7 @@ export function createPinCard(engine, pins) {
   };
   return h(
     'div',
-    { class: 'measure-card', hidden: () => pins.value === null },
+    { class: 'tool-card', hidden: () => pins.value === null },
     text,
     button({ class: 'small', press: done }, 'Done'),
   );
