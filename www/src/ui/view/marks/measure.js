@@ -69,5 +69,10 @@ export function createMeasureCard(engine) {
     return `${formatSignificant(units, 4)} apart, ${formatSignificant(diameters, 3)} × ${unit} · particles ${i} and ${j}`;
   });
   const done = button({ class: 'small', press: () => engine.setView({ measured: null }) }, 'Done');
-  return h('div', { class: 'tool-card measure-card', hidden: () => engine.state.value.view.measured === null }, text, done);
+  return h(
+    'div',
+    { class: 'tool-card measure-card', hidden: () => engine.state.value.view.measured === null },
+    text,
+    done,
+  );
 }
