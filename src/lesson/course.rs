@@ -6,6 +6,7 @@
 use super::dynamics::Dynamics;
 use super::event::{Event, Log};
 use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
+use crate::field::Field;
 use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, QueueOrder};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
@@ -163,6 +164,22 @@ impl Course {
     /// Returns the run at another moment.
     pub(super) fn elsewhere(&self, moment: Moment, particles: Vec<Particle>) -> Self {
         Self::at(&self.setup, self.run.surface.clone(), moment, particles)
+    }
+
+    /// Returns the run on another surface in the same box. Its particles go there by Newton's method; one that does not arrive within its
+    /// radius, or comes to another side of the surface, is gone.
+    pub(super) fn moved(&self, field: Box<dyn Field>) -> Self {
+        let surface = ImplicitSurface::new(field, &self.run.surface.bounds);
+        let mut moment = self.moment();
+        (moment.cursor.quiet, moment.steps) = (0, 0);
+        let mut moved = Self::at(&self.setup, surface, moment, Vec::new());
+        for own in &self.run.particles {
+            if let Some((position, normal)) = moved.run.come_back(own, own.p(), own.radius) {
+                let (position, normal) = (position.to_array(), normal.to_array());
+                moved.run.particles.push(Particle { position, normal, height: 0.0, ..*own });
+            }
+        }
+        moved
     }
 
     /// The moment between two chapters.

@@ -212,6 +212,22 @@ impl Lesson {
         Ok(run)
     }
 
+    /// Has the particles of a particle system follow its surface to that of `field`, in the same box, and goes on with the system there. The
+    /// run begins anew with them: what happened before is looked at no longer.
+    ///
+    /// # Differs from Witkin and Heckbert 1994
+    ///
+    /// Their velocities have a term for the motion of the surface, which is integrated with the others (§4.1). Here a particle is brought
+    /// to the surface at once, since a slider moves by steps. Where it does not arrive within its radius, it dies: they say nothing of it.
+    pub fn follow(&mut self, field: Box<dyn Field>) {
+        self.course = self.course.moved(field);
+        self.chapters = Vec::new();
+        self.snapshots = Snapshots::new();
+        self.lives = vec![Life::default(); self.course.run.particles.len()];
+        self.is_done = false;
+        self.view = ShownMoment::default();
+    }
+
     /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
     /// steps does not change it.
     pub fn step(&mut self, budget: u32) -> LessonProgress {

@@ -235,13 +235,14 @@ impl<F: Field> Run<F> {
     /// ```
     pub fn follow(&mut self, field: F) -> bool {
         self.set_field(field, false);
-        self.follow_field()
+        self.follow_field(false)
     }
 
     /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have changed since the last step.
-    pub(crate) fn follow_field(&mut self) -> bool {
+    /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
+    pub(crate) fn follow_field(&mut self, is_closed: bool) -> bool {
         let bounds = self.bounds.relative_to(self.field.origin());
-        let can_follow = self.sampler.follow(&mut self.field, &bounds);
+        let can_follow = self.sampler.follow(&mut self.field, &bounds, is_closed);
         if can_follow {
             self.is_surveyed = false;
             self.creases = None;

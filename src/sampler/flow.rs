@@ -122,6 +122,8 @@ struct Sparse {
 pub(crate) struct Flow {
     /// Frames since the last balance.
     frames: u32,
+    /// Whether particles are neither born nor die but where the transport loses them.
+    pub(crate) is_closed: bool,
     /// Whether the last frame came to its end, so that the neighbour lists are those of these particles.
     pub(crate) is_whole: bool,
     /// The number of the next particle that is born.
@@ -184,7 +186,9 @@ impl Flow {
         lost.iter().for_each(|&i| self.columns.is_dead[i as usize] = true);
         let mut steps = 1;
         if self.is_due() && lost.len() < n {
-            self.balance(probe, surface, particles);
+            if !self.is_closed {
+                self.balance(probe, surface, particles);
+            }
             steps = STEPS_AFTER_BALANCE;
         }
         self.frames = (self.frames + 1) % BALANCE_EVERY;

@@ -486,8 +486,8 @@ impl Sampler {
 
     /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
     /// changed but little; [`Sampler::step`] does it. Returns whether they can follow. If not, nothing has changed, and a run has to start:
-    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other.
-    pub(crate) fn follow(&mut self, field: &mut dyn Field, bounds: &Bounds) -> bool {
+    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other. `is_closed`: without births and deaths.
+    pub(crate) fn follow(&mut self, field: &mut dyn Field, bounds: &Bounds, is_closed: bool) -> bool {
         let particles = &self.output.particles;
         // A front that was stopped has not covered the surface.
         let is_still = match self.phase {
@@ -507,6 +507,7 @@ impl Sampler {
             return false;
         }
         self.tools.flow.begin(&mut self.output.particles);
+        self.tools.flow.is_closed = is_closed;
         if self.tools.flow.is_due() {
             self.look_again(field, bounds);
         }

@@ -414,9 +414,10 @@ impl Session {
 
     /// Has the particles of the last run, which had these settings, [follow](Run::follow) its surface to the present field, in the box that
     /// [`Session::fit`] has found. Returns whether they can; if not, a run has to start. What they have become is made from no record.
-    pub fn follow(&mut self, settings: &Settings) -> bool {
+    /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
+    pub fn follow(&mut self, settings: &Settings, is_closed: bool) -> bool {
         let can_follow =
-            self.fitting.is_settled && self.started == Some(*settings) && self.run.follow_field();
+            self.fitting.is_settled && self.started == Some(*settings) && self.run.follow_field(is_closed);
         if can_follow {
             self.fitting.is_settled = false;
             self.made = None;

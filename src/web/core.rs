@@ -116,12 +116,13 @@ impl Core {
     }
 
     /// Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
-    /// and the run had these `Settings`.
+    /// and the run had these `Settings`. `is_closed`: no particle is born, and none dies but where it does not come to the surface.
     pub fn follow(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+        is_closed: bool,
     ) -> bool {
-        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings))
+        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings, is_closed))
     }
 
     /// Does up to `budget` units of work: `Progress`.

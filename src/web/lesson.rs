@@ -98,6 +98,22 @@ impl Lesson {
         self.begin(bounds.and_then(|bounds| Ok((points(system)?, bounds))), settings)
     }
 
+    /// Has the particles of a particle system follow their surface to that of a formula, `LessonField`, whose box does not count; to an
+    /// `Answer` with `LessonProgress`, null before a run.
+    #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault> | null")]
+    pub fn follow(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "LessonField")] field: JsValue,
+    ) -> JsValue {
+        let Some(run) = &mut self.run else { return JsValue::NULL };
+        answer(read::<LessonField>(field, FaultKind::Request).and_then(|field| formula(&field)).map(
+            |field| {
+                run.follow(field);
+                run.progress()
+            },
+        ))
+    }
+
     /// Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
     #[wasm_bindgen(unchecked_return_type = "LessonProgress | null")]
     pub fn step(&mut self, budget: u32) -> JsValue {

@@ -2,6 +2,8 @@
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
+use marching_particles::sampler::SizeMode;
+use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Phase, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
@@ -159,4 +161,46 @@ fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
     let figures = run.report().measures.quality.expect("figures");
     assert!(figures.accuracy.err_max < 1e-3, "off by {}", figures.accuracy.err_max);
     assert_eq!(figures.connectivity.euler, 2);
+}
+
+/// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without births and deaths, too.
+fn drawn_out(is_closed: bool) -> Session {
+    let bounds = Bounds::symmetric([1.7, 0.8, 0.6]);
+    let share = 0.04 / bounds.diagonal();
+    let settings = settings!(size_mode: SizeMode::Radius, radius_share: share; ..Settings::default());
+    let mut session = Session::new();
+    for step in 0..=60 {
+        let q = 0.8 + 0.8 * f64::from(step) / 60.0;
+        let request = FieldRequest {
+            formula: Some(ELLIPSOID.to_string()),
+            parameters: [("q".to_string(), q)].into_iter().collect(),
+            bounds: Some(bounds),
+            ..FieldRequest::default()
+        };
+        session.set_field(&request).expect("a formula");
+        while session.fit(&settings, true, u32::MAX).is_none() {}
+        if step == 0 {
+            session.start(&settings).expect("valid settings");
+        } else {
+            assert!(session.follow(&settings, is_closed), "the particles cannot follow to {q}");
+        }
+        while session.run.step(u32::MAX).stop_reason.is_none() {}
+    }
+    session
+}
+
+#[test]
+fn without_births_and_deaths_the_same_particles_drift_apart_and_keep_more_of_their_order() {
+    let [(open, some), (closed, all)] = [false, true].map(|is_closed| {
+        let mut session = drawn_out(is_closed);
+        let identity = session.run.particles().identity.clone();
+        (session.measure(u32::MAX).expect("a report"), identity)
+    });
+    let first = all.len() as u32;
+    assert!(all.iter().copied().eq(0..first), "a particle has come or gone");
+    let alive = some.iter().filter(|&&number| number < first).count();
+    assert!(some.len() > all.len() && alive as f64 > 0.95 * f64::from(first), "{alive} of {first} are alive");
+    let [open, closed] = [open, closed].map(|report| report.measures.quality.expect("figures"));
+    assert!(open.coverage.cover < 1.5 && closed.coverage.cover > 4.0, "holes");
+    assert!(closed.order.six > open.order.six + 0.1, "{} and {}", closed.order.six, open.order.six);
 }

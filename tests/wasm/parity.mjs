@@ -45,7 +45,7 @@ function sample({ name, field, model, settings, moves = [] }) {
   for (const parameters of moves) {
     accepted(core.set_field({ parameters }), `${name}: set_field`);
     while (core.fit(settings, true, BUDGET) === undefined);
-    if (!core.follow(settings))
+    if (!core.follow(settings, false))
       throw new Error(`${name}: the particles cannot follow to ${JSON.stringify(parameters)}`);
     do progress = core.step(BUDGET);
     while (progress.stop_reason === null);

@@ -107,6 +107,8 @@ function answer(lesson, nowMs, question) {
     }
     case 'newton':
       return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
+    case 'follow':
+      return lesson.follow(question.ask);
     case 'advance':
       return advance(lesson, nowMs, question.ask.units);
     case 'digest':

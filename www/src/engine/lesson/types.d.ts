@@ -1,6 +1,6 @@
 // Messages between the page and the worker of the lesson, and what its clients are given. The worker follows one run at
 // a time; every question is answered under its number.
-import type { Bounds, LessonEvent, LessonField, LessonIterate, LessonLife, LessonPush } from '../core-types.js';
+import type { Answer, Bounds, LessonEvent, LessonField, LessonIterate, LessonLife, LessonPush } from '../core-types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>;
 export type LessonSettings = import('../core-types.js').LessonSettings;
@@ -44,7 +44,9 @@ export interface Questions {
   section: { ask: Plane; answer: Float32Array };
   /** Newton's method in space from a point */
   newton: { ask: { start: Vec3; reach: number }; answer: LessonIterate[] };
-  /** goes on with a run that was begun and held */
+  /** has the particles of a particle system follow their surface to that of this formula; null before a run */
+  follow: { ask: LessonField; answer: Answer<LessonProgress, Fault> | null };
+  /** goes on with a run that was begun and held, or whose surface has moved */
   advance: { ask: { units: number }; answer: Advanced };
   /** of the particles at the moment that was sought */
   digest: { ask: object; answer: string };

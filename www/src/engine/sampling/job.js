@@ -195,7 +195,7 @@ class JobRun {
     if (job.kind === 'sample') {
       // The core looks for the surface here; for a model, this is most of the seeding.
       const before = env.nowMs();
-      this.followed = job.following.some((settings) => core.follow(settings));
+      this.followed = job.following.some((settings) => core.follow(settings, job.isClosed ?? false));
       if (this.followed) {
         this.seconds.seeding += (env.nowMs() - before) / 1000;
         memory.held = job.id;

@@ -37,6 +37,8 @@ export interface SampleJob {
   settings: Settings;
   /** settings of the runs whose particles may follow the surface instead */
   following: Settings[];
+  /** those that follow are neither born nor die */
+  isClosed?: boolean;
   grow: boolean;
   live: boolean;
   coarse: boolean;

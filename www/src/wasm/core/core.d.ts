@@ -63,9 +63,9 @@ export class Core {
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
     /**
      * Has the particles of the last run follow its surface to the present field, in the box that [`Core::fit`] has found: whether they can,
-     * and the run had these `Settings`.
+     * and the run had these `Settings`. `is_closed`: no particle is born, and none dies but where it does not come to the surface.
      */
-    follow(settings: Record<string, number | string>): boolean;
+    follow(settings: Record<string, number | string>, is_closed: boolean): boolean;
     /**
      * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
      */

@@ -38,6 +38,11 @@ export class Lesson {
      */
     events(first: number, count: number): LessonEvent[];
     /**
+     * Has the particles of a particle system follow their surface to that of a formula, `LessonField`, whose box does not count; to an
+     * `Answer` with `LessonProgress`, null before a run.
+     */
+    follow(field: LessonField): Answer<LessonProgress, Fault> | null;
+    /**
      * Numbers of the fronts.
      */
     fronts(): Uint32Array<ArrayBuffer>;
