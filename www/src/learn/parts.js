@@ -76,8 +76,9 @@ export function createPlay(range, { label, totalMs }) {
 
 /**
  * A chart with what it says below it. It is drawn anew after every change of the signals that `chart` reads.
- * @param {{ hidden: () => boolean, chart: () => Drawn, label: string, words: Children, press?: (at: number) => void
- *   }} about  `label`: the chart for those who do not see it; `press`: called with the place that is pressed
+ * @param {{ hidden: () => boolean, chart: () => Drawn, label: string | (() => string), words: Children,
+ *   press?: (at: number) => void }} about  `label`: the chart for those who do not see it; `press`: called with the
+ *   place that is pressed
  */
 export function createChart({ hidden, chart, label, words, press = () => {} }) {
   /** @param {MouseEvent & { currentTarget: Element }} event */

@@ -197,4 +197,14 @@ export const PREDICTIONS = {
       return { right: String(at < 0 ? FACTORS.length : at), words: words.join(' ') };
     },
   },
+  'predict-moving': {
+    kind: 'choice',
+    choices: [
+      { value: 'count', label: 'The number: there are too few' },
+      { value: 'holes', label: 'The cover: holes open' },
+      { value: 'order', label: 'The order: fewer have six neighbours' },
+      { value: 'nothing', label: 'Nothing of this' },
+    ],
+    answer: async (lab) => (await import('./chapters/moving.js')).lossOf(lab),
+  },
 };

@@ -116,6 +116,31 @@ export type Work = {
   predictions: Guessed[];
   runs: object[];
 };
+/**
+ * A surface that moves by one parameter. `half`: of its box; `seen`: the part of the box to which a picture is fitted;
+ * `radius`: of the particles on it.
+ */
+export interface Motion {
+  value: string;
+  label: string;
+  formula: string;
+  name: string;
+  range: readonly [number, number];
+  half: readonly [number, number, number];
+  seen: number;
+  radius: number;
+}
+/** Particles that follow a surface that moves. `evaluations`: of f so far. */
+export interface FlowLane extends Flowing {
+  /** covers the surface of a step of the slider */
+  begin: (step: number) => Promise<void>;
+  /** goes to the surface of a step beside the one before */
+  follow: (step: number) => Promise<void>;
+  /** what it does once the surface rests at a step */
+  rest: (step: number) => Promise<void>;
+  close: () => void;
+}
+export type Flowing = { particles: LessonParticles; evaluations: number };
 /** A lane of a race at the end of one of its turns. */
 export type Snapshot = { lane: Lane; particles: LessonParticles };
 export interface ReplayOptions {

@@ -27,7 +27,7 @@ if (parts !== null) {
 
 let mounted = false;
 const mount = () => {
-  if (!mounted) keepOffline(engine, mountInterface(engine));
+  if (!mounted) keepOffline(engine, mountInterface(engine, { grabs: query.has('grab') }));
   mounted = true;
 };
 // The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has

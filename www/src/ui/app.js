@@ -27,8 +27,11 @@ import { createToolbar } from './view/toolbar.js';
  * @import { Dialog, Motion, Pins, Shortcut, ShortcutTargets, Toast } from './types.js'
  */
 
-/** @param {Engine} engine @returns shows a notice of the page */
-export function mountInterface(engine) {
+/**
+ * @param {Engine} engine @param {{ grabs?: boolean }} [how]  `grabs`: the surface can be dragged from the beginning
+ * @returns shows a notice of the page
+ */
+export function mountInterface(engine, { grabs = false } = {}) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
   const toast = mountToasts(
@@ -53,7 +56,7 @@ export function mountInterface(engine) {
   });
   const motion = createMotion(engine, stage);
   /** @type {Pins} */
-  const pins = signal(null);
+  const pins = signal(grabs ? [] : null);
   const history = createHistory(
     engine,
     computed(

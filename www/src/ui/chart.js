@@ -1,5 +1,5 @@
 /**
- * Draws charts: stacked bars from 0 up, or a line. A chart fills the width that it has, so that no text is in the
+ * Draws charts: stacked bars from 0 up, or lines. A chart fills the width that it has, so that no text is in the
  * drawing.
  */
 import { h, s } from './dom.js';
@@ -11,18 +11,19 @@ import { formatCount } from './format.js';
 const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
 
 /** The end of the scale, which begins at 0: what falls by a tenth is drawn so. @param {Drawn} chart */
-const mostOf = ({ rows, guide = [] }) => Math.max(...sums(rows), ...guide, 1e-12);
+const mostOf = ({ kind, rows, guide = [] }) =>
+  Math.max(...(kind === 'line' ? rows.flatMap(({ counts }) => counts) : sums(rows)), ...guide, 1e-12);
 
 /** The largest value in words. @param {Drawn} chart */
 export const scaleOf = (chart) => chart.format(mostOf(chart));
 
 /** Returns the line below a chart: its first and last place, and its fates if they are several. @param {Drawn} chart */
 export function footOf({ rows, first, ends: named }) {
-  if (named) return named.map((text) => h('span', null, text));
-  const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + rows[0].counts.length - 1))];
+  const words = named ?? [formatCount(first), formatCount(first + rows[0].counts.length - 1)];
+  const ends = words.map((text) => h('span', null, text));
   if (rows.length < 2) return ends;
   const key = rows.map(({ fate, name }) => h('span', null, h('i', { class: `swatch fate-${fate}` }), name));
-  return [ends[0], h('span', { class: 'chart-key' }, key), ends[1]];
+  return [ends[0], h('span', { class: 'chart-key' }, key), ends[ends.length - 1]];
 }
 
 /** @param {Drawn} chart */
@@ -35,9 +36,11 @@ export function draw(chart) {
   if (at !== null && at >= first && at < first + places)
     svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));
   if (kind === 'line') {
-    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${y(value)}`);
-    svg.append(s('path', { class: 'chart-line', d: `M${points.join('L')}` }));
-    svg.append(s('path', { class: 'chart-dots', d: points.map((point) => `M${point}h0`).join('') }));
+    for (const { fate, counts } of rows) {
+      const points = counts.map((value, k) => `${k + 0.5} ${y(value)}`);
+      svg.append(s('path', { class: `chart-line fate-${fate}`, d: `M${points.join('L')}` }));
+      svg.append(s('path', { class: `chart-dots fate-${fate}`, d: points.map((point) => `M${point}h0`).join('') }));
+    }
     return svg;
   }
   const below = new Array(places).fill(0);

@@ -6,9 +6,15 @@ import { readFileSync } from 'node:fs';
 import { beforeAll, expect, test } from 'vitest';
 import { LessonClient } from '../../src/engine/lesson/client.js';
 import { follow } from '../../src/engine/lesson/follow.js';
+import { FlowingFront } from '../../src/engine/sampling/flowing.js';
+import { runJob } from '../../src/engine/sampling/job.js';
+import { Jobs, measured } from '../../src/engine/sampling/jobs.js';
+import { Meter } from '../../src/engine/sampling/meter.js';
+import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../src/learn/flowing.js';
 import { Lab } from '../../src/learn/lab.js';
 import { energiesOf, nearestDistances, parentDistances, ringsOf } from '../../src/learn/measure.js';
 import { subjectOf } from '../../src/learn/surface.js';
+import { Core, initSync as initCore } from '../../src/wasm/core/core.js';
 import { initSync, Lesson } from '../../src/wasm/lesson/lesson.js';
 
 /** @param {string} path  from `www` */
@@ -40,12 +46,37 @@ function spawn() {
   return worker;
 }
 
+/** A worker of the sampler that runs in this thread. @returns {any} */
+function spawnCore() {
+  const core = new Core();
+  const memory = { held: 0, meshed: 0 };
+  const post = (/** @type {any} */ data) => queueMicrotask(() => worker.onmessage({ data }));
+  const jobs = new Jobs(post);
+  const env = {
+    nowMs: () => performance.now(),
+    pause: () => new Promise((resolve) => setTimeout(resolve)),
+    ...{ post, interrupt: () => null, curvature: () => false, mesh: () => false, room: () => true },
+  };
+  const worker = {
+    onmessage: (/** @type {any} */ _event) => {},
+    terminate: () => core.free(),
+    postMessage(/** @type {any} */ data) {
+      if (data.type === 'measure') return post(measured(core, data));
+      jobs.add(data.job);
+      const job = jobs.take(core);
+      if (job) void runJob(core, job, /** @type {any} */ (env), memory);
+    },
+  };
+  return worker;
+}
+
 /** @type {Lab} */
 let lab;
 beforeAll(() => {
   initSync({ module: readFileSync(new URL('../../src/wasm/lesson/lesson_bg.wasm', import.meta.url)) });
-  const noMeter = /** @type {any} */ (null);
-  lab = new Lab(subjectOf(undefined).surface, async () => new LessonClient({ spawn }), noMeter);
+  initCore({ module: readFileSync(new URL('../../src/wasm/core/core_bg.wasm', import.meta.url)) });
+  const open = async () => new LessonClient({ spawn });
+  lab = new Lab(subjectOf(undefined).surface, open, new Meter({ spawn: spawnCore }));
 });
 
 test('the tables on the page are those of the paper', () => {
@@ -153,3 +184,65 @@ test('what is said of a choice is so where it is made', async () => {
       Math.abs((await lab.run({ seed, relax_steps: 0 })).end.radii.length / usual.end.radii.length - 1),
     ).toBeLessThan(0.03);
 });
+
+/** @param {object} [how] */
+const frontOn = (motion = MOTIONS[0], how = {}) =>
+  new FrontLane(motion, { ...how, front: new FlowingFront({ spawn: spawnCore }) });
+
+/**
+ * Scores of a lane before the surface moves, at the other end of the slider, and at rest there.
+ * @param {FrontLane | SystemLane} lane
+ */
+async function driven(lane, motion = MOTIONS[0]) {
+  await lane.begin(0);
+  const scores = [await scoreAt(lab, motion, 0, lane)];
+  for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
+  scores.push(await scoreAt(lab, motion, STEPS, lane));
+  await lane.rest(STEPS);
+  scores.push(await scoreAt(lab, motion, STEPS, lane));
+  lane.close();
+  return scores.map(({ six, hole, count }) => ({ six: Number(six), hole: Number(hole), count: Number(count) }));
+}
+
+test('what the text states of a surface that moves is so in its lanes', async () => {
+  says('is drawn out to twice its length');
+  expect(MOTIONS[0].range[1] / MOTIONS[0].range[0]).toBe(2);
+  says('What flows keeps its number and its cover');
+  says('so the share with six neighbours falls towards that of a particle system');
+  const [before, drawn, rest] = await driven(frontOn());
+  expect(drawn.six).toBeLessThan(before.six - 0.1);
+  expect(drawn.hole).toBeLessThan(1.5);
+  expect(Math.abs(drawn.count / rest.count - 1)).toBeLessThan(0.05);
+  says('It begins anew and brings all the order back');
+  expect(Math.abs(rest.six - before.six)).toBeLessThan(0.05);
+  says('Witkin and Heckbert’s particles have four rounds for each step of the slider;');
+  says('while the other system settles in the disorder that it has');
+  const system = await driven(new SystemLane(MOTIONS[0], { client: new LessonClient({ spawn }) }));
+  for (const { six, hole } of system) {
+    expect(six).toBeLessThan(0.75);
+    expect(hole).toBeLessThan(1.6);
+  }
+  says('Without births and deaths most of the order stays, and the particles drift apart.');
+  const [, closed, still] = await driven(frontOn(MOTIONS[0], { isClosed: true }));
+  expect(closed.six).toBeGreaterThan(before.six - 0.06);
+  expect(closed.hole).toBeGreaterThan(4);
+  expect(still).toEqual(closed);
+}, 60_000);
+
+test('the question about a surface that moves has the answer of its run', async () => {
+  const { right, words } = await lossOf(lab, frontOn());
+  expect(right).toBe('order');
+  expect(words).toMatch(/^There are 1,9\d\d particles, and a new front has 1,9\d\d\. /);
+}, 60_000);
+
+test('a tanglecube falls into eight and joins again, and Witkin and Heckbert’s particles with it', async () => {
+  const [, motion] = MOTIONS;
+  const lane = new SystemLane(motion, { client: new LessonClient({ spawn }) });
+  await lane.begin(0);
+  for (let step = 1; step <= STEPS; step += 1) await lane.follow(step);
+  // In eight pieces none is near a plane of symmetry.
+  for (const x of lane.particles.positions) expect(Math.abs(x)).toBeGreaterThan(0.5);
+  for (let step = STEPS - 1; step >= 0; step -= 1) await lane.follow(step);
+  expect((await scoreAt(lab, motion, 0, lane)).hole).toBeLessThan(1.6);
+  lane.close();
+}, 60_000);

@@ -38,7 +38,7 @@ test('keys and clickers go from stop to stop and blank the wall, and each stop h
   await expect(level).toHaveValue('0');
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   await page.keyboard.press('Escape');
-  await expect(page.locator('.chapter:visible')).toHaveCount(13);
+  await expect(page.locator('.chapter:visible')).toHaveCount(14);
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring');
   clean();
 });
@@ -121,7 +121,7 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
   await expect(page.locator('html')).toHaveAttribute('data-printed', '', { timeout: 60_000 });
   await expect(page.locator('.answers')).toBeHidden();
   await page.emulateMedia({ media: 'print' });
-  await expect(page.locator('.answer-list > li')).toHaveCount(9);
+  await expect(page.locator('.answer-list > li')).toHaveCount(10);
   await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
   await expect(page.locator('.answer-list')).not.toContainText('has not been asked');
   for (const still of await page.locator('.what-if-stills img').all())

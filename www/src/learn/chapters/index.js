@@ -13,6 +13,7 @@ export const FIGURES = {
   why: opening,
   cost,
   plane: async (context) => (await import('./plane.js')).plane(context),
+  moving: async (context) => (await import('./moving.js')).moving(context),
   six: sixChildren,
   circle,
   first: whoWasFirst,

@@ -1,0 +1,102 @@
+/** The chapter on a surface that moves: by mouse and by keyboard, held in the middle, beside other lanes, and at rest. */
+import { expect, test } from '@playwright/test';
+import { axe } from '../axe.js';
+import { fingerprint, live, openLesson, overflow } from './helpers.js';
+
+/** @import { Locator, Page } from '@playwright/test' */
+
+/** The numbers of particles in both lanes. @param {Locator} figure */
+const counts = async (figure) =>
+  (await figure.locator('.pair figcaption').allTextContents()).map((text) =>
+    Number(/([\d,]+) particle/.exec(text)?.[1].replace(',', '')),
+  );
+
+/** Answers the question, which opens the figures. @param {Page} page */
+async function answer(page) {
+  const question = page.locator('#predict-moving');
+  await question.getByRole('radio', { name: 'The order' }).check();
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question).toHaveAttribute('data-state', 'open', { timeout: 30_000 });
+  await expect(question).toContainText('As you said.');
+}
+
+test('particles follow the slider, by keyboard and by mouse, and a front comes back at rest', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#moving' });
+  const figure = await live(page, 'moving');
+  const chart = figure.locator('.chart');
+  await expect(chart).toBeHidden();
+  await expect(figure.locator('.compare')).toBeHidden();
+  await answer(page);
+  await expect(chart).toBeVisible();
+  const [front, system] = await counts(figure);
+  const slider = figure.getByRole('slider', { name: 'Parameter' });
+  await slider.focus();
+  await page.keyboard.press('End');
+  await expect(slider).toHaveAttribute('aria-valuetext', 'a = 1.60');
+  await expect(figure.locator('.pair figcaption').first()).toContainText('It flows');
+  await expect.poll(async () => (await counts(figure))[0]).toBeGreaterThan(1.7 * front);
+  await expect.poll(async () => (await counts(figure))[1]).toBeGreaterThan(1.5 * system);
+  await expect(figure.locator('.compare thead')).toContainText('It flows');
+  // In the middle of the slider, by mouse: the particles go back with the surface.
+  const box = await slider.boundingBox();
+  if (!box) throw new Error('There is no slider.');
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await expect(slider).toHaveAttribute('aria-valuetext', 'a = 1.20');
+  await expect.poll(async () => (await counts(figure))[0]).toBeLessThan(1.6 * front);
+  const six = async () => Number(/flow ([\d.]+) %/.exec(await chart.innerText())?.[1]);
+  await expect.poll(six).toBeLessThan(80);
+  await figure.getByRole('button', { name: 'Come to rest' }).click();
+  await expect(figure.locator('.pair figcaption').first()).toContainText('A new front');
+  await expect.poll(six).toBeGreaterThan(80);
+  expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
+  clean();
+});
+
+test('a motion can be held, and the lane beside it chosen: none is born there, and the tanglecube falls apart', async ({
+  page,
+}) => {
+  const { clean } = await openLesson(page, { hash: '#moving', width: 390 });
+  const figure = await live(page, 'moving');
+  await figure.getByRole('button', { name: 'There and back' }).click();
+  await expect(figure.getByRole('slider')).not.toHaveValue('0');
+  await figure.getByRole('button', { name: 'Hold' }).click();
+  const held = await figure.getByRole('slider').inputValue();
+  expect(Number(held)).toBeLessThan(60);
+  await figure.getByRole('combobox', { name: 'Beside it' }).selectOption('Without births and deaths');
+  await expect(figure.getByRole('slider')).toHaveValue('0');
+  await expect(figure.locator('.pair figcaption').first()).toContainText('A front: 1,');
+  const [born, beside] = await counts(figure);
+  expect(beside).toBe(born);
+  await figure.getByRole('slider').focus();
+  await page.keyboard.press('End');
+  await expect.poll(async () => (await counts(figure))[0]).toBeGreaterThan(1.7 * born);
+  expect((await counts(figure))[1]).toBe(born);
+  await figure.getByRole('combobox', { name: 'Surface' }).selectOption('A tanglecube falls into eight');
+  await expect(figure.getByRole('slider')).toHaveAttribute('aria-valuetext', 'c = 11.00');
+  await expect.poll(async () => (await counts(figure))[1]).toBeGreaterThan(1500);
+  expect(await overflow(page)).toBe(0);
+  clean();
+});
+
+test('under reduced motion the picture is where the slider is, at once', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await openLesson(page, { hash: '#moving' });
+  const figure = await live(page, 'moving');
+  const picture = figure.locator('.picture').first();
+  const seen = new Set([await fingerprint(picture)]);
+  await figure.getByRole('slider').focus();
+  await page.keyboard.press('End');
+  for (;;) {
+    seen.add(await fingerprint(picture));
+    if ((await figure.locator('.pair figcaption').first().innerText()).startsWith('It flows')) break;
+  }
+  seen.add(await fingerprint(picture));
+  expect(seen.size).toBe(2);
+});
+
+test('the link to the first page grabs its surface', async ({ page }) => {
+  await openLesson(page, { hash: '#moving' });
+  await page.getByRole('link', { name: 'Grab the ellipsoid' }).click();
+  await page.waitForURL(/\?grab/);
+  await expect(page.getByRole('button', { name: 'Grab', exact: true })).toHaveAttribute('aria-pressed', 'true');
+});
