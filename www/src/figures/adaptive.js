@@ -17,6 +17,8 @@ const HALF = 4.5;
 /** Radii at which the arcs are drawn: outside the particle, the free angle outside the taken one. */
 const TAKEN_AT = 1.14;
 const FREE_AT = 1.36;
+/** Where τ is written: this far before the end of its arc, in radians, at this radius. */
+const [TAU_BEFORE, TAU_AT] = [0.06, 1.66];
 /** Radius of the dot of a push. */
 const DOT = 0.07;
 
@@ -79,7 +81,8 @@ function anglesOf({ room, pushes }, plane) {
     line('free', arcOf(from, room.tau_rad, FREE_AT)),
     line('taken', arcOf(from, room.phi_rad, TAKEN_AT)),
     label('name', middle(room.phi_rad, 0.66), 'φ'),
-    label('name', isRing ? [0, -FREE_AT - 0.4] : middle(room.tau_rad, FREE_AT + 0.4), 'τ'),
+    // At the end of the free angle, between two discs: in its middle would be the number of one.
+    label('name', isRing ? [0, -FREE_AT - 0.4] : polar(from + room.tau_rad - TAU_BEFORE, TAU_AT), 'τ'),
   ];
 }
 

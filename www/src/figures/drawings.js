@@ -196,9 +196,12 @@ export function lens({ subject, place }, profile, child) {
 }
 
 /** From here on, in radii, a landing beside the plane is named: its cross is then seen off the curve. */
-const ASIDE = 0.02;
+export const ASIDE = 0.02;
 
-/** Says that Newton's method has left the plane of a drawing, if it has. @param {Profile} profile */
+/**
+ * Says that Newton's method has left the plane of a drawing, if it has.
+ * @param {Pick<Profile, 'newtonAside'>} profile
+ */
 export const asideWords = ({ newtonAside }) =>
   newtonAside > ASIDE ? `, ${formatFixed(newtonAside, 2)} r beside this plane: the cross is its shadow` : '';
 

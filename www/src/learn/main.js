@@ -70,6 +70,8 @@ const figures = queryAll(document, '[data-figure]').map((host) => {
   const build = name === 'order' ? async () => blindPair(await lab) : () => FIGURES[name](context);
   return mountFigure(host, build);
 });
+// The numbers of the text are handles of live figures.
+for (const { stage, ready } of figures) void ready.then(async () => (await import('./drag.js')).mountNumbers(stage));
 for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
 const bench = lab.then((ready) => {
   mountCards(byId('cards'), ready);

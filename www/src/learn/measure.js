@@ -1,11 +1,14 @@
 /** Measurements of a run for the figures, worked out from its particles. */
 import { NO_PARENT } from '../engine/core-numbers.js';
+import { momentAt } from '../figures/moment.js';
+import { openParticle } from '../figures/particle.js';
 import { between, createGrid } from '../ui/neighbours.js';
+import { NoSurface } from './lab.js';
 
 /**
  * @import { Lane } from '../engine/lesson/types.js'
  * @import { LessonParticles } from '../engine/types.js'
- * @import { LabRun, Snapshot } from './types.js'
+ * @import { Lab, LabRun, Snapshot } from './types.js'
  */
 
 /**
@@ -72,6 +75,20 @@ export function sharpestBend({ normals, parents }) {
     if (cosine < least) [child, least] = [i, cosine];
   }
   return child < 0 ? null : { child, parent: parents[child] };
+}
+
+/**
+ * Opens the particle around which the surface bends most, at the slot of the child beyond the bend.
+ * @param {Lab} lab
+ */
+export async function openBend(lab) {
+  const run = await lab.coarse();
+  const bend = sharpestBend(run.placed);
+  if (!bend) throw new NoSurface('The surface holds one particle only, which has no children.');
+  const opened = await openParticle(run.client, run, bend.parent);
+  const whole = momentAt(opened.events, opened.events.length - 1);
+  const slot = whole.children.find(({ particle, fate }) => particle === bend.child && fate === 'added')?.slot ?? 1;
+  return { run, opened, whole, slot, profile: opened.profiles[slot] };
 }
 
 /**

@@ -7,9 +7,13 @@ import { draw, footOf, scaleOf } from '../ui/chart.js';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
+/** @import { Signal } from '@preact/signals-core' */
 /** @import { Children, Drawn } from '../ui/types.js' */
 
 /** @import { RangeOptions, SelectOptions } from './types.js' */
+
+/** The value of each range, by its input. @type {WeakMap<Element, Signal<number>>} */
+export const rangePlaces = new WeakMap();
 
 /**
  * A native range with its name and its value in words.
@@ -35,6 +39,7 @@ export function createRange({ name, max, value = 0, say, change }) {
     prop: { value: () => String(place.value) },
     on: { input: () => set(Number(input.value)) },
   });
+  rangePlaces.set(input, place);
   const output = h('output', { class: 'range-value', for: id }, () => say(place.value));
   return {
     element: h('div', { class: 'range-row' }, h('label', { for: id }, name), input, output),

@@ -6,11 +6,10 @@ import { openParticle } from '../figures/particle.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
-import { openBend } from './chapters/circle.js';
 import { costOf } from './chapters/cost.js';
 import { widestHole } from './chapters/rest.js';
 import { NoSurface } from './lab.js';
-import { asFineEverywhere, energiesOf, ringsOf, stepOfRest } from './measure.js';
+import { asFineEverywhere, energiesOf, openBend, ringsOf, stepOfRest } from './measure.js';
 
 /** @import { Prediction } from './types.js' */
 

@@ -19,7 +19,7 @@ import sheet from './present.css?url';
 const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), textarea';
 /** Elements that have a meaning of their own for some keys. */
 const PRESSED = 'button, select, summary, input, a[href]';
-const TURNED = 'input, select, .picture';
+const TURNED = 'input, select, .picture, .number';
 /** A longer range of a figure is walked in `FEW` presses, a shorter one value by value. */
 const LONG = 12;
 const FEW = 6;

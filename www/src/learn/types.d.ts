@@ -2,7 +2,8 @@
 import type { Lane, LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
 import type { LessonClient, LessonEvent, LessonParticles } from '../engine/types.js';
 import type { Palette } from '../engine/view/types.js';
-import type { FormulaSurface } from '../ui/types.js';
+import type { Point } from '../figures/types.js';
+import type { FormulaSurface, Scale } from '../ui/types.js';
 import type { Lab } from './lab.js';
 import type { Stops } from './predict.js';
 
@@ -159,6 +160,32 @@ export type Law = LessonSettings['law'];
 export type Subject = { surface: FormulaSurface; isOwn: boolean; from: string; notice: string };
 /** The input of a figure: the runs, and the predictions that were made. */
 export type Context = { lab: Promise<Lab>; stops: Stops };
+/**
+ * A slot in its plane, from p: places are (along V, along N). `bend` is that of the surface towards the child, `slope`
+ * |∇f| in p, `section` the curve f = 0; `newton` are the places of Newton's method, `landing` its distance from p, and
+ * `aside` how far beside the plane it lies.
+ */
+export interface SlotCase {
+  bend: number;
+  radius: number;
+  slope: number;
+  valueAt: (theta: number) => number;
+  newton: Point[];
+  landing: number | null;
+  aside: number;
+  section: Float32Array;
+}
+/** A landing of Newton's method: bend · r, the distance from the parent over 2r, and how far beside the plane in r. */
+export type Landing = { bend: number; share: number; aside: number };
+/** A number in a sentence. */
+export interface NumberOptions {
+  name: string;
+  scale: Scale;
+  /** read anew whenever its signals change */
+  value: () => number;
+  say: (value: number) => string;
+  change: (value: number) => void;
+}
 export interface RangeOptions {
   name: string;
   max: number;

@@ -72,6 +72,31 @@ export function nudge(scale, value, presses, fine) {
   return snap(scale, value + presses * step, fineness);
 }
 
+/** Presses for each key of a slider. @type {Record<string, number>} */
+export const KEYS = {
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  ArrowRight: 1,
+  ArrowUp: 1,
+  PageDown: -10,
+  PageUp: 10,
+  Home: -Infinity,
+  End: Infinity,
+};
+
+/**
+ * Returns the value after a key of a slider was pressed, with Shift ten times finer; null for any other key.
+ * @param {Scale} scale @param {number} value
+ * @param {Pick<KeyboardEvent, 'key' | 'shiftKey' | 'altKey' | 'ctrlKey' | 'metaKey'>} event
+ */
+export function afterKey(scale, value, { key, shiftKey, altKey, ctrlKey, metaKey }) {
+  const presses = KEYS[key];
+  if (presses === undefined || altKey || ctrlKey || metaKey) return null;
+  return Number.isFinite(presses)
+    ? nudge(scale, value, presses, shiftKey)
+    : snap(scale, presses > 0 ? scale.max : scale.min);
+}
+
 /** Largest number of values that a slider can select. Random seeds have more and get only a number box. */
 const SLIDER_PLACES = 20000;
 

@@ -7,21 +7,10 @@ import { untracked } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { h, live, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
-import { nudge, snap, toPlace, toValue } from './scale.js';
+import { afterKey, KEYS, nudge, toPlace, toValue } from './scale.js';
 
 /** @import { Scale, Slider, SliderOptions } from './types.js' */
 
-/** @type {Record<string, number>} */
-const KEYS = {
-  ArrowLeft: -1,
-  ArrowDown: -1,
-  ArrowRight: 1,
-  ArrowUp: 1,
-  PageDown: -10,
-  PageUp: 10,
-  Home: -Infinity,
-  End: Infinity,
-};
 /** Number of positions of the range input: enough for a 4K wide slider with Shift. */
 const PLACES = 10000;
 /** Width of the thumb in pixels, as in the style sheet. */
@@ -206,16 +195,12 @@ function listenToKeys(model) {
     if (!model.dragging) options.change(model.value, false);
   });
   range.addEventListener('keydown', (event) => {
-    const presses = KEYS[event.key];
-    if (presses === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
+    const next = afterKey(model.scale, model.value, event);
+    if (next === null) return;
     event.preventDefault();
-    const { scale, value } = model;
-    const next = Number.isFinite(presses)
-      ? nudge(scale, value, presses, event.shiftKey)
-      : snap(scale, presses > 0 ? scale.max : scale.min);
     model.take(next, true);
   });
   range.addEventListener('keyup', (event) => {
-    if (KEYS[event.key] !== undefined) options.change(model.value, false);
+    if (event.key in KEYS) options.change(model.value, false);
   });
 }

@@ -1,10 +1,7 @@
 /** The live figure of each chapter, by the name that the page's markup gives it. */
-import { circle } from './circle.js';
 import { cost } from './cost.js';
-import { sixChildren, whoWasFirst } from './particle.js';
 import { rest, seams } from './rest.js';
 import { opening, rings } from './rings.js';
-import { sizes } from './sizes.js';
 
 /** @import { Context } from '../types.js' */
 
@@ -14,11 +11,12 @@ export const FIGURES = {
   cost,
   plane: async (context) => (await import('./plane.js')).plane(context),
   moving: async (context) => (await import('./moving.js')).moving(context),
-  six: sixChildren,
-  circle,
-  first: whoWasFirst,
+  six: async (context) => (await import('./particle.js')).sixChildren(context),
+  circle: async (context) => (await import('./circle.js')).circle(context),
+  first: async (context) => (await import('./particle.js')).whoWasFirst(context),
   rings,
   seams,
   rest,
-  sizes,
+  angles: async () => (await import('./angles.js')).angles(),
+  sizes: async (context) => (await import('./sizes.js')).sizes(context),
 };

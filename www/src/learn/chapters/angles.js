@@ -1,0 +1,123 @@
+/** How children of another size find room around a particle: the angles φ and τ, with a handle on each radius. */
+import { computed, signal } from '@preact/signals-core';
+import { adaptivePlane } from '../../figures/adaptive.js';
+import { polar } from '../../figures/geometry.js';
+import { momentAt } from '../../figures/moment.js';
+import { ring } from '../../figures/svg.js';
+import { inDegrees, tell } from '../../figures/words.js';
+import { button } from '../../ui/button.js';
+import { fill, h, live } from '../../ui/dom.js';
+import { formatCount, formatFixed } from '../../ui/format.js';
+import { createNumber, dragIn } from '../drag.js';
+import { createRange, facts } from '../parts.js';
+import { roomEvents, takenAngle } from '../room.js';
+
+/** Limits of the two radii, in any unit: what counts is one over the other. */
+const SCALE = { min: 0.5, max: 1.25, step: 0.01 };
+/** Half size of the drawing, in the same unit: both radii at their largest, and a margin. */
+const HALF = 4;
+/** Where the handle of the particle is: on the side that is filled last. */
+const HANDLE_RAD = -2.2;
+/** Size of a handle. */
+const HANDLE = 0.16;
+/** The figure opens with some children placed. */
+const OPENS_AT = 16;
+
+export async function angles() {
+  const [own, other] = [signal(1), signal(0.7)];
+  const events = computed(() => roomEvents(own.value, other.value));
+  const box = h('div', { class: 'drawing-box' });
+  const host = h('div', { class: 'side' });
+  /** @param {string} name @param {typeof own} radius */
+  const handle = (name, radius) =>
+    createNumber({
+      name,
+      scale: SCALE,
+      value: () => radius.value,
+      say: (value) => formatFixed(value, 2),
+      change(value) {
+        radius.value = value;
+      },
+    });
+  const at = signal(OPENS_AT);
+  const last = () => events.value.length - 1;
+  // The number of events follows the radii, so that of the range does, too.
+  const range = createRange({
+    name: 'Step',
+    max: 1,
+    say: () => `${formatCount(Math.min(at.value, last()) + 1)} of ${formatCount(last() + 1)}`,
+    change(to) {
+      at.value = to;
+    },
+  });
+  live(range.input, () => {
+    range.input.max = String(last());
+    range.place.value = Math.min(at.value, last());
+  });
+  const moment = computed(() => momentAt(events.value, Math.min(at.value, last())));
+  const step = (/** @type {-1 | 1} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ sign) =>
+    button({
+      icon: sign,
+      'aria-label': label,
+      press: () => range.set(Math.max(0, Math.min(last(), range.get() + by))),
+    });
+
+  live(box, () => fill(box, drawingOf(own.value, other.value, moment.value)));
+  let held = own;
+  dragIn(box, ([x, y], isFirst) => {
+    // In the drawing the particle has the radius 1.
+    const [far, right] = [own.value * Math.hypot(x, y), own.value * x];
+    if (isFirst) held = far < 1.25 * own.value ? own : other;
+    const value = held === own ? far : (right - own.value) / 2;
+    held.value = Math.max(SCALE.min, Math.min(SCALE.max, Math.round(100 * value) / 100));
+  });
+  fill(
+    host,
+    h(
+      'p',
+      null,
+      'A particle of radius ',
+      handle('Radius of the particle', own),
+      ' among others of radius ',
+      handle('Radius of the others', other),
+      () => `: each takes φ = ${inDegrees(takenAngle(own.value, other.value), 1)}.`,
+    ),
+    h('p', { class: 'told', 'aria-live': 'polite' }, () =>
+      tell(moment.value, { particle: 0, level: 0, parent: null, radius: own.value }),
+    ),
+    h('div', { class: 'controls' }, step(-1, 'Step back', 'back'), step(1, 'Step forward', 'forward'), range.element),
+    h('div', null, () => {
+      const placed = events.value.filter((event) => event.type === 'fate' && event.fate === 'added').length;
+      return facts([
+        ['360° / φ', formatFixed((2 * Math.PI) / takenAngle(own.value, other.value), 2)],
+        ['Placed, with the first one', formatCount(placed + 1)],
+      ]);
+    }),
+  );
+  return [h('div', { class: 'two room' }, box, host)];
+}
+
+/** @param {number} own @param {number} other @param {ReturnType<typeof momentAt>} moment */
+function drawingOf(own, other, moment) {
+  const positions = Float32Array.of(0, 0, 0, own + other, 0, 0);
+  const svg = adaptivePlane(
+    {
+      subject: { particle: 0, level: 0, parent: null, radius: own },
+      place: [0, 0, 0],
+      normal: [0, 0, 1],
+      positions,
+      normals: Float32Array.of(0, 0, 1, 0, 0, 1),
+      radii: Float32Array.of(own, other),
+      events: [],
+      profiles: [],
+    },
+    moment,
+  );
+  // Both radii are drawn to one scale; the drawing's own unit is the radius of the particle.
+  const half = HALF / own;
+  svg.setAttribute('viewBox', `${-half} ${-half} ${2 * half} ${2 * half}`);
+  svg.style.setProperty('--unit', String(1 / own));
+  const size = HANDLE / own;
+  svg.append(ring('hand', polar(HANDLE_RAD, 1), size), ring('hand', [1 + (2 * other) / own, 0], size));
+  return svg;
+}
