@@ -1,13 +1,13 @@
 //! Particles that follow a moving surface, beside fresh runs: `docs/flow.md` is what this writes.
 //!
-//! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles. `--count N` takes
-//! another number, `--adaptive` takes sizes that follow the curvature, and `--random N` the motions of N random surfaces instead, on which the
+//! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles, of fronts and of
+//! refined runs. `--count N` takes another number, `--front` and `--refined` one of the two, `--adaptive` takes sizes that follow the curvature, and `--random N` the motions of N random surfaces instead, on which the
 //! constants of the flow are chosen.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::{Figures, Run, Sampling, Settings, SizeMode};
+use marching_particles::{Figures, Method, Run, Sampling, Settings, SizeMode};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 use std::borrow::Cow;
@@ -86,6 +86,10 @@ a fresh run of the same radius, whose figures stand in brackets. This page is wr
 figures but the times are the same on every machine; README.md says what they mean, and on which machine the times were taken. *Still the
 first*: particles of the run before the surface moved, over those that the smaller of the two surfaces has room for. *Fresh / frame*: time
 of a fresh run over that of a frame.
+
+The particles of a front are kept even by births, deaths and a step of relaxation, and lose the order of the front. Those of a refined run
+move with its mesh and keep most of their order. Where a surface tears, joins or comes into the box, they go on without a mesh until they
+can be joined again.
 ";
 
 const COLUMNS: &str = "\
@@ -94,12 +98,15 @@ const COLUMNS: &str = "\
 
 fn main() {
     let (mut counts, mut sampling, mut sweeps) = (Vec::new(), Sampling::Uniform, Vec::from(SWEEPS));
+    let mut methods = vec![Method::Front, Method::Refined];
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut number = || -> u32 {
             arguments.next().and_then(|number| number.parse().ok()).expect("a number after the option")
         };
         match argument.as_str() {
+            "--front" => methods = vec![Method::Front],
+            "--refined" => methods = vec![Method::Refined],
             "--count" => counts.push(number()),
             "--adaptive" => sampling = Sampling::Adaptive,
             "--random" => sweeps = (0..u64::from(number())).map(random_sweep).collect(),
@@ -112,12 +119,15 @@ fn main() {
         counts.extend(COUNTS);
     }
     println!("{HEAD}");
-    for count in counts {
-        println!("## About {count} particles\n\n{COLUMNS}");
-        for sweep in &sweeps {
-            measure(sweep, count, sampling);
+    for method in methods {
+        let of = if method == Method::Front { "a front" } else { "a refined run, with its mesh" };
+        for &count in &counts {
+            println!("## About {count} particles of {of}\n\n{COLUMNS}");
+            for sweep in &sweeps {
+                measure(sweep, count, method, sampling);
+            }
+            println!();
         }
-        println!();
     }
 }
 
@@ -149,9 +159,9 @@ impl Compared {
     }
 }
 
-fn measure(sweep: &Sweep, count: u32, sampling: Sampling) {
+fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
     let bounds = Bounds::cube(sweep.half);
-    let by_count = settings!(sampling; ..Settings::with_count(count).in_box(bounds));
+    let by_count = settings!(method, sampling; ..Settings::with_count(count).in_box(bounds));
     let field = |frame: u32| {
         let q = sweep.from + (sweep.to - sweep.from) * f64::from(frame) / f64::from(FRAMES);
         Formula::parse(&sweep.formula).and_then(|formula| formula.with("q", q)).expect("a formula")

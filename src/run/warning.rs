@@ -398,8 +398,8 @@ impl fmt::Display for Warning {
                 place(*position, *length)
             ),
             Self::Moved => f.write_str(
-                "The particles have followed the surface while it moved: they are even, not in order, and components were looked \
-                 for by the survey alone. A new run places them in order.",
+                "The particles have followed the surface while it moved: they are even, but less in order than those of a run, \
+                 and components were looked for by the survey alone. A new run places them in order.",
             ),
             Self::EndedEarly { seeds } => write!(
                 f,

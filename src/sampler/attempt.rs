@@ -195,6 +195,26 @@ impl Attempt {
         Some(refine::Target { halvings: *halvings, radius: self.radius as f32, grading, count })
     }
 
+    /// The target of a mesh of one radius that follows a moving surface.
+    pub(super) fn moving_target(&self, settings: &Settings) -> refine::Target {
+        let count = match settings.size_mode {
+            SizeMode::Count => refine::Count::Total(f64::from(settings.count)),
+            SizeMode::Radius => refine::Count::PerCell(self.packing),
+        };
+        refine::Target { halvings: 0, radius: self.radius as f32, grading: None, count }
+    }
+
+    /// Spacing of the hexagonal lattice with as many particles of one radius as are expected.
+    pub(super) fn spacing(&self) -> f32 {
+        (2.0 * self.radius / self.packing.sqrt()) as f32
+    }
+
+    /// Factor by which the radius has to grow on a surface of this area, where the number of particles is given.
+    pub(super) fn growth(&self, settings: &Settings, area: f64) -> f64 {
+        let radius = (area * self.packing / (CELL_AREA * f64::from(settings.count))).sqrt();
+        if settings.size_mode == SizeMode::Count { radius / self.radius } else { 1.0 }
+    }
+
     /// The first attempt at the front that stands because this one's was refused.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
         self.end_refinement();

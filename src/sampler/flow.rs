@@ -11,7 +11,8 @@
 //! * A particle with less energy than all around it, where that is too little, gets a child in the widest gap beside it.
 //!
 //! Births and deaths at extrema of the energy are spread evenly, and hold the density. They leave the disorder of Witkin and Heckbert's
-//! system: the order of the fronts comes back with a run.
+//! system: the order of the fronts comes back with a run. The particles of a refined run keep theirs, as long as they move with its
+//! [mesh](crate::sampler::refine::MovingMesh).
 //!
 //! # Differs from Witkin and Heckbert
 //!
@@ -124,6 +125,8 @@ pub(crate) struct Flow {
     frames: u32,
     /// Whether particles are neither born nor die but where the transport loses them.
     pub(crate) is_closed: bool,
+    /// Whether particles were balanced since they have moved with a mesh.
+    pub(crate) is_balanced: bool,
     /// Whether the last frame came to its end, so that the neighbour lists are those of these particles.
     pub(crate) is_whole: bool,
     /// The number of the next particle that is born.
@@ -168,6 +171,46 @@ impl Flow {
         self.growth
     }
 
+    /// Ends a frame of particles that have moved with a mesh, in which their radius should have grown by a factor if it is given. Returns
+    /// whether they cover the surface; if not, the next frame balances them.
+    pub(crate) fn end_with_mesh(
+        &mut self,
+        particles: &mut Particles,
+        survey: &Survey,
+        growth: Option<f64>,
+    ) -> bool {
+        self.frames = (self.frames + 1) % BALANCE_EVERY;
+        self.growth = growth.unwrap_or(1.0);
+        self.is_balanced = false;
+        self.number(particles);
+        if growth.is_none() {
+            return true;
+        }
+        refill(&mut self.columns.is_dead, particles.len(), false);
+        self.fill_grids(particles);
+        let covers =
+            survey.position.iter().zip(&survey.normal).all(|(&p, &n)| self.is_covered(particles, p, n));
+        if !covers {
+            self.frames = 0;
+        }
+        covers
+    }
+
+    /// Lets the next frame balance the particles, if this one does not.
+    pub(crate) fn hurry(&mut self) {
+        if !self.is_due() {
+            self.frames = BALANCE_EVERY - 1;
+        }
+    }
+
+    /// Gives the particles that were born their numbers.
+    pub(crate) fn number(&mut self, particles: &mut Particles) {
+        while particles.identity.len() < particles.len() {
+            particles.identity.push(self.next_identity);
+            self.next_identity += 1;
+        }
+    }
+
     /// Whether the next frame balances the particles.
     pub(crate) fn is_due(&self) -> bool {
         self.frames == 0
@@ -202,6 +245,7 @@ impl Flow {
 
     /// Lets particles die and be born.
     fn balance(&mut self, probe: &mut Probe, surface: &FlowSurface, particles: &mut Particles) {
+        self.is_balanced = true;
         self.fill_grids(particles);
         self.find_energies(particles);
         let usual = self.find_growth(surface);
@@ -355,16 +399,21 @@ impl Flow {
     fn add_seeds(&mut self, probe: &mut Probe, surface: &FlowSurface, particles: &mut Particles) {
         let survey = surface.survey;
         for (&position, &normal) in survey.position.iter().zip(&survey.normal) {
-            self.grids.gather(position, |largest| UNCOVERED * largest, &mut self.found);
-            let is_covered = self.found.iter().any(|near| {
-                let j = near.index as usize;
-                let reach = UNCOVERED * particles.radius[j];
-                near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0
-            });
+            let is_covered = self.is_covered(particles, position, normal);
             if !is_covered && particles.len() < surface.max_particles {
                 self.add(probe, surface, particles, OrientedPoint { position, normal }, None);
             }
         }
+    }
+
+    /// Whether a particle of its sheet is near a point of the surface.
+    fn is_covered(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
+        self.grids.gather(position, |largest| UNCOVERED * largest, &mut self.found);
+        self.found.iter().any(|near| {
+            let j = near.index as usize;
+            let reach = UNCOVERED * particles.radius[j];
+            near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0
+        })
     }
 
     /// Places children in the open sectors of a particle.
@@ -466,8 +515,7 @@ impl Flow {
         particles.push(position, normal, radius, of, level, slots);
         self.columns.handle.push(self.grids.insert(position, radius, row));
         self.columns.is_dead.push(false);
-        particles.identity.push(self.next_identity);
-        self.next_identity += 1;
+        self.number(particles);
         self.open.push(row);
     }
 }

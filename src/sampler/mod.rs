@@ -512,7 +512,6 @@ impl Sampler {
             self.look_again(field, bounds);
         }
         self.bounds = *bounds;
-        self.output.corners = Vec::new();
         self.next(RunInput::Follow);
         true
     }

@@ -1,6 +1,6 @@
 //! The phases of a run: their public names, and the state that each of them carries.
 
-use super::refine::Components;
+use super::refine::{Components, MovingMesh};
 use serde::Serialize;
 
 /// Phase of a run.
@@ -49,6 +49,17 @@ pub enum StopReason {
     OneParticle,
 }
 
+/// What particles do on a surface that has moved.
+#[derive(Clone, Debug)]
+pub(super) enum FlowStage {
+    /// They move with the mesh of a refined run.
+    Mesh(Box<MovingMesh>),
+    /// They are transported to it.
+    Transport,
+    /// They make one of so many steps on it.
+    Step(u32),
+}
+
 /// The present phase and the state that only this phase has.
 ///
 /// | Phase | Event | Next phase |
@@ -68,6 +79,7 @@ pub enum StopReason {
 /// | `Marking` | the particles are marked | `Done` |
 /// | `Done` | the caller asks for more relaxation steps | `Relaxation` |
 /// | `Done` | the surface has moved | `Flow` |
+/// | `Flow` | the mesh cannot follow | `Flow`, without it |
 /// | `Flow` | the particles have made their steps on the new surface | `Done` |
 /// | any before `Marking` | the caller cancels the run | `Marking` |
 ///
@@ -90,8 +102,8 @@ pub(super) enum PhaseState {
     Refinement(Box<Components>),
     /// Moves the particles to more even distances.
     Relaxation,
-    /// Brings the particles to a surface that has moved: their transport, or one of so many steps there.
-    Flow(Option<u32>),
+    /// Brings the particles to a surface that has moved.
+    Flow(FlowStage),
     /// Finds out which components hold particles.
     Audit(StopReason),
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.

@@ -10,11 +10,11 @@ use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{FlowSurface, Settled};
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
-use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
+use crate::sampler::phase::{FlowStage, PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, Components, Next, Refusal};
+use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
-use crate::sampler::settings::{GapPolicy, Sampling, SizeMode};
+use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
@@ -109,7 +109,7 @@ impl Sampler {
             PhaseState::Filling => self.fill(probe, left),
             PhaseState::Refinement(refinement) => self.refine(probe, left, refinement),
             PhaseState::Relaxation => self.relax_particles(probe, left),
-            PhaseState::Flow(steps) => self.flow(probe, left, steps),
+            PhaseState::Flow(stage) => self.flow(probe, left, stage),
             PhaseState::Audit(reason) => self.audit(probe, left, reason),
             PhaseState::Marking(reason) => self.mark(probe.field, reason),
         }
@@ -555,25 +555,42 @@ impl Sampler {
         self.begin_relaxation()
     }
 
+    /// Begins a frame of particles that follow a moving surface: with the mesh of a refined run of one radius, as long as that can follow.
     fn begin_flow(&mut self) -> PhaseState {
+        if self.output.corners.is_empty() || self.attempt.sizing.is_some() || self.tools.flow.is_closed {
+            return self.begin_transport();
+        }
+        let (particles, corners) = (&self.output.particles, &self.output.corners);
+        let (target, spacing) = (self.attempt.moving_target(&self.settings), self.attempt.spacing());
+        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, self.tools.flow.is_due()) {
+            Some(mesh) => PhaseState::Flow(FlowStage::Mesh(Box::new(mesh))),
+            None => self.begin_transport(),
+        }
+    }
+
+    fn begin_transport(&mut self) -> PhaseState {
+        self.output.corners = Vec::new();
         let are_listed = core::mem::take(&mut self.tools.flow.is_whole);
         let limits = MoveLimits { bounds: self.bounds, largest_lift: f32::INFINITY };
         let (law, particles) = (self.law(), &self.output.particles);
         self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
-        PhaseState::Flow(None)
+        PhaseState::Flow(FlowStage::Transport)
     }
 
-    /// Goes on with a frame of particles that follow a moving surface: their transport, unless it is known how many `steps` are left.
-    fn flow(&mut self, probe: &mut Probe, left: &mut u32, steps: Option<u32>) -> PhaseState {
+    /// Goes on with a frame of particles that follow a moving surface.
+    fn flow(&mut self, probe: &mut Probe, left: &mut u32, stage: FlowStage) -> PhaseState {
+        if let FlowStage::Mesh(mesh) = stage {
+            return self.move_mesh(probe, left, mesh);
+        }
         self.relax_slice(probe, left);
         if !self.tools.relaxation.is_done() {
-            return PhaseState::Flow(steps);
+            return PhaseState::Flow(stage);
         }
         let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
         let particles = &mut self.output.particles;
-        let settled = match steps {
-            Some(steps) => Settled { has_changed: false, steps: steps - 1 },
-            None => {
+        let settled = match stage {
+            FlowStage::Step(steps) => Settled { has_changed: false, steps: steps - 1 },
+            _ => {
                 let surface = FlowSurface {
                     bounds: self.bounds,
                     survey: &self.survey,
@@ -591,10 +608,53 @@ impl Sampler {
         }
         if settled.steps == 0 {
             flow.is_whole = true;
+            if flow.is_due() && flow.is_balanced {
+                self.join_again(probe);
+            }
             return PhaseState::Done(StopReason::Complete);
         }
         relaxation.begin_following(particles, neighbours, !settled.has_changed);
-        PhaseState::Flow(Some(settled.steps))
+        PhaseState::Flow(FlowStage::Step(settled.steps))
+    }
+
+    /// Goes on with a frame in which the particles move with a mesh. Where that cannot follow, they go on without it.
+    fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32, mut mesh: Box<MovingMesh>) -> PhaseState {
+        let start = probe.evaluations();
+        let stepped = mesh.step(probe, &self.bounds, *left);
+        self.counts.relaxation_evaluations += probe.evaluations() - start;
+        match stepped {
+            Ok(units) => *left -= units.min(*left),
+            Err(_) => {
+                self.tools.flow.hurry();
+                return self.begin_transport();
+            }
+        }
+        if !mesh.is_done() {
+            return PhaseState::Flow(FlowStage::Mesh(mesh));
+        }
+        let growth = mesh.is_due().then(|| self.attempt.growth(&self.settings, mesh.area()));
+        let Output { particles, corners, moved, .. } = &mut self.output;
+        mesh.hand_on(self.attempt.radius as f32, particles, corners);
+        *moved = true;
+        if !self.tools.flow.end_with_mesh(particles, &self.survey, growth) {
+            *corners = Vec::new();
+        }
+        PhaseState::Done(StopReason::Complete)
+    }
+
+    /// Joins the particles of a refined run to a mesh again, which they have lost where the surface has torn or joined.
+    fn join_again(&mut self, probe: &mut Probe) {
+        let is_refined = self.settings.method == Method::Refined && self.counts.refusal.is_none();
+        if !is_refined || self.attempt.sizing.is_some() {
+            return;
+        }
+        let Output { particles, corners, .. } = &mut self.output;
+        let target = self.attempt.moving_target(&self.settings);
+        if let Ok(mesh) = MovingMesh::join(probe, particles, &self.bounds, target) {
+            mesh.hand_on(self.attempt.radius as f32, particles, corners);
+            self.tools.flow.number(particles);
+            self.tools.flow.is_whole = false;
+        }
     }
 
     fn relax_particles(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {

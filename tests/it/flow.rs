@@ -2,9 +2,10 @@
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
+use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Phase, Run, Sampling, Settings, Warning};
+use marching_particles::{Method, Phase, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
@@ -72,14 +73,18 @@ fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
 
 #[test]
 fn how_a_flow_is_cut_into_steps_changes_no_bit() {
-    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
-        let settings = settings!(sampling; ..Settings::with_count(1_200));
+    for (method, sampling) in [
+        (Method::Front, Sampling::Uniform),
+        (Method::Front, Sampling::Adaptive),
+        (Method::Refined, Sampling::Uniform),
+    ] {
+        let settings = settings!(method, sampling; ..Settings::with_count(1_200));
         let digest = |budget: u32| {
             let mut run = started(ELLIPSOID, 1.0, 1.5, &settings);
             sweep(&mut run, ELLIPSOID, [1.0, 1.2], 9, budget);
             (run.particles().digest(), run.particles().identity.clone())
         };
-        assert_eq!(digest(u32::MAX), digest(77), "{sampling:?}");
+        assert_eq!(digest(u32::MAX), digest(77), "{method:?}, {sampling:?}");
     }
 }
 
@@ -146,21 +151,62 @@ fn a_surface_too_far_or_with_creases_is_not_followed_and_a_run_goes_on() {
 
 #[test]
 fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
-    let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(2_000));
-    for frame in 1..=20 {
-        assert!(run.follow(field(ELLIPSOID, 1.0 + 0.01 * f64::from(frame))));
-        assert_eq!(run.step(500).phase, Phase::Flow);
-        match frame % 3 {
-            0 => drop(run.cancel()),
-            1 => finish(&mut run, u32::MAX),
-            // The next frame begins before this one has ended.
-            _ => {}
+    for method in [Method::Front, Method::Refined] {
+        let mut run = started(ELLIPSOID, 1.0, 1.5, &settings!(method; ..Settings::with_count(2_000)));
+        for frame in 1..=20 {
+            assert!(run.follow(field(ELLIPSOID, 1.0 + 0.01 * f64::from(frame))));
+            assert_eq!(run.step(500).phase, Phase::Flow);
+            match frame % 3 {
+                0 => drop(run.cancel()),
+                1 => finish(&mut run, u32::MAX),
+                // The next frame begins before this one has ended.
+                _ => {}
+            }
         }
+        finish(&mut run, u32::MAX);
+        let figures = run.report().measures.quality.expect("figures");
+        assert!(figures.accuracy.err_max < 1e-3, "{method:?}: off by {}", figures.accuracy.err_max);
+        assert_eq!(figures.connectivity.euler, 2, "{method:?}");
     }
-    finish(&mut run, u32::MAX);
-    let figures = run.report().measures.quality.expect("figures");
-    assert!(figures.accuracy.err_max < 1e-3, "off by {}", figures.accuracy.err_max);
-    assert_eq!(figures.connectivity.euler, 2);
+}
+
+/// The mesh of a run.
+fn mesh_of(run: &mut Run<Formula>) -> HalfEdges {
+    while run.join(u32::MAX).is_none() {}
+    HalfEdges::from_triangles(run.count(), run.triangles()).expect("a manifold")
+}
+
+#[test]
+fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
+    let waves = "z-0.3*sin(3*x+q)*cos(3*y)";
+    for (formula, way, half, euler) in [(ELLIPSOID, [1.0, 1.3], 1.5, 2), (waves, [0.0, 1.0], 1.5, 1)] {
+        let settings = settings!(method: Method::Refined; ..Settings::with_count(2_000));
+        let mut run = started(formula, way[0], half, &settings);
+        sweep(&mut run, formula, way, 40, u32::MAX);
+        let mesh = mesh_of(&mut run);
+        assert_eq!(mesh.check(), Ok(()), "{formula}");
+        assert_eq!(mesh.euler(), euler, "{formula}");
+        let figures = run.report().measures.quality.expect("figures");
+        assert!(figures.order.six > 0.8, "{formula}: {} have six neighbours", figures.order.six);
+        assert!(figures.coverage.cover < 1.4, "{formula}: a hole of {}", figures.coverage.cover);
+        assert!(run.count().abs_diff(2_000) <= 60, "{formula}: {} particles", run.count());
+        let identity = &run.particles().identity;
+        assert!(identity.is_sorted_by(|a, b| a < b), "{formula}");
+        let first = identity.iter().filter(|&&number| number < 2_000).count();
+        assert!(first > 1_400, "{formula}: only {first} of the first particles are left");
+    }
+}
+
+#[test]
+fn a_mesh_is_given_up_where_its_surface_falls_apart_and_joined_again() {
+    let settings = settings!(method: Method::Refined; ..Settings::with_count(4_000));
+    let mut run = started(TANGLECUBE, 11.0, 2.6, &settings);
+    for (way, euler) in [([11.0, 14.0], 16), ([14.0, 11.0], -8)] {
+        sweep(&mut run, TANGLECUBE, way, 60, u32::MAX);
+        let mesh = mesh_of(&mut run);
+        assert_eq!(mesh.check(), Ok(()), "{way:?}");
+        assert_eq!(mesh.euler(), euler, "{way:?}");
+    }
 }
 
 /// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without births and deaths, too.

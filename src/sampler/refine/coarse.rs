@@ -89,6 +89,7 @@ pub(super) fn join(
         size: Vec::new(),
         walls: Walls::new(bounds, &particles.position, spacing),
         on_crease: Vec::new(),
+        is_born: vec![false; rows.len()],
     };
     match ladder {
         None => judge_size(&net.mesh, particles, bounds, halvings)?,

@@ -21,6 +21,7 @@
 mod border;
 mod coarse;
 mod components;
+mod moving;
 mod net;
 mod recipe;
 mod refusal;
@@ -33,6 +34,7 @@ mod walls;
 pub(crate) use border::grown;
 pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatures};
 pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
+pub(crate) use moving::MovingMesh;
 pub use refusal::{Refusal, Spot};
 
 use crate::math::SQRT_3;
@@ -117,6 +119,8 @@ struct Shape {
 struct Goals {
     /// Whether it is the level of the front, where order is made. At full resolution the goals of a last level follow on it.
     is_first: bool,
+    /// Whether it is no level, but a frame of a mesh that follows a moving surface.
+    is_moving: bool,
     /// Levels still to come after this one.
     to_come: u32,
     recipe: Recipe,
@@ -159,7 +163,7 @@ enum Task {
 impl Goals {
     fn new(facts: &LevelFacts) -> Self {
         let &LevelFacts { is_first, to_come, .. } = facts;
-        Self { is_first, to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
+        Self { is_first, is_moving: false, to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
     }
 }
 
@@ -333,6 +337,9 @@ impl Refinement {
     /// The task that begins a pass of the recipe, or the task after the last pass.
     fn begin_pass(&mut self, pass: usize) -> Task {
         let Some(&kind) = self.level.recipe.passes.get(pass) else {
+            if self.level.is_moving {
+                return Task::Done;
+            }
             if self.level.is_first && self.level.to_come == 0 {
                 // At full resolution the lattice comes to rest where order was made.
                 let net = &self.net;
@@ -362,9 +369,13 @@ impl Refinement {
                 mesh.vertex_slots()
             }
             Pass::Centre => self.memory.near.len(),
-            Pass::Size { .. } | Pass::Limit { .. } | Pass::Sweep | Pass::Mend { .. } | Pass::Land => {
-                mesh.vertex_slots()
-            }
+            Pass::Size { .. }
+            | Pass::Limit { .. }
+            | Pass::Sweep
+            | Pass::Mend { .. }
+            | Pass::Land
+            | Pass::Follow => mesh.vertex_slots(),
+            Pass::Clip => 0,
         };
         Task::Pass { pass, next: 0, end: end as u32 }
     }
@@ -405,7 +416,7 @@ impl Refinement {
             Pass::Measure => self.tally.measure(net, next..last),
             Pass::Inspect => {
                 self.tally.inspect(net, next..last);
-                if self.target.halvings == 0 && !net.is_graded() {
+                if self.target.halvings == 0 && !net.is_graded() && !self.level.is_moving {
                     self.tally.inspect_shapes(net, self.level.spacing, next..last);
                 }
             }
@@ -437,6 +448,11 @@ impl Refinement {
             Pass::Land => {
                 net.land(&mut ground, self.level.spacing, next..last);
             }
+            Pass::Follow => {
+                net.follow(&mut ground, self.level.spacing, next..last);
+                net.rescue_refused(&mut ground, self.level.spacing, true)?;
+            }
+            Pass::Clip => border::clip(net, &mut ground, self.level.spacing)?,
         }
         if last < end {
             return Ok((Task::Pass { pass, next: last, end }, units));
@@ -545,10 +561,7 @@ impl Refinement {
         }
         let mut ground = Ground { probe, block: &mut self.memory.block };
         net.land(&mut ground, self.level.spacing, start as u32..end as u32);
-        let refused = core::mem::take(&mut ground.block.refused);
-        if let Some(&v) = refused.iter().find(|&&v| !net.rescue(&mut ground, self.level.spacing, v)) {
-            return Err(Refusal::Folded { at: net.position[v as usize].into() });
-        }
+        net.rescue_refused(&mut ground, self.level.spacing, false)?;
         if end < ends.len() {
             return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
         }

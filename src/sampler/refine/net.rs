@@ -96,6 +96,8 @@ pub(super) struct Net {
     pub(super) walls: Walls,
     /// The number of each particle on a crease or a tip: see [`CreaseLadder`]. [`NONE`] for the others; empty where the surface has neither.
     pub(super) on_crease: Vec<u32>,
+    /// Whether each particle was born since the surface moved. Empty where no surface moves.
+    pub(super) is_born: Vec<bool>,
 }
 
 impl Net {
@@ -109,6 +111,7 @@ impl Net {
             size: Vec::new(),
             walls: Walls::default(),
             on_crease: Vec::new(),
+            is_born: Vec::new(),
         }
     }
 
@@ -253,7 +256,7 @@ impl Net {
             self.position[v as usize] = moved;
             ground.block.add(v, p, moved);
         }
-        self.settle(ground, spacing);
+        self.settle(ground, spacing, false);
     }
 
     /// The position of a particle after the tangential part of a step, which is no longer than a share of the spacing.
@@ -274,17 +277,32 @@ impl Net {
 
     /// Brings particles that were put near the surface onto it.
     pub(super) fn land(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
+        self.land_all(ground, spacing, particles, false);
+    }
+
+    /// Brings particles to a surface that has moved, out of the box if it leads there.
+    pub(super) fn follow(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
+        self.land_all(ground, spacing, particles, true);
+    }
+
+    fn land_all(
+        &mut self,
+        ground: &mut Ground,
+        spacing: f32,
+        particles: impl Iterator<Item = u32>,
+        may_leave: bool,
+    ) {
         ground.block.clear();
         for v in particles.filter(|&v| self.mesh.has_vertex(v) && !self.is_pinned(v)) {
             let p = self.position[v as usize];
             ground.block.add(v, p, p);
         }
-        self.settle(ground, spacing);
+        self.settle(ground, spacing, may_leave);
     }
 
     /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
-    /// planes of the box on which they lie. Those that could not be go back to where they were.
-    fn settle(&mut self, ground: &mut Ground, spacing: f32) {
+    /// planes of the box on which they lie, out of the box if they `may_leave` it. Those that could not be go back to where they were.
+    fn settle(&mut self, ground: &mut Ground, spacing: f32, may_leave: bool) {
         let MovedBlock { which, before, points, refused, .. } = &mut *ground.block;
         refused.clear();
         for first in (0..points.len()).step_by(BATCH) {
@@ -292,7 +310,7 @@ impl Net {
             let (value, gradient) = ground.probe.gradients(&points[range.clone()]);
             let moved = which[range.clone()].iter().zip(&before[range.clone()]).zip(&points[range]);
             for (((&v, &before), &p), (&value, &gradient)) in moved.zip(value.iter().zip(gradient)) {
-                if let Some((position, normal)) = self.landing(v, p, value, gradient, spacing) {
+                if let Some((position, normal)) = self.landing(v, p, value, gradient, spacing, may_leave) {
                     self.position[v as usize] = position;
                     self.normal[v as usize] = normal;
                 } else {
@@ -305,13 +323,22 @@ impl Net {
 
     /// The position of a particle at `p` after one step of Newton's method, and the normal there; none if it cannot be brought back.
     #[inline]
-    fn landing(&self, v: u32, p: Vec3, value: f32, gradient: Vec3, spacing: f32) -> Option<(Vec3, Vec3)> {
+    fn landing(
+        &self,
+        v: u32,
+        p: Vec3,
+        value: f32,
+        gradient: Vec3,
+        spacing: f32,
+        may_leave: bool,
+    ) -> Option<(Vec3, Vec3)> {
         let inverse_slope = 1.0 / gradient.length();
         let normal = gradient * inverse_slope;
         let correction = value * inverse_slope;
         let longest = MAX_CORRECTION * spacing * self.size_of(v);
+        let planes = self.walls.planes(v);
         let position = if self.walls.is_near() {
-            self.walls.landing(self.walls.planes(v), p, value, gradient, longest)
+            self.walls.landing(planes, p, value, gradient, longest, may_leave)
         } else {
             (correction.abs() <= longest).then(|| p - normal * correction)
         };
@@ -448,6 +475,14 @@ impl Net {
         if first.planes.count() > second.planes.count() { first } else { second }
     }
 
+    /// Puts a new particle to a site. Its number may be that of one which was merged into another.
+    pub(super) fn put_new(&mut self, v: u32, site: Site) {
+        self.put(v, site);
+        if let Some(is_born) = self.is_born.get_mut(v as usize) {
+            *is_born = true;
+        }
+    }
+
     /// Puts a particle, which may be the next new one, to a site.
     pub(super) fn put(&mut self, v: u32, site: Site) {
         if self.position.len() == v as usize {
@@ -459,6 +494,9 @@ impl Net {
             }
             if !self.on_crease.is_empty() {
                 self.on_crease.push(NONE);
+            }
+            if !self.is_born.is_empty() {
+                self.is_born.push(true);
             }
         }
         self.position[v as usize] = site.position;

@@ -23,6 +23,10 @@ pub(super) enum Pass {
     Thin,
     /// A step of Newton's method for every particle, so that positions and normals are those of the surface.
     Land,
+    /// A step of Newton's method to a surface that has moved for every particle, out of the box if it leads there.
+    Follow,
+    /// Cuts away what lies beyond the box.
+    Clip,
     /// Checks the orientation of the finished faces.
     Inspect,
 }
@@ -60,6 +64,8 @@ pub(super) struct Tuning {
     whole_rounds: usize,
     /// Rounds of surgery at any other level, with a sweep after each. On the last level but one, which costs most, the first half of them is left out.
     rounds: usize,
+    /// Least gain of a trial in a frame of a moving mesh, in units of the spacing squared.
+    least_gain: f32,
     /// Loss that the first round of surgery accepts, in units of the spacing squared.
     loss: f32,
     /// Share of the rounds over which the accepted loss falls to 0. Later rounds accept no loss.
@@ -96,6 +102,9 @@ pub(super) const TUNING: Tuning = Tuning {
     whole_rounds: 2,
     // With 16 rounds at the first level, and two or three sweeps after each, no figure is better beyond noise.
     rounds: 10,
+    // On twelve motions and eight of random surfaces 83 % of the first particles live to the end, and as many have six neighbours as with 0, where
+    // it is 77 %. With 0.5 it is 86 %, and holes are wider.
+    least_gain: 0.2,
     // With 0.06 the share of particles with six neighbours is 0.09 points smaller, and holes are 0.6 % wider.
     loss: 0.1,
     // So that the last three rounds of ten regain what losses have left.
@@ -177,6 +186,23 @@ impl Recipe {
         if is_last {
             recipe.passes.push(Pass::Inspect);
         }
+        recipe
+    }
+
+    /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels between. Where it `is_due`, particles are born
+    /// and die.
+    pub(super) fn of_frame(is_due: bool, has_border: bool) -> Self {
+        let Plan { theta, delta, .. } = TUNING.between;
+        let mut recipe = Self { passes: vec![Pass::Follow, Pass::Follow, Pass::Clip], theta, delta };
+        recipe.sweep(1);
+        if is_due {
+            recipe.passes.extend([Pass::Measure, Pass::Mend { loss: -TUNING.least_gain }]);
+            recipe.sweep(1);
+        }
+        if has_border {
+            recipe.passes.extend([Pass::Thin, Pass::Flip]);
+        }
+        recipe.passes.push(Pass::Inspect);
         recipe
     }
 

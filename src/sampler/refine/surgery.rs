@@ -187,6 +187,7 @@ impl Surgeon {
         net.size.truncate(slots);
         net.walls.truncate(slots);
         net.on_crease.truncate(slots);
+        net.is_born.truncate(slots);
         false
     }
 
@@ -307,7 +308,7 @@ impl Surgeon {
 
     /// Adds a new particle to the columns and to the patch.
     fn add(&mut self, net: &mut Net, v: u32, site: Site, size: f32) {
-        net.put(v, site);
+        net.put_new(v, site);
         if net.is_graded() {
             net.size[v as usize] = size;
         }

@@ -156,7 +156,7 @@ impl Walls {
     }
 
     /// The position of a particle at `p` after one step of Newton's method on its planes, and the normal there. The position is on the
-    /// planes to the last bit, and in the box. None if the step is longer than `longest` or leads out of the box.
+    /// planes to the last bit, and in the box unless it `may_leave` it. None if the step is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,
         planes: Planes,
@@ -164,6 +164,7 @@ impl Walls {
         value: f32,
         gradient: Vec3,
         longest: f32,
+        may_leave: bool,
     ) -> Option<Vec3> {
         if planes.is_crease() {
             return Some(p);
@@ -176,7 +177,7 @@ impl Walls {
             slope * (value / slope.length_squared())
         };
         let q = self.pinned(p - step, planes);
-        let inside = q.clamp(self.lo, self.hi);
+        let inside = if may_leave { q } else { q.clamp(self.lo, self.hi) };
         // Written so that NaN fails.
         (step.length() <= longest && (q - inside).abs().max_element() <= self.slack).then_some(inside)
     }

@@ -123,7 +123,7 @@ fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Res
         None => return Err(Refusal::Cut { at: place.into() }),
     };
     let v = net.mesh.split(h);
-    net.put(v, site);
+    net.put_new(v, site);
     Ok(())
 }
 

@@ -47,6 +47,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Net {
         size: Vec::new(),
         walls: Walls::new(bounds, &position, SPACING),
         on_crease: Vec::new(),
+        is_born: Vec::new(),
         position,
     };
     // Formulas are moved to one side: which way is up depends on that.
@@ -99,11 +100,11 @@ fn particles_slide_along_faces_and_corners_stay() {
     assert!(step.x == 0.0 && step.dot(n).abs() < 1e-6 && step.length() > 0.5, "{step}");
     assert_eq!(walls.along(Planes::of(1).joined(Planes::of(5)), n, Vec3::ONE), Vec3::ZERO);
     // The curve in the plane is where f = y − 0.25 vanishes.
-    let landing = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1);
+    let landing = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1, false);
     assert_eq!(landing, Some(Vec3::new(1.0, 0.25, 0.2)));
-    let too_far = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01);
+    let too_far = walls.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01, false);
     assert_eq!(too_far, None);
-    let off_the_box = walls.landing(Planes::of(1), Vec3::new(1.0, 0.99, 0.2), -0.05, Vec3::Y, 0.1);
+    let off_the_box = walls.landing(Planes::of(1), Vec3::new(1.0, 0.99, 0.2), -0.05, Vec3::Y, 0.1, false);
     assert_eq!(off_the_box, None);
 }
 

@@ -1,0 +1,152 @@
+//! The mesh of a refined run that follows a surface while it moves, frame by frame.
+//!
+//! Newton's method brings the particles to the new surface, the springs and flips of a level keep the lattice even, and surgery lets
+//! particles be born and die where that costs least order: M. Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling",
+//! Symposium on Geometry Processing 2004, with the trials of this module in place of splits and collapses by length.
+//!
+//! Where a particle does not come to the surface, or a face looks against it, the surface has torn or joined. The mesh is given up then,
+//! and the particles go on without it: [`Flow`](crate::sampler::flow::Flow).
+
+use super::net::{MovedBlock, Net};
+use super::recipe::Recipe;
+use super::walls::{Planes, Walls};
+use super::{Goals, Refinement, Refusal, SurfaceFacts, Target};
+use crate::math::Bounds;
+use crate::mesh::half_edge::{HalfEdges, NONE};
+use crate::particles::{Particles, Slots};
+use crate::sampler::probe::Probe;
+use glam::Vec3;
+
+/// A frame of a mesh that follows a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct MovingMesh {
+    refinement: Refinement,
+    /// Whether particles are born and die in this frame.
+    is_due: bool,
+}
+
+impl MovingMesh {
+    /// Begins a frame with the particles of the frame before, and the mesh between them by its `corners`. Where `is_due`, particles are
+    /// born and die in it. None if the mesh does not end at the box.
+    pub(crate) fn new(
+        particles: &Particles,
+        corners: &[u32],
+        bounds: &Bounds,
+        target: Target,
+        spacing: f32,
+        is_due: bool,
+    ) -> Option<Self> {
+        let mesh = HalfEdges::from_triangles(particles.len(), corners.as_chunks().0).ok()?;
+        let mut net = Net {
+            mesh,
+            position: particles.position.clone(),
+            normal: particles.normal.clone(),
+            slots: vec![Slots::default(); particles.len()],
+            walls: Walls::new(bounds, &particles.position, spacing),
+            is_born: vec![false; particles.len()],
+            ..Net::default()
+        };
+        if !net.hold_border() {
+            return None;
+        }
+        let recipe = Recipe::of_frame(is_due, net.has_border());
+        let mut refinement = Refinement::of_layer(net, MovedBlock::default(), target, None);
+        refinement.level =
+            Goals { is_first: false, is_moving: true, to_come: 0, recipe, spacing, faces: 0.0 };
+        refinement.task = refinement.begin_pass(0);
+        Some(Self { refinement, is_due })
+    }
+
+    /// Joins particles that have followed the surface without a mesh to one.
+    ///
+    /// # Errors
+    ///
+    /// The place where that is in doubt.
+    pub(crate) fn join(
+        probe: &mut Probe,
+        particles: &Particles,
+        bounds: &Bounds,
+        target: Target,
+    ) -> Result<Self, Refusal> {
+        let refinement = Refinement::of_component(probe, &facts(bounds), particles, target)?;
+        Ok(Self { refinement, is_due: false })
+    }
+
+    /// Whether the frame has come to its end.
+    pub(crate) fn is_done(&self) -> bool {
+        self.refinement.is_done()
+    }
+
+    /// Whether particles are born and die in this frame.
+    pub(crate) fn is_due(&self) -> bool {
+        self.is_due
+    }
+
+    /// Area of the surface.
+    pub(crate) fn area(&self) -> f64 {
+        self.refinement.area()
+    }
+
+    /// Does `budget` units of work, or as many more as end a block, and returns how many.
+    ///
+    /// # Errors
+    ///
+    /// The defect for which the mesh cannot follow.
+    pub(crate) fn step(&mut self, probe: &mut Probe, bounds: &Bounds, budget: u32) -> Result<u32, Refusal> {
+        // The columns are filled in the end: a frame that is cancelled leaves those of the frame before.
+        let (units, _) = self.refinement.step(probe, &facts(bounds), &mut Particles::default(), budget)?;
+        Ok(units)
+    }
+
+    /// Puts the particles of the finished frame into the columns of the frame before, those that were born last, and the mesh into `corners`.
+    pub(crate) fn hand_on(self, radius: f32, particles: &mut Particles, corners: &mut Vec<u32>) {
+        let net = self.refinement.net;
+        let (old, born): (Vec<u32>, Vec<u32>) = (0..net.position.len() as u32)
+            .filter(|&v| net.mesh.has_vertex(v))
+            .partition(|&v| !net.is_born[v as usize]);
+        let mut place = vec![NONE; net.position.len()];
+        for (row, &v) in (0..).zip(&old) {
+            place[v as usize] = row;
+        }
+        particles.keep(|i| place[i] != NONE);
+        for (row, &v) in old.iter().enumerate() {
+            particles.position[row] = net.position[v as usize];
+            particles.normal[row] = net.normal[v as usize];
+        }
+        for &v in &born {
+            let near = net.mesh.neighbours(v).map(|other| place[other as usize]).find(|&row| row != NONE);
+            let (parent, level) =
+                near.map_or((Particles::NO_PARENT, 0), |row| (row, particles.level[row as usize] + 1));
+            place[v as usize] = particles.len() as u32;
+            let (position, normal) = (net.position[v as usize], net.normal[v as usize]);
+            particles.push(position, normal, radius, parent, level, Slots::default());
+        }
+        corners.clear();
+        corners.extend(net.mesh.triangles().flatten().map(|v| place[v as usize]));
+    }
+}
+
+/// What is known of a surface that moves.
+fn facts(bounds: &Bounds) -> SurfaceFacts<'_> {
+    SurfaceFacts { bounds: *bounds, sizing: None, ladder: None, bend: Vec3::ZERO, failures: 0 }
+}
+
+impl Net {
+    /// Lets the particles of the border stay on the planes of the box on which they lie. Returns whether each of them lies on one.
+    fn hold_border(&mut self) -> bool {
+        for v in 0..self.position.len() as u32 {
+            if !self.mesh.has_vertex(v) || !self.mesh.is_border(v) {
+                continue;
+            }
+            let p = self.position[v as usize];
+            let planes = (0..Planes::ALL)
+                .filter(|&plane| self.walls.depth(p, plane) == 0.0)
+                .fold(Planes::INNER, |planes, plane| planes.joined(Planes::of(plane)));
+            if planes.is_inner() {
+                return false;
+            }
+            self.walls.set(v, planes);
+        }
+        true
+    }
+}
