@@ -74,6 +74,10 @@ test('a motion can be held, and the lane beside it chosen: none is born there, a
   await figure.getByRole('combobox', { name: 'Surface' }).selectOption('A tanglecube falls into eight');
   await expect(figure.getByRole('slider')).toHaveAttribute('aria-valuetext', 'c = 11.00');
   await expect.poll(async () => (await counts(figure))[1]).toBeGreaterThan(1500);
+  // Two choices at once: what the first one has begun is given up.
+  await figure.getByRole('combobox', { name: 'Surface' }).selectOption('An ellipsoid is drawn out');
+  await figure.getByRole('combobox', { name: 'Beside it' }).selectOption('A new front each time');
+  await expect(figure.locator('.pair figcaption').last()).toContainText('A new front each time: 1,');
   expect(await overflow(page)).toBe(0);
   clean();
 });

@@ -65,8 +65,10 @@ export class FlowingFront {
     });
   }
 
+  /** Ends the worker. A step that is asked for is given up. */
   close() {
     this.#worker.terminate();
+    this.#fail('the front was closed');
   }
 
   /** @param {FromWorker} message */

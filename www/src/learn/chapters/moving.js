@@ -156,7 +156,7 @@ class Pursuit {
       if (next % MEASURED === 0) {
         // The surface does not run away from the meter.
         await this.#measured;
-        void this.#measure(false);
+        this.#measure(false).catch(() => {});
       }
       await new Promise((done) => setTimeout(done, STEP_MS - (performance.now() - sinceMs)));
     }
@@ -175,15 +175,18 @@ class Pursuit {
   #measure(isLast) {
     const [mine, step, { motion }] = [this.#begun, this.at.peek(), this];
     const now = this.#lanes.map(({ particles, evaluations }) => ({ particles, evaluations }));
-    this.#measured = this.#measured.then(async () => {
-      /** @type {Score[]} */
-      const scores = [];
-      for (const lane of now) if (mine === this.#begun) scores.push(await scoreAt(this.#lab, motion, step, lane));
-      if (mine !== this.#begun) return;
-      this.#past = [...this.#past, [scores[0].six ?? 0, scores[1].six ?? 0]];
-      this.shares.value = this.#past;
-      if (isLast) this.scorecard.tell([this.#name, 'Beside it'], scores);
-    });
+    // A measurement that has failed is no reason for the next one to fail.
+    this.#measured = this.#measured
+      .catch(() => {})
+      .then(async () => {
+        /** @type {Score[]} */
+        const scores = [];
+        for (const lane of now) if (mine === this.#begun) scores.push(await scoreAt(this.#lab, motion, step, lane));
+        if (mine !== this.#begun) return;
+        this.#past = [...this.#past, [scores[0].six ?? 0, scores[1].six ?? 0]];
+        this.shares.value = this.#past;
+        if (isLast) this.scorecard.tell([this.#name, 'Beside it'], scores);
+      });
     return this.#measured;
   }
 }
