@@ -114,7 +114,7 @@ test('the radii of a particle and of those around it are dragged, and φ and τ 
   expect(await numberOf(other)).toBeGreaterThan(0.6);
   expect(await numberOf(own)).toBe(0.5);
   await expect(figure.locator('.facts')).not.toContainText('first one6');
-  await drag(page, figure.locator('.hand').first(), -20, 26);
+  await drag(page, figure.locator('.hand').first(), 12, 26);
   expect(await numberOf(own)).toBeGreaterThan(0.5);
   expect(await overflow(page)).toBe(0);
   clean();

@@ -17,7 +17,7 @@ const SCALE = { min: 0.5, max: 1.25, step: 0.01 };
 /** Half size of the drawing, in the same unit: both radii at their largest, and a margin. */
 const HALF = 4;
 /** Where the handle of the particle is: on the side that is filled last. */
-const HANDLE_RAD = -2.2;
+const HANDLE_RAD = -1.1;
 /** Size of a handle. */
 const HANDLE = 0.16;
 /** The figure opens with some children placed. */

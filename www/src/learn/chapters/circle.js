@@ -68,7 +68,10 @@ export async function circle({ lab, stops }) {
   const sentence = h(
     'p',
     null,
-    () => (isHere.value ? 'At its sharpest bend this surface curves by ' : 'A sphere curves by '),
+    () =>
+      isHere.value
+        ? 'At its sharpest bend this surface curves by '
+        : `A ${bend.value > 0 ? 'sphere' : 'plane'} curves by `,
     handle('Bend', bend, 0, MOST_BEND / unit),
     ', and r is ',
     handle('r', radius, LEAST_R * unit, MOST_R * unit),
@@ -246,21 +249,18 @@ function valuesOf(slot, theta) {
   return svg;
 }
 
-/** The distances in r that the chart of Newton's method shows. */
-const [LEAST_FAR, MOST_FAR] = [1, 2.15];
+/** The largest distance in r that the chart of Newton's method shows. */
+const MOST_FAR = 2.15;
 
 /** Charts where Newton's method lands against bend · r. @param {readonly Landing[]} landings @param {SlotCase} slot */
 function errorsOf(landings, slot) {
   const words = `Distance at which Newton’s method lands, from 2r without a bend down to ${inRadii(2 * newtonShare(1), 1, 2)} at bend · r = 1; ${landingWords(landings)}`;
   const { svg, at, across, below, beside } = chartOf(6.8, words);
   const place = (/** @type {number} */ bend, /** @type {number} */ share) =>
-    at(
-      Math.min(1, Math.abs(bend)),
-      (Math.min(MOST_FAR, Math.max(LEAST_FAR, 2 * share)) - LEAST_FAR) / (MOST_FAR - LEAST_FAR),
-    );
-  for (const far of [1, 1.5, 2]) {
-    const y = (far - LEAST_FAR) / (MOST_FAR - LEAST_FAR);
-    svg.append(across(far === 2 ? 'axis' : 'rule', y), beside(y, `${far}r`));
+    at(Math.min(1, Math.abs(bend)), Math.min(1, (2 * share) / MOST_FAR));
+  for (const far of [0, 1, 2]) {
+    const y = far / MOST_FAR;
+    svg.append(across(far === 1 ? 'rule' : 'axis', y), beside(y, far === 0 ? '0' : `${far}r`));
   }
   for (const { bend, share, aside } of landings)
     svg.append(
@@ -273,7 +273,7 @@ function errorsOf(landings, slot) {
       bends.map((bend) => place(bend, newtonShare(bend))),
     ),
   );
-  svg.append(label('tick', at(0.84, 0.5), 'a sphere'), label('tick', at(0.84, 0.96), 'the circle'));
+  svg.append(label('tick', at(0.84, 0.7), 'a sphere'), label('tick', at(0.84, 1.03), 'the circle'));
   svg.append(below(0.01, '0'), below(0.5, '0.5'), below(0.88, 'bend · r = 1'));
   const { landing, radius, bend } = slot;
   if (landing !== null) svg.append(ring('hand', place(bend * radius, landing / (2 * radius)), 0.38));
