@@ -71,7 +71,8 @@ export function createReplay(lab, { films, names, isAdaptive, show, point }) {
     }
   }
   async function seek() {
-    const cost = (most() * range.get()) / PLACES;
+    // In this order, so that at the end it is no less than the most.
+    const cost = most() * (range.get() / PLACES);
     const pair = films.map((shots) => shotAt(shots, axis.peek().of, cost));
     for (const [k, shot] of pair.entries()) show(k, shot);
     wanted = pair;
@@ -81,7 +82,7 @@ export function createReplay(lab, { films, names, isAdaptive, show, point }) {
     name: 'Spent',
     max: PLACES,
     value: PLACES,
-    say: (at) => axis.value.say((most() * at) / PLACES),
+    say: (at) => axis.value.say(most() * (at / PLACES)),
     change: () => void seek(),
   });
   let speed = 1;
