@@ -423,7 +423,8 @@ impl Refinement {
             Pass::Sweep => net.relax(&mut ground, springs, next..last),
             Pass::Flip => net.flip(next..last),
             Pass::Mend { loss } => {
-                let aim = Aim { springs, delta: self.level.recipe.delta, faces: self.level.faces, loss };
+                let Recipe { delta, stretch, .. } = self.level.recipe;
+                let aim = Aim { springs, delta, faces: self.level.faces, loss, stretch };
                 for v in next..last {
                     units += TRIAL_UNITS * u32::from(self.memory.surgeon.mend(net, &mut ground, aim, v));
                 }

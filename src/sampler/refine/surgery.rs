@@ -22,10 +22,6 @@ const STILL_TO_GAIN: f32 = 0.5;
 /// the count is 0.10 % off; without a price it is 0.61 % off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles
 /// with six neighbours is 0.15 points smaller.
 const COUNT_PRICE: f32 = 20.0;
-/// A particle without a defect is tried as well if its edges are so much too short or too long on average. Without that the count is 0.03 %
-/// farther off on 43 random surfaces, and holes are 1.5 % wider.
-const CROWDED: f32 = 0.96;
-const SPARSE: f32 = 1.04;
 
 /// Parameters of a round of surgery.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +33,8 @@ pub(super) struct Aim {
     pub(super) faces: f32,
     /// Loss that a trial may make and still be kept, in units of the spacing squared.
     pub(super) loss: f32,
+    /// Share by which the edges of a particle without a defect are too short or too long on average where it is tried as well.
+    pub(super) stretch: f32,
 }
 
 /// Change of the number of particles that may mend a defect.
@@ -370,8 +368,8 @@ fn remedy(net: &Net, aim: Aim, v: u32) -> Option<Remedy> {
         Ordering::Less => Some(Remedy::OneFewer),
         Ordering::Greater => Some(Remedy::OneMore),
         Ordering::Equal => match net.mean_stretch(aim.springs, v) {
-            stretch if stretch < CROWDED => Some(Remedy::OneFewer),
-            stretch if stretch > SPARSE => Some(Remedy::OneMore),
+            stretch if stretch < 1.0 - aim.stretch => Some(Remedy::OneFewer),
+            stretch if stretch > 1.0 + aim.stretch => Some(Remedy::OneMore),
             _ => None,
         },
     }

@@ -137,7 +137,7 @@ proptest! {
         for (place, size) in places {
             let springs = Springs { spacing: SPACING * size, theta: 0.8, omega: 1.5 };
             let faces = net.mesh.faces() as f32;
-            let aim = Aim { springs, delta: 0.03, faces, loss: 0.0 };
+            let aim = Aim { springs, delta: 0.03, faces, loss: 0.0, stretch: 0.04 };
             let v = place % net.position.len() as u32;
             surgeon.mend(&mut net, &mut ground, aim, v);
             net.relax(&mut ground, springs, 0..v);
