@@ -17,6 +17,8 @@ const MAX_MOVE: f32 = 0.3;
 /// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. No run on 57
 /// smooth random surfaces does that, and 3 on 59 with creases, near sheets and singular points.
 const MAX_CORRECTION: f32 = 0.5;
+/// No step to a surface that has moved is longer than this share of the spacing. Particles without a mesh are followed as far.
+const LONGEST_WAY: f32 = 1.0;
 /// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
 const FLIP_SLACK: f32 = 1e-5;
 
@@ -335,7 +337,8 @@ impl Net {
         let inverse_slope = 1.0 / gradient.length();
         let normal = gradient * inverse_slope;
         let correction = value * inverse_slope;
-        let longest = MAX_CORRECTION * spacing * self.size_of(v);
+        let share = if may_leave { LONGEST_WAY } else { MAX_CORRECTION };
+        let longest = share * spacing * self.size_of(v);
         let planes = self.walls.planes(v);
         let position = if self.walls.is_near() {
             self.walls.landing(planes, p, value, gradient, longest, may_leave)
