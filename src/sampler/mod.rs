@@ -486,7 +486,8 @@ impl Sampler {
 
     /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
     /// changed but little; [`Sampler::step`] does it. Returns whether they can follow. If not, nothing has changed, and a run has to start:
-    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other. `is_closed`: without births and deaths.
+    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other. Where
+    /// that `is_closed`, no particle is born, and none dies but where it is lost.
     pub(crate) fn follow(&mut self, field: &mut dyn Field, bounds: &Bounds, is_closed: bool) -> bool {
         let particles = &self.output.particles;
         // A front that was stopped has not covered the surface.
