@@ -119,7 +119,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
 }
 
 /** @param {string | number} guess @param {string | number} right */
-const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'It is not so.');
+const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'The run says otherwise.');
 
 /** @param {Prediction} prediction @param {string} question @param {Signal<number | null>} picked */
 function inputOf(prediction, question, picked) {

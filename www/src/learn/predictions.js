@@ -68,7 +68,7 @@ export const PREDICTIONS = {
       const [right, met] = [count('added'), count('matched')];
       const words = [
         `${plural(right, 'child is', 'children are')} new.`,
-        `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there.`,
+        `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there: the last picture of the steps shows which.`,
       ];
       return { right, words: words.join(' ') };
     },
@@ -91,7 +91,7 @@ export const PREDICTIONS = {
       const right = share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : 'same';
       return {
         right,
-        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}.`,
+        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}. It goes down the gradient and knows nothing of the parent: the cross in the drawing is its landing, and the surface there lies beside the circle.`,
       };
     },
   },
@@ -110,7 +110,7 @@ export const PREDICTIONS = {
       const mean = added / count;
       const words = [
         `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
-        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other.',
+        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other. In the picture, each of the rest is matched.',
       ];
       return { right: String(Math.round(mean)), words: words.join(' ') };
     },
@@ -121,8 +121,13 @@ export const PREDICTIONS = {
     async answer(lab) {
       const rings = ringsOf((await lab.run({}, { keep: true })).placed);
       const level = Math.min(RING, rings.length - 1);
-      const words = `Ring ${level} of this surface has ${plural(rings[level], 'particle')}; on a plane it would have ${6 * level}.`;
-      return { right: rings[level], words };
+      const count = rings[level];
+      const reason =
+        count < 6 * level
+          ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars beside the picture fall behind 6k.'
+          : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars beside the picture run ahead of 6k.';
+      const words = `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${6 * level}. ${reason}`;
+      return { right: count, words };
     },
     judge: judgeNumber,
   },
@@ -148,7 +153,7 @@ export const PREDICTIONS = {
       const { placed } = widest.run;
       const level = placed.levels[widest.particle];
       const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
-      const words = `The widest hole is in the ring, beside a particle of level ${level} of ${last}.`;
+      const words = `The widest hole is in the ring of the picture, beside a particle of level ${level} of ${last}. Holes stay open where parts of the front meet and leave less room than a particle needs.`;
       if (typeof guess !== 'number') return { right: widest.particle, words };
       const far = distance(triple(placed.positions, guess), widest.hole.places[0]) / (2 * widest.radius);
       return {
@@ -166,7 +171,10 @@ export const PREDICTIONS = {
       const energies = await energiesOf(await lab.run({}, { keep: true }));
       if (energies.length < 2) throw new NoSurface('This run has no steps.');
       const right = stepOfRest(energies);
-      return { right, words: `After ${plural(right, 'step')} nine tenths of the fall in energy were done.` };
+      return {
+        right,
+        words: `After ${plural(right, 'step')} nine tenths of the fall in energy were done. A push falls off steeply with the distance: the nearest pairs part at once, as the colours of the steps show, and little is left to push.`,
+      };
     },
     judge: judgeNumber,
   },
@@ -191,7 +199,7 @@ export const PREDICTIONS = {
         };
       const words = [
         `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be`,
-        `about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`,
+        `about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many: the sharpest bend, where the picture has its smallest discs, would rule the flat parts, too.`,
       ];
       return { right: String(at < 0 ? FACTORS.length : at), words: words.join(' ') };
     },

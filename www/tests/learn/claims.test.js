@@ -15,6 +15,7 @@ import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../sr
 import { Lab } from '../../src/learn/lab.js';
 import { energiesOf, nearestDistances, openBend, parentDistances, ringsOf } from '../../src/learn/measure.js';
 import { roomEvents } from '../../src/learn/room.js';
+import { scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { Core, initSync as initCore } from '../../src/wasm/core/core.js';
 import { initSync, Lesson } from '../../src/wasm/lesson/lesson.js';
@@ -162,6 +163,10 @@ test('what the text states of rings, tolerance and rest is so in the run', async
   const energies = await energiesOf(run);
   for (const [k, energy] of energies.entries()) if (k > 0) expect(energy).toBeLessThan(energies[k - 1]);
   expect(energies[10]).toBeGreaterThan(0.9 * energies[0]);
+  says('the share of those with six stays nearly as it was');
+  const six = async (/** @type {import('../../src/engine/types.js').LessonParticles} */ particles) =>
+    Number((await scoreOf(lab, particles, { evaluations: 0, isAdaptive: false })).six);
+  expect(Math.abs((await six(run.end)) - (await six(run.placed)))).toBeLessThan(0.02);
 });
 
 test('what is said of a choice is so where it is made', async () => {
