@@ -65,6 +65,9 @@ test('in a plane the front never meets itself out of step, and on the cap it doe
   await press(figure, 'A cap');
   await leaveAll(figure);
   await expect(figure.locator('.told')).toContainText(/out of step [1-9]\d* times?: a seam begins there/);
+  await press(figure, 'Begin again');
+  await expect(figure.locator('.plane-question')).toContainText('Particle 0, slot 0');
+  await expect(figure.locator('.plane .figure-count')).toHaveText('Particle 1 of 10 · 0 mistakes · 0 slots decided.');
 });
 
 test('mistakes are saved with an assignment', async ({ page }) => {

@@ -20,6 +20,7 @@ import sheet from '../plane.css?url';
 
 /**
  * @import { Moment, Opened, Point } from '../../figures/types.js'
+ * @import { Vec3 } from '../../engine/types.js'
  * @import { Context, Decision, LabRun, Patch, Stops, Verdict } from '../types.js'
  */
 
@@ -99,7 +100,9 @@ class Exercise {
   #counts;
 
   /** @type {string[]} */
-  #mistakes;
+  #mistakes = [];
+  /** Where the front has met itself out of step. @type {Vec3[]} */
+  #seam = [];
 
   /** What is shown. @type {Shown | null} */
   #now;
@@ -130,17 +133,20 @@ class Exercise {
       h('span', { class: 'plane-match' }, this.#matched, this.#which),
       leave,
     );
-    this.#counts = { particles: 1, right: 0, left: 0, met: 0 };
-    this.#mistakes = [];
+    this.#counts = noDecisions();
     this.#now = null;
-    const side = h('div', { class: 'side' }, this.#question, this.#answers, this.#told, this.#score);
+    const again = button({ class: 'plain', press: () => void this.#beginAgain() }, 'Begin again');
+    const side = h('div', { class: 'side' }, this.#question, this.#answers, this.#told, this.#score, again);
     this.element = h(
       'div',
       { class: 'plane' },
       h('div', { class: 'two' }, this.#box, side),
       h('div', { class: 'two' }, this.#picture.element, this.#lines),
     );
-    linkHover(this.element, () => this.#now, this.#picture);
+    linkHover(this.element, () => this.#now, {
+      picture: this.#picture,
+      rest: () => this.#ringSeam(),
+    });
   }
 
   /** Opens a particle, or the next that has something to decide; returns whether there is one. */
@@ -154,6 +160,23 @@ class Exercise {
       return true;
     }
     return false;
+  }
+
+  /** Takes back all decisions. */
+  async #beginAgain() {
+    this.#counts = noDecisions();
+    this.#mistakes = [];
+    this.#seam = [];
+    this.#answers.hidden = false;
+    this.#tell('', '');
+    await this.take(0);
+  }
+
+  /** Rings the places where the front has met itself out of step. */
+  #ringSeam() {
+    const { radius } = this.#run;
+    const normal = triple(this.#run.placed.normals, 0);
+    this.#picture.ringed.value = this.#seam.length > 0 ? { places: this.#seam, radius, normal } : null;
   }
 
   /** Shows the slot that is to be decided. */
@@ -179,7 +202,7 @@ class Exercise {
 
   #draw() {
     const { particles } = this.#counts;
-    this.#picture.ringed.value = null;
+    this.#ringSeam();
     this.#picture.show({ particles: this.#run.placed, count: particles, colours: this.#colours });
     this.#count();
   }
@@ -204,9 +227,10 @@ class Exercise {
   async #goOn(words) {
     const now = this.#now;
     if (!now) return;
-    const { verdict, met } = now.decisions[now.at];
+    const { verdict, met, compared } = now.decisions[now.at];
     if (verdict.fate === 'added') this.#counts.particles += 1;
     if (met) this.#counts.met += 1;
+    if (met && compared) this.#seam.push(compared.position);
     this.#tell('right', words);
     now.at += 1;
     if (now.at < now.decisions.length) return this.#ask();
@@ -224,7 +248,7 @@ class Exercise {
     const seam =
       met === 0
         ? 'The front never met itself out of step.'
-        : `The front met itself out of step ${plural(met, 'time')}: a seam begins there.`;
+        : `The front met itself out of step ${plural(met, 'time')}: a seam begins there, where the picture has rings.`;
     this.#tell('', `${seam} ${this.#patch.ends}`);
   }
 
@@ -289,6 +313,9 @@ class Exercise {
   }
 }
 
+/** The counts before the first decision. */
+const noDecisions = () => ({ particles: 1, right: 0, left: 0, met: 0 });
+
 /** What the run says of its decision. @param {Opened} opened @param {Decision} decision */
 function wordsOf({ events, subject }, { end, met }) {
   const words = tell(momentAt(events, end), subject);
@@ -300,9 +327,10 @@ const farFrom = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
 
 /**
  * Lets a slot, its line and its place in the picture stand out together.
- * @param {HTMLElement} element @param {() => Shown | null} shown @param {Picture} picture
+ * @param {HTMLElement} element @param {() => Shown | null} shown
+ * @param {{ picture: Picture, rest: () => void }} about  `rest` shows what is ringed where nothing is pointed at
  */
-function linkHover(element, shown, picture) {
+function linkHover(element, shown, { picture, rest }) {
   /** @param {EventTarget | null} target */
   function mark(target) {
     const part = target instanceof Element ? target.closest('[data-slot], [data-line]') : null;
@@ -327,7 +355,8 @@ function linkHover(element, shown, picture) {
         hot.some((child) => lineAt[child.slot] === Number(one.getAttribute('data-line'))),
       );
     const places = hot.flatMap(({ landed }) => (landed ? [landed.position] : []));
-    picture.ringed.value = places.length > 0 ? { places, radius: opened.subject.radius, normal: opened.normal } : null;
+    if (places.length > 0) picture.ringed.value = { places, radius: opened.subject.radius, normal: opened.normal };
+    else rest();
   }
   element.addEventListener('pointerover', ({ target }) => mark(target));
   element.addEventListener('pointerleave', () => mark(null));
