@@ -136,7 +136,15 @@ class Exercise {
     this.#counts = noDecisions();
     this.#now = null;
     const again = button({ class: 'plain', press: () => void this.#beginAgain() }, 'Begin again');
-    const side = h('div', { class: 'side' }, this.#question, this.#answers, this.#told, this.#score, again);
+    const side = h(
+      'div',
+      { class: 'side' },
+      this.#question,
+      this.#answers,
+      this.#told,
+      this.#score,
+      h('div', { class: 'controls' }, again),
+    );
     this.element = h(
       'div',
       { class: 'plane' },
