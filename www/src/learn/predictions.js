@@ -91,7 +91,7 @@ export const PREDICTIONS = {
       const right = share < NEARER ? 'nearer' : share > 1 / NEARER ? 'farther' : 'same';
       return {
         right,
-        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}. It goes down the gradient and knows nothing of the parent: the cross in the drawing is its landing, and the surface there lies beside the circle.`,
+        words: `Newton’s method lands at ${inRadii(own, radius)}, the circle at ${inRadii(landed, radius)}. It goes down the gradient and knows nothing of the parent: the cross in the drawing is its landing.`,
       };
     },
   },
@@ -123,9 +123,11 @@ export const PREDICTIONS = {
       const level = Math.min(RING, rings.length - 1);
       const count = rings[level];
       const reason =
-        count < 6 * level
-          ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars beside the picture fall behind 6k.'
-          : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars beside the picture run ahead of 6k.';
+        count === 6 * level
+          ? 'The bars beside the picture follow 6k, as in a plane.'
+          : count < 6 * level
+            ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars beside the picture fall behind 6k.'
+            : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars beside the picture run ahead of 6k.';
       const words = `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${6 * level}. ${reason}`;
       return { right: count, words };
     },
