@@ -40,7 +40,7 @@ export const ALGORITHM = [
   { depth: 1, text: 'For each free slot: start a child at 2r from p', of: ['slot'] },
   { depth: 2, text: 'turn it along its circle until f = 0', of: ['iterate', 'landed'] },
   { depth: 1, text: 'Gather the particles around p', of: ['gathered'] },
-  { depth: 1, text: 'Slot 0 holds the parent', of: ['fate:parent'] },
+  { depth: 1, text: 'Slot 0 holds the parent, if p has one', of: ['fate:parent'] },
   { depth: 1, text: 'For each child: find the nearest of those particles', of: ['compared', 'fronts_meet'] },
   { depth: 2, text: 'if the two correspond, that particle is the child', of: ['fate:matched'] },
   {

@@ -1,7 +1,7 @@
 /** What the algorithm decides at the slots of a particle, and what is wrong with another decision. */
 
 import { distance, triple } from '../engine/vector.js';
-import { inRadii } from '../figures/words.js';
+import { inRadii, lineOf } from '../figures/words.js';
 import { formatCount } from '../ui/format.js';
 
 /**
@@ -29,6 +29,10 @@ export function decisionsOf(events) {
     return [/** @type {Decision} */ ({ slot, at, end, compared, met, verdict: { fate, particle } })];
   });
 }
+
+/** The line of the algorithm that asks what is at a slot. @param {Decision} decision */
+export const lineAt = ({ slot, compared }) =>
+  slot > 0 && compared ? lineOf(compared) : lineOf({ type: 'fate', fate: 'parent', parent: 0, slot, particle: null });
 
 /**
  * Returns why a verdict is not that of the run; empty if it is.

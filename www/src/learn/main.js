@@ -80,7 +80,6 @@ const bench = lab.then((ready) => {
 });
 const { present } = mountStops({
   stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
-  readings: [...document.querySelectorAll('[data-reading]')].map(({ id }) => id),
   others: stopsOfBench,
   questions: stops,
   onBench: async (id, given) => {

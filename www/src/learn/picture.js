@@ -222,6 +222,7 @@ export class Picture {
   /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {View} view */
   #drawMarks(context, marks, view) {
     const style = getComputedStyle(this.element);
+    let rings = 0;
     context.lineWidth = 2 * FINENESS;
     for (const { place, normal, radius, kind } of marks) {
       const at = projected(view, place);
@@ -230,8 +231,10 @@ export class Picture {
       const r = Math.max(6, (1.6 * radius) / at.perPx) * FINENESS;
       context.strokeStyle = style.getPropertyValue(kind === 'ring' ? '--mark' : '--mark-own') || style.color;
       context.beginPath();
-      if (kind === 'ring') context.arc(x, y, r, 0, 2 * Math.PI);
-      else {
+      if (kind === 'ring') {
+        context.arc(x, y, r, 0, 2 * Math.PI);
+        rings += 1;
+      } else {
         context.moveTo(x - r, y);
         context.lineTo(x + r, y);
         context.moveTo(x, y - r);
@@ -239,6 +242,7 @@ export class Picture {
       }
       context.stroke();
     }
+    this.element.dataset.rings = String(rings);
   }
 
   /** The particle under a point of the picture; null if there is none. @param {number} xPx @param {number} yPx */

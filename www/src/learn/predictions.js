@@ -1,8 +1,6 @@
 /** The questions of the lesson: how each is answered by the run. */
 
 import { distance, triple } from '../engine/vector.js';
-import { momentAt } from '../figures/moment.js';
-import { openParticle } from '../figures/particle.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
@@ -59,19 +57,7 @@ export const PREDICTIONS = {
     kind: 'number',
     label: 'New children, 0 to 6',
     most: 6,
-    async answer(lab) {
-      const run = await lab.coarse();
-      const { events } = await openParticle(run.client, run, 1);
-      if (events.length === 0) throw new NoSurface('On this surface the seed has no children.');
-      const fates = momentAt(events, events.length - 1).children;
-      const count = (/** @type {string} */ fate) => fates.filter((child) => child.fate === fate).length;
-      const [right, met] = [count('added'), count('matched')];
-      const words = [
-        `${plural(right, 'child is', 'children are')} new.`,
-        `One slot holds the parent, and ${plural(met, 'child', 'children')} met a particle that was there: the last picture of the steps shows which.`,
-      ];
-      return { right, words: words.join(' ') };
-    },
+    answer: async (lab) => (await import('./chapters/plane.js')).childrenOf(lab),
     judge: judgeNumber,
   },
   'predict-newton': {

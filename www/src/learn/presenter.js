@@ -20,7 +20,7 @@ const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), te
 /** Elements that have a meaning of their own for some keys. */
 const PRESSED = 'button, select, summary, input, a[href]';
 const TURNED = 'input, select, .picture, .number';
-/** A longer range of a figure is walked in `FEW` presses, a shorter one value by value. */
+/** A longer range of a figure is walked in `FEW` presses, a shorter one value by value; a button is pressed so often. */
 const LONG = 12;
 const FEW = 6;
 
@@ -158,7 +158,7 @@ function createWalk(id, questions) {
   const stage = own ?? (stop === asking.at(-1) ? chapter.querySelector('figure > .stage') : null);
   const start = stop.querySelector('.race > .controls .primary');
   const cards = [...stop.querySelectorAll('.card')];
-  let [isAsked, isBegun] = [questions.isOpen(id), false];
+  let [isAsked, isBegun, pressed] = [questions.isOpen(id), false, 0];
   /** @param {1 | -1} by */
   return (by) => {
     const question = questions.entries.get(id);
@@ -175,6 +175,12 @@ function createWalk(id, questions) {
     const card = cards[cards.findIndex((one) => one.hasAttribute('data-current')) + by];
     if (card) showCard(card);
     if (cards.length > 0) return card !== undefined;
+    const press = stage?.querySelector('button[data-step]');
+    if (press instanceof HTMLElement && press.checkVisibility() && by > 0 && pressed < LONG) {
+      pressed += 1;
+      press.click();
+      return true;
+    }
     const range = [...(stage?.querySelectorAll('input[type="range"]') ?? [])].find((one) => one.checkVisibility());
     if (!(range instanceof HTMLInputElement)) return false;
     const [value, most] = [range.valueAsNumber, Number(range.max)];

@@ -11,8 +11,8 @@ const COLLECT = 'collect';
 const HEAD_PX = 60;
 
 /** @param {StopsOptions} about */
-export function mountStops({ stops, readings, others, questions, onBench, onCollect, say }) {
-  const all = [...stops, ...readings, ...others, COLLECT];
+export function mountStops({ stops, others, questions, onBench, onCollect, say }) {
+  const all = [...stops, ...others, COLLECT];
   let isBenchShown = false;
   const showBench = (/** @type {string} */ id, /** @type {Record<string, string>} */ parts = {}) => {
     isBenchShown = true;
@@ -39,7 +39,7 @@ export function mountStops({ stops, readings, others, questions, onBench, onColl
   /** Goes where the address says. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
-    const isPresenting = parts.mode === PRESENT && !readings.includes(stop);
+    const isPresenting = parts.mode === PRESENT;
     const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
     if (!isPresenting) void loaded?.then(({ end }) => end());
     if (!found) return;

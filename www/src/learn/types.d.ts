@@ -217,8 +217,6 @@ export interface PresenterOptions {
 export interface StopsOptions {
   /** ids of elements */
   stops: readonly string[];
-  /** chapters with an address that are worked through by hand, and have no slide */
-  readings: readonly string[];
   /** stops of the bench: `what-if-…` */
   others: readonly string[];
   questions: Stops;

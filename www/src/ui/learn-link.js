@@ -19,6 +19,6 @@ export function bindLearnLink(link, engine) {
     // A model from points is too large for a link.
     const isOwn = engine.field.peek()?.kind !== 'points';
     const on = isOwn ? 'this surface' : 'an ellipsoid: a link cannot hold a model from points';
-    return { title: 'The lesson', text: `The paper’s idea in eleven short chapters, with figures on ${on}.` };
+    return { title: 'The lesson', text: `The paper’s idea in ten short chapters, with figures on ${on}.` };
   });
 }

@@ -1,6 +1,7 @@
 /** What the algorithm decides at the slots of a particle, and what is said against another decision. */
 import { expect, test } from 'vitest';
-import { decisionsOf, objection } from '../../src/learn/decisions.js';
+import { ALGORITHM } from '../../src/figures/words.js';
+import { decisionsOf, lineAt, objection } from '../../src/learn/decisions.js';
 
 const R = 0.5;
 /** @param {number} slot @param {number | null} against @param {number | null} distance */
@@ -43,6 +44,13 @@ test('the run decides parents, matched and new ones, each asked before it is tol
     [1, 2, 3, 'matched', false],
     [2, 4, 7, 'added', true],
   ]);
+});
+
+test('the line that asks is that of the parent at slot 0, of a seed, too, and else that of comparing', () => {
+  const asked = decisionsOf(EVENTS).map((decision) => ALGORITHM[lineAt(decision)].of[0]);
+  expect(asked).toEqual(['fate:parent', 'compared', 'compared']);
+  const ofSeed = decisionsOf([/** @type {any} */ (compared(0, null, null)), /** @type {any} */ (fate(0, 'added', 1))]);
+  expect(ALGORITHM[lineAt(ofSeed[0])].of).toEqual(['fate:parent']);
 });
 
 test('what the run decided meets no objection, and all else does, with its reason', () => {

@@ -13,7 +13,7 @@ const press = (figure, name) => figure.getByRole('button', { name }).click();
 async function leaveAll(figure) {
   for (let particle = 0; particle < 10; particle += 1) {
     await expect(figure.locator('.plane-question')).toContainText(`Particle ${particle}, slot`);
-    await press(figure, 'Leave this particle to the run');
+    await press(figure, 'The rest of this particle, too');
   }
   await expect(figure.locator('.plane-question')).toHaveText('Ten particles are done.');
 }
@@ -39,9 +39,11 @@ test('the run accepts its own decisions, from the keyboard, too, and objects to 
   await expect(told).toContainText('matched particle 6');
   await expect(score).toHaveText('Particle 2 of 10 · 2 mistakes · 8 slots decided.');
   // Slot 2 lies at 120°, above on the left.
-  const box = await figure.locator('.plane-drawing svg').boundingBox();
+  const drawing = figure.locator('.plane-drawing svg');
+  await drawing.evaluate((element) => element.scrollIntoView({ block: 'center', behavior: 'instant' }));
+  const box = await drawing.boundingBox();
   if (!box) throw new Error('There is no drawing.');
-  const radius = box.width / 10.1;
+  const radius = Math.min(box.width, box.height) / 10.1;
   await page.mouse.click(box.x + box.width / 2 - radius, box.y + box.height / 2 - Math.sqrt(3) * radius);
   await expect(told).toContainText('The child of slot 2 became particle 7.');
   expect(await overflow(page)).toBe(0);
@@ -65,12 +67,45 @@ test('in a plane the front never meets itself out of step, and on the cap it doe
   await press(figure, 'A cap');
   await leaveAll(figure);
   await expect(figure.locator('.told')).toContainText(/out of step [1-9]\d* times?: a seam begins there/);
+  // The camera has turned to the last of these places, which is ringed.
+  const rings = () => figure.locator('.picture').getAttribute('data-rings').then(Number);
+  await expect.poll(rings).toBeGreaterThan(0);
   await press(figure, 'Begin again');
   await expect(figure.locator('.plane-question')).toContainText('Particle 0, slot 0');
   await expect(figure.locator('.plane .figure-count')).toHaveText('Particle 1 of 10 · 0 mistakes · 0 slots decided.');
+  await expect.poll(rings).toBe(0);
 });
 
-test('mistakes are saved with an assignment', async ({ page }) => {
+test('what is below the discs says nothing of later places', async ({ page }) => {
+  await openLesson(page, { hash: '#plane' });
+  const figure = await live(page, 'plane');
+  // A plane is lit alike everywhere: but for the seed, no pixel is much darker or lighter than most.
+  const share = await figure.locator('.picture canvas').evaluate((element) => {
+    const canvas = /** @type {HTMLCanvasElement} */ (element);
+    const image = canvas.getContext('2d')?.getImageData(0, 0, canvas.width, canvas.height).data ?? [];
+    const reds = [...image].filter((_, k) => k % 4 === 0 && image[k + 3] > 0);
+    const median = [...reds].sort((one, other) => one - other)[Math.floor(reds.length / 2)];
+    return reds.filter((red) => Math.abs(red - median) < 8).length / reds.length;
+  });
+  expect(share).toBeGreaterThan(0.95);
+});
+
+test('the live line is the one that asks, and with the answer to the question the seed is done', async ({ page }) => {
+  await openLesson(page, { hash: '#plane' });
+  const figure = await live(page, 'plane');
+  const line = figure.locator('.algorithm [aria-current]');
+  await expect(line).toHaveText('Slot 0 holds the parent, if p has one');
+  await press(figure, 'A new one');
+  await expect(line).toHaveText('For each child: find the nearest of those particles');
+  const question = page.locator('#predict-children');
+  await question.getByLabel('New children').fill('5');
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question.getByRole('status')).toContainText('You said 5.3 children are new. Slot 0 holds the parent');
+  await expect(figure.locator('.plane-question')).toContainText('Particle 1, slot 0');
+  await expect(line).toHaveText('Slot 0 holds the parent, if p has one');
+});
+
+test('mistakes are saved with an assignment, those of the first round, too', async ({ page }) => {
   const task = packTask({
     title: 'T',
     setup: { what: 'order', left: 'queue', right: 'stack' },
@@ -84,7 +119,21 @@ test('mistakes are saved with an assignment', async ({ page }) => {
   const download = page.waitForEvent('download');
   await page.locator('#assignment').getByRole('button', { name: 'Save as JSON' }).click();
   const work = JSON.parse(await readFile(await (await download).path(), 'utf8'));
-  const saved = work.predictions.find((/** @type {{ stop: string }} */ { stop }) => stop === 'plane-plane');
+  const ofPlane = (/** @type {{ stop: string }} */ { stop }) => stop === 'plane-plane';
+  const saved = work.predictions.find(ofPlane);
   expect(saved.guess).toBe(1);
   expect(saved.answer).toContain('particle 0, slot 0: said parent');
+  // Beginning again in the middle of a particle that the run decides waits for it, and keeps what was.
+  await press(figure, 'The rest of this particle, too');
+  await press(figure, 'Begin again');
+  await expect(figure.locator('.plane .figure-count')).toHaveText('Particle 1 of 10 · 0 mistakes · 0 slots decided.');
+  await leaveAll(figure);
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    page.locator('#assignment').getByRole('button', { name: 'Save as JSON' }).click(),
+  ]);
+  const { guess, answer } = JSON.parse(await readFile(await file.path(), 'utf8')).predictions.find(ofPlane);
+  expect(guess).toBe(1);
+  expect(answer).toContain('1 mistake; 0 slots decided; 6 left to the run; particle 0, slot 0: said parent');
+  expect(answer).toContain('best of 2 rounds: 0 mistakes, 0 slots decided, 60 left to the run');
 });

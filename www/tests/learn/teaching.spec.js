@@ -38,7 +38,7 @@ test('keys and clickers go from stop to stop and blank the wall, and each stop h
   await expect(level).toHaveValue('0');
   expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
   await page.keyboard.press('Escape');
-  await expect(page.locator('.chapter:visible')).toHaveCount(14);
+  await expect(page.locator('.chapter:visible')).toHaveCount(13);
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring');
   clean();
 });

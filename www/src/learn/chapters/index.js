@@ -11,7 +11,6 @@ export const FIGURES = {
   cost,
   plane: async (context) => (await import('./plane.js')).plane(context),
   moving: async (context) => (await import('./moving.js')).moving(context),
-  six: async (context) => (await import('./particle.js')).sixChildren(context),
   circle: async (context) => (await import('./circle.js')).circle(context),
   first: async (context) => (await import('./particle.js')).whoWasFirst(context),
   rings,

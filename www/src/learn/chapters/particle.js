@@ -1,13 +1,12 @@
-/** The chapter on one particle and its children: the tangent plane event by event, and the particles met there. */
+/** The chapter on who was first: the tangent plane of a particle event by event, and the fates of all children. */
 
-import { signal } from '@preact/signals-core';
 import { tangentPlane } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
 import { FATES, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
-import { fill, h, live, s } from '../../ui/dom.js';
+import { fill, h, s } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { createChart, createRange } from '../parts.js';
 
@@ -67,39 +66,6 @@ function stepThrough(opened, at) {
     range.element,
   );
   return { drawing, told, controls };
-}
-
-/** The seed, and once its prediction is out, its first child. @param {Context} context */
-export async function sixChildren({ lab, stops }) {
-  const run = await (await lab).coarse();
-  const chosen = signal(0);
-  const place = h('div', { class: 'two' });
-  const names = ['The seed', 'Its first child', 'A child of that'];
-  const third = run.end.parents.indexOf(1);
-  const subjects = [0, 1, ...(third > 0 ? [third] : [])];
-  const buttons = subjects.map((_, k) =>
-    button(
-      {
-        'aria-pressed': () => String(chosen.value === k),
-        disabled: () => k > 0 && !stops.isOpen('predict-children'),
-        press: () => void choose(k),
-      },
-      names[k],
-    ),
-  );
-  /** @param {number} k */
-  async function choose(k) {
-    const opened = await openParticle(run.client, run, subjects[k]);
-    chosen.value = k;
-    const { drawing, told, controls } = stepThrough(opened, -1);
-    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
-  }
-  await choose(0);
-  // The answer is about the first child.
-  live(place, () => {
-    if (stops.isOpen('predict-children') && chosen.peek() === 0) void choose(1);
-  });
-  return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
 }
 
 /** Charts the fates of the children, level by level. @param {LabRun} run @param {() => boolean} hidden */

@@ -11,23 +11,27 @@ import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { lineOf, tell } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
-import { fill, h } from '../../ui/dom.js';
+import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
-import { decisionsOf, objection } from '../decisions.js';
+import { decisionsOf, lineAt, objection } from '../decisions.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 import sheet from '../plane.css?url';
 
 /**
  * @import { Moment, Opened, Point } from '../../figures/types.js'
- * @import { Vec3 } from '../../engine/types.js'
- * @import { Context, Decision, LabRun, Patch, Stops, Verdict } from '../types.js'
+ * @import { LessonParticles } from '../../engine/types.js'
+ * @import { Answer, Context, Decision, Lab, LabRun, Mark, Patch, Stops, Verdict } from '../types.js'
  */
 
 /** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
 
 /** Particles that the learner treats: the seed, its six children, and three of theirs. */
 const TREATED = 10;
+/** The discs of the body below are so many times smaller, so that they tell nothing of later places. */
+const FINER = 8;
+/** Size of a ring around a place, over that of other rings, which are wider than a disc. */
+const RING = 0.7;
 
 /** @type {readonly Patch[]} */
 export const PATCHES = [
@@ -53,39 +57,69 @@ export const PATCHES = [
   },
 ];
 
+/** @param {Lab} lab @param {Patch} patch */
+const runOn = (lab, { surface, radius, seed }) =>
+  lab.beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
+
+/** How many children of the seed's first child are new. @param {Lab} lab @returns {Promise<Answer>} */
+export async function childrenOf(lab) {
+  const run = await runOn(lab, PATCHES[0]);
+  try {
+    const { events } = await openParticle(run.client, run, 1);
+    const fates = momentAt(events, events.length - 1).children.map(({ fate }) => fate);
+    const count = (/** @type {string} */ name) => fates.filter((fate) => fate === name).length;
+    const [right, met] = [count('added'), count('matched')];
+    const words = [
+      `${plural(right, 'child is', 'children are')} new.`,
+      `Slot 0 holds the parent, and ${plural(met, 'child falls', 'children fall')} on particles that the seed has placed beside this one.`,
+      'The figure has done the seed. Now it is your turn with its first child.',
+    ];
+    return { right, words: words.join(' ') };
+  } finally {
+    run.client.close();
+  }
+}
+
 /** @param {Context} context */
 export async function plane(context) {
   await loadSheet(sheet);
   const chosen = signal(0);
   const place = h('div', { class: 'plane-box' });
-  /** @type {Map<number, HTMLElement>} */
+  /** @type {Map<number, Exercise>} */
   const made = new Map();
   async function choose(/** @type {number} */ k) {
-    const element = made.get(k) ?? (await begin(context, PATCHES[k]));
-    made.set(k, element);
+    const exercise = made.get(k) ?? (await begin(context, PATCHES[k]));
+    made.set(k, exercise);
     chosen.value = k;
-    fill(place, element);
+    fill(place, exercise.element);
   }
   const buttons = PATCHES.map(({ name }, k) =>
     button({ 'aria-pressed': () => String(chosen.value === k), press: () => void choose(k) }, name),
   );
   await choose(0);
+  // The question gives the seed away, and asks for its first child.
+  live(place, () => {
+    if (context.stops.isOpen('predict-children')) made.get(0)?.leaveSeed();
+  });
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Surface' }, buttons), place];
 }
 
 /** @param {Context} context @param {Patch} patch */
 async function begin({ lab, stops }, patch) {
-  const { surface, radius, seed } = patch;
-  const run = await (await lab).beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
-  const exercise = new Exercise(patch, run, stops);
+  const own = await lab;
+  const { radius, surface, seed } = patch;
+  const run = await runOn(own, patch);
+  const { end: body } = await own.beside(surface).run({ relax_steps: 0, radius: radius / FINER, seeds: [seed] });
+  const exercise = new Exercise(patch, { run, body, stops });
   await exercise.take(0);
-  return exercise.element;
+  return exercise;
 }
 
 /** One patch, decided slot by slot. */
 class Exercise {
   #patch;
   #run;
+  #body;
   #stops;
   #picture;
   #colours;
@@ -97,20 +131,21 @@ class Exercise {
   #which;
   #matched;
   #answers;
-  #counts;
+  #round = newRound();
 
-  /** @type {string[]} */
-  #mistakes = [];
-  /** Where the front has met itself out of step. @type {Vec3[]} */
-  #seam = [];
+  /** The rounds before this one. @type {Round[]} */
+  #rounds = [];
+  /** What takes its time follows one after the other. */
+  #last = Promise.resolve();
 
   /** What is shown. @type {Shown | null} */
   #now;
 
-  /** @param {Patch} patch @param {LabRun} run @param {Stops} stops */
-  constructor(patch, run, stops) {
+  /** @param {Patch} patch @param {{ run: LabRun, body: LessonParticles, stops: Stops }} about */
+  constructor(patch, { run, body, stops }) {
     this.#patch = patch;
     this.#run = run;
+    this.#body = body;
     this.#stops = stops;
     const orbit = new Orbit(patch.surface.bounds);
     orbit.fitTo(run.placed);
@@ -124,36 +159,47 @@ class Exercise {
     this.#score = h('p', { class: 'figure-count' });
     this.#which = h('select', { class: 'select', 'aria-label': 'The particle that is there' });
     this.#matched = button({ press: () => this.#meet() }, 'It is there already:');
-    const leave = button({ class: 'plain', press: () => void this.#leave() }, 'Leave this particle to the run');
     this.#answers = h(
       'div',
       { class: 'controls' },
       button({ press: () => this.#decide({ fate: 'parent', particle: null }) }, 'The parent'),
       button({ press: () => this.#decide({ fate: 'added', particle: null }) }, 'A new one'),
       h('span', { class: 'plane-match' }, this.#matched, this.#which),
-      leave,
+      button({ class: 'plain', 'data-step': '', press: () => this.#queue(() => this.#leave(1)) }, 'Let the run decide'),
+      button(
+        { class: 'plain', press: () => this.#queue(() => this.#leave(Infinity)) },
+        'The rest of this particle, too',
+      ),
     );
-    this.#counts = noDecisions();
     this.#now = null;
-    const again = button({ class: 'plain', press: () => void this.#beginAgain() }, 'Begin again');
-    const side = h(
-      'div',
-      { class: 'side' },
-      this.#question,
-      this.#answers,
-      this.#told,
-      this.#score,
-      h('div', { class: 'controls' }, again),
-    );
+    const again = button({ class: 'plain', press: () => this.#queue(() => this.#beginAgain()) }, 'Begin again');
     this.element = h(
       'div',
       { class: 'plane' },
-      h('div', { class: 'two' }, this.#box, side),
-      h('div', { class: 'two' }, this.#picture.element, this.#lines),
+      this.#question,
+      this.#box,
+      this.#lines,
+      h(
+        'div',
+        { class: 'side' },
+        this.#answers,
+        this.#told,
+        h('div', { class: 'controls plane-score' }, this.#score, again),
+      ),
+      this.#picture.element,
     );
-    linkHover(this.element, () => this.#now, {
-      picture: this.#picture,
-      rest: () => this.#ringSeam(),
+    linkHover(this.element, { shown: () => this.#now, ring: (marks) => this.#draw(marks) });
+  }
+
+  /** Does something once what is under way is done. @param {() => Promise<unknown>} job */
+  #queue(job) {
+    this.#last = this.#last.then(job, job).then(() => {});
+  }
+
+  /** Has the run decide the seed, if it is the seed's turn. */
+  leaveSeed() {
+    this.#queue(async () => {
+      if (this.#now?.opened.subject.particle === 0) await this.#leave(Infinity);
     });
   }
 
@@ -170,21 +216,13 @@ class Exercise {
     return false;
   }
 
-  /** Takes back all decisions. */
+  /** Takes back all decisions. What they were is kept for an assignment. */
   async #beginAgain() {
-    this.#counts = noDecisions();
-    this.#mistakes = [];
-    this.#seam = [];
+    if (isBegun(this.#round)) this.#rounds.push(this.#round);
+    this.#round = newRound();
     this.#answers.hidden = false;
     this.#tell('', '');
     await this.take(0);
-  }
-
-  /** Rings the places where the front has met itself out of step. */
-  #ringSeam() {
-    const { radius } = this.#run;
-    const normal = triple(this.#run.placed.normals, 0);
-    this.#picture.ringed.value = this.#seam.length > 0 ? { places: this.#seam, radius, normal } : null;
   }
 
   /** Shows the slot that is to be decided. */
@@ -195,8 +233,8 @@ class Exercise {
     const { slot, at: event } = decisions[at];
     now.moment = { ...momentAt(opened.events, event), slot, isNow: true };
     fill(this.#box, tangentPlane(opened, now.moment));
-    fill(this.#lines, algorithmList(lineOf(now.moment.event)));
-    this.#question.textContent = `Particle ${formatCount(opened.subject.particle)}, slot ${slot}: what is at this place?`;
+    fill(this.#lines, algorithmList(lineAt(decisions[at])));
+    this.#question.textContent = `Particle ${formatCount(opened.subject.particle)}, slot ${slot}: what is here?`;
     const near = now.moment.gathered?.neighbours.map(({ particle }) => particle) ?? [];
     if (at === 0)
       fill(
@@ -206,57 +244,71 @@ class Exercise {
     this.#matched.disabled = near.length === 0;
     this.#which.disabled = near.length === 0;
     this.#draw();
+    this.#count();
   }
 
-  #draw() {
-    const { particles } = this.#counts;
-    this.#ringSeam();
-    this.#picture.show({ particles: this.#run.placed, count: particles, colours: this.#colours });
-    this.#count();
+  /** @param {readonly Mark[]} [pointed]  rings what is pointed at, else where the front has met itself out of step */
+  #draw(pointed = []) {
+    const marks = pointed.length > 0 ? pointed : this.#round.seam;
+    const { particles } = this.#round;
+    this.#picture.show({
+      particles: this.#run.placed,
+      body: this.#body,
+      count: particles,
+      colours: this.#colours,
+      marks,
+    });
   }
 
   /** Writes the score, also for an assignment. */
   #count() {
-    const { right, left } = this.#counts;
-    const parts = [plural(this.#mistakes.length, 'mistake'), `${plural(right, 'slot')} decided`];
-    if (left > 0) parts.push(`${formatCount(left)} left to the run`);
     const treated = formatCount((this.#now?.opened.subject.particle ?? 0) + 1);
-    this.#score.textContent = `${[`Particle ${treated} of ${formatCount(TREATED)}`, ...parts].join(' · ')}.`;
+    this.#score.textContent = `${[`Particle ${treated} of ${formatCount(TREATED)}`, ...scoreOf(this.#round)].join(' · ')}.`;
+    const rounds = [...this.#rounds, this.#round].filter(isBegun);
+    // Nothing is answered before the first decision.
+    if (rounds.length === 0) return;
     const { id, name } = this.#patch;
     const stop = `plane-${id}`;
-    const question = `${name}, ten particles slot by slot: number of mistakes`;
-    const answer = [parts.join(', '), ...this.#mistakes].join('; ');
-    // Nothing is answered before the first decision.
-    if (right + left + this.#mistakes.length === 0) return;
-    this.#stops.outcomes.set(stop, { stop, question, guess: this.#mistakes.length, answer });
+    const question = `${name}, ten particles slot by slot: number of mistakes in the first round`;
+    const [first] = rounds;
+    const answer = [...scoreOf(first), ...first.mistakes];
+    const best = bestOf(rounds);
+    if (best && best !== first) answer.push(`best of ${plural(rounds.length, 'round')}: ${scoreOf(best).join(', ')}`);
+    this.#stops.outcomes.set(stop, { stop, question, guess: first.mistakes.length, answer: answer.join('; ') });
   }
 
   /** Goes on to the next slot, or the next particle. @param {string} words */
   async #goOn(words) {
     const now = this.#now;
     if (!now) return;
-    const { verdict, met, compared } = now.decisions[now.at];
-    if (verdict.fate === 'added') this.#counts.particles += 1;
-    if (met) this.#counts.met += 1;
-    if (met && compared) this.#seam.push(compared.position);
+    const { opened, decisions } = now;
+    const { verdict, met, slot } = decisions[now.at];
+    if (verdict.fate === 'added') this.#round.particles += 1;
+    if (met) {
+      const [mark] = marksOf(opened, [slot]);
+      this.#round.seam.push(mark);
+      this.#picture.orbit.turnTo(Array.from(mark.normal));
+    }
     this.#tell('right', words);
     now.at += 1;
-    if (now.at < now.decisions.length) return this.#ask();
-    if (!(await this.take(now.opened.subject.particle + 1))) this.#end(now.opened);
+    if (now.at < decisions.length) this.#ask();
+    else if (!(await this.take(opened.subject.particle + 1))) this.#end(opened);
   }
 
   /** @param {Opened} opened */
   #end(opened) {
+    this.#round.isWhole = true;
     this.#draw();
+    this.#count();
     this.#answers.hidden = true;
     fill(this.#box, tangentPlane(opened, momentAt(opened.events, opened.events.length - 1)));
     fill(this.#lines, algorithmList(-1));
     this.#question.textContent = 'Ten particles are done.';
-    const { met } = this.#counts;
+    const { length } = this.#round.seam;
     const seam =
-      met === 0
+      length === 0
         ? 'The front never met itself out of step.'
-        : `The front met itself out of step ${plural(met, 'time')}: a seam begins there, where the picture has rings.`;
+        : `The front met itself out of step ${plural(length, 'time')}: a seam begins there, where the picture has rings.`;
     this.#tell('', `${seam} ${this.#patch.ends}`);
   }
 
@@ -274,12 +326,12 @@ class Exercise {
     const decision = now.decisions[now.at];
     const why = objection(opened, decision, said);
     if (!why) {
-      this.#counts.right += 1;
-      void this.#goOn(wordsOf(opened, decision));
+      this.#round.right += 1;
+      this.#queue(() => this.#goOn(wordsOf(opened, decision)));
       return;
     }
     const other = said.fate === 'matched' ? ` with ${said.particle}` : '';
-    this.#mistakes.push(`particle ${opened.subject.particle}, slot ${decision.slot}: said ${said.fate}${other}`);
+    this.#round.mistakes.push(`particle ${opened.subject.particle}, slot ${decision.slot}: said ${said.fate}${other}`);
     this.#tell('wrong', `The run objects. ${why}`);
     this.#count();
   }
@@ -288,12 +340,12 @@ class Exercise {
     this.#decide({ fate: 'matched', particle: Number(this.#which.value) });
   }
 
-  /** Lets the run decide the rest of a particle. */
-  async #leave() {
+  /** Lets the run decide slots of a particle. @param {number} most */
+  async #leave(most) {
     const now = this.#now;
-    while (now && now === this.#now && now.at < now.decisions.length) {
-      this.#counts.left += 1;
-      await this.#goOn('The run has decided the rest of that particle.');
+    for (let slots = 0; now && now === this.#now && now.at < now.decisions.length && slots < most; slots += 1) {
+      this.#round.left += 1;
+      await this.#goOn(wordsOf(now.opened, now.decisions[now.at]));
     }
   }
 
@@ -321,8 +373,47 @@ class Exercise {
   }
 }
 
-/** The counts before the first decision. */
-const noDecisions = () => ({ particles: 1, right: 0, left: 0, met: 0 });
+/** @typedef {ReturnType<typeof newRound>} Round */
+
+/** A round before its first decision. `seam`: where the front has met itself out of step. */
+const newRound = () => ({
+  particles: 1,
+  right: 0,
+  left: 0,
+  isWhole: false,
+  mistakes: /** @type {string[]} */ ([]),
+  seam: /** @type {Mark[]} */ ([]),
+});
+
+/** @param {Round} round */
+const isBegun = ({ right, left, mistakes }) => right + left + mistakes.length > 0;
+
+/** The round that went to its end with the fewest slots that were not decided rightly at once. @param {Round[]} rounds */
+const bestOf = (rounds) =>
+  rounds
+    .filter(({ isWhole }) => isWhole)
+    .sort((one, other) => one.mistakes.length + one.left - other.mistakes.length - other.left)[0];
+
+/** @param {Round} round */
+function scoreOf({ mistakes, right, left }) {
+  const parts = [plural(mistakes.length, 'mistake'), `${plural(right, 'slot')} decided`];
+  return left > 0 ? [...parts, `${formatCount(left)} left to the run`] : parts;
+}
+
+/** Rings around the children of some slots, where they have landed. @param {Opened} opened @param {readonly number[]} slots */
+const marksOf = ({ events, subject }, slots) =>
+  events.flatMap((event) =>
+    event.type === 'landed' && slots.includes(event.slot)
+      ? [
+          /** @type {Mark} */ ({
+            place: event.position,
+            normal: event.normal,
+            radius: RING * subject.radius,
+            kind: 'ring',
+          }),
+        ]
+      : [],
+  );
 
 /** What the run says of its decision. @param {Opened} opened @param {Decision} decision */
 function wordsOf({ events, subject }, { end, met }) {
@@ -335,36 +426,34 @@ const farFrom = (p, q) => Math.hypot(p[0] - q[0], p[1] - q[1]);
 
 /**
  * Lets a slot, its line and its place in the picture stand out together.
- * @param {HTMLElement} element @param {() => Shown | null} shown
- * @param {{ picture: Picture, rest: () => void }} about  `rest` shows what is ringed where nothing is pointed at
+ * @param {HTMLElement} element
+ * @param {{ shown: () => Shown | null, ring: (marks: readonly Mark[]) => void }} about
  */
-function linkHover(element, shown, { picture, rest }) {
+function linkHover(element, { shown, ring }) {
   /** @param {EventTarget | null} target */
   function mark(target) {
     const part = target instanceof Element ? target.closest('[data-slot], [data-line]') : null;
     const now = shown();
     if (!now) return;
-    const { opened, moment } = now;
+    const { opened, moment, decisions, at } = now;
     const parent = opened.subject.particle;
-    const lineAt = moment.children.map(({ slot, fate }) => {
+    const lines = moment.children.map(({ slot, fate }) => {
       if (fate !== 'open') return lineOf({ type: 'fate', parent, slot, fate, particle: null });
-      return slot === moment.slot ? lineOf(moment.event) : -1;
+      return slot === moment.slot ? lineAt(decisions[Math.min(at, decisions.length - 1)]) : -1;
     });
     const [slot, line] = ['data-slot', 'data-line'].map((name) => Number(part?.getAttribute(name) ?? -1));
-    const hot = moment.children.filter((child) => child.slot === slot || (line >= 0 && lineAt[child.slot] === line));
+    const hot = moment.children
+      .map((child) => child.slot)
+      .filter((own) => own === slot || (line >= 0 && lines[own] === line));
     for (const one of element.querySelectorAll('[data-slot]'))
-      one.classList.toggle(
-        'hot',
-        hot.some((child) => child.slot === Number(one.getAttribute('data-slot'))),
-      );
+      one.classList.toggle('hot', hot.includes(Number(one.getAttribute('data-slot'))));
     for (const one of element.querySelectorAll('[data-line]'))
       one.classList.toggle(
         'hot',
-        hot.some((child) => lineAt[child.slot] === Number(one.getAttribute('data-line'))),
+        hot.some((own) => lines[own] === Number(one.getAttribute('data-line'))),
       );
-    const places = hot.flatMap(({ landed }) => (landed ? [landed.position] : []));
-    if (places.length > 0) picture.ringed.value = { places, radius: opened.subject.radius, normal: opened.normal };
-    else rest();
+    const landed = hot.filter((own) => moment.children[own].landed !== null);
+    ring(marksOf(opened, landed));
   }
   element.addEventListener('pointerover', ({ target }) => mark(target));
   element.addEventListener('pointerleave', () => mark(null));
