@@ -1,14 +1,66 @@
-/** What the algorithm decides at the slots of a particle, and what is wrong with another decision. */
+/**
+ * The patches on which a learner is the algorithm: what it decides there at the slots of a particle, and what is wrong
+ * with another decision.
+ */
 
 import { distance, triple } from '../engine/vector.js';
+import { momentAt } from '../figures/moment.js';
+import { openParticle } from '../figures/particle.js';
 import { inRadii, lineOf } from '../figures/words.js';
-import { formatCount } from '../ui/format.js';
+import { formatCount, plural } from '../ui/format.js';
 
 /**
  * @import { LessonEvent } from '../engine/types.js'
  * @import { Opened } from '../figures/types.js'
- * @import { Decision, Verdict } from './types.js'
+ * @import { Answer, Decision, Lab, Patch, Verdict } from './types.js'
  */
+
+/** @type {readonly Patch[]} */
+export const PATCHES = [
+  {
+    id: 'plane',
+    name: 'A plane',
+    surface: { formula: 'z = 0', parameters: [], bounds: { min: [-1, -1, -0.5], max: [1, 1, 0.5] } },
+    radius: 0.13,
+    seed: [0, 0, 0],
+    ends: 'In a plane every child met its particle exactly, or none at all.',
+  },
+  {
+    id: 'cap',
+    name: 'A cap',
+    surface: {
+      formula: 'x^2 + y^2 + z^2 = 1',
+      parameters: [],
+      bounds: { min: [-1.1, -1.1, -0.6], max: [1.1, 1.1, 1.1] },
+    },
+    radius: 0.27,
+    seed: [0, 0, 1],
+    ends: 'On a cap a circle is shorter than in a plane, and has no room for six more on every ring.',
+  },
+];
+
+/** @param {Lab} lab @param {Patch} patch */
+export const runOn = (lab, { surface, radius, seed }) =>
+  lab.beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
+
+/** How many children of the seed's first child are new. @param {Lab} lab @returns {Promise<Answer>} */
+export async function childrenOf(lab) {
+  const run = await runOn(lab, PATCHES[0]);
+  try {
+    const { events } = await openParticle(run.client, run, 1);
+    const fates = momentAt(events, events.length - 1).children.map(({ fate }) => fate);
+    const count = (/** @type {string} */ name) => fates.filter((fate) => fate === name).length;
+    const [right, met] = [count('added'), count('matched')];
+    const words = [
+      `${plural(right, 'child is', 'children are')} new.`,
+      `Slot 0 holds the parent, and ${plural(met, 'child falls', 'children fall')} on particles that the seed has placed beside this one.`,
+      'The figure has done the seed. Now it is your turn with its first child.',
+    ];
+    return { right, words: words.join(' ') };
+  } finally {
+    run.client.close();
+  }
+}
 
 /** The fates that are decided by comparing. The others are found on the way to the surface. */
 const DECIDED = ['parent', 'matched', 'added'];

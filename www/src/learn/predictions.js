@@ -57,7 +57,7 @@ export const PREDICTIONS = {
     kind: 'number',
     label: 'New children, 0 to 6',
     most: 6,
-    answer: async (lab) => (await import('./chapters/plane.js')).childrenOf(lab),
+    answer: async (lab) => (await import('./decisions.js')).childrenOf(lab),
     judge: judgeNumber,
   },
   'predict-newton': {

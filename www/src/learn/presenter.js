@@ -20,7 +20,7 @@ const TYPING = 'input:not([type="range"], [type="radio"], [type="checkbox"]), te
 /** Elements that have a meaning of their own for some keys. */
 const PRESSED = 'button, select, summary, input, a[href]';
 const TURNED = 'input, select, .picture, .number';
-/** A longer range of a figure is walked in `FEW` presses, a shorter one value by value; a button is pressed so often. */
+/** A longer range of a figure is walked in `FEW` presses, a shorter one value by value. A button has `LONG` presses. */
 const LONG = 12;
 const FEW = 6;
 

@@ -11,6 +11,7 @@ import { runJob } from '../../src/engine/sampling/job.js';
 import { Jobs, measured } from '../../src/engine/sampling/jobs.js';
 import { Meter } from '../../src/engine/sampling/meter.js';
 import { isOn, landingsOf, newtonShare, slotOf, turned } from '../../src/learn/bend.js';
+import { childrenOf, PATCHES, runOn } from '../../src/learn/decisions.js';
 import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../src/learn/flowing.js';
 import { Lab } from '../../src/learn/lab.js';
 import { energiesOf, nearestDistances, openBend, parentDistances, ringsOf } from '../../src/learn/measure.js';
@@ -129,15 +130,16 @@ test('what the text states of the core are its constants', () => {
   expect(read('../src/paper/relaxation.rs')).toContain('OVERLAP_REACH: f64 = 1.15;');
 });
 
-test('what the text states of the first particles is so in the coarse run', async () => {
-  const run = await lab.coarse();
-  says('in a run with some 180 large particles');
-  expect(Math.abs(run.end.radii.length / 180 - 1)).toBeLessThan(0.12);
+test('what the text states of the first particles is so in a plane, and in the coarse run', async () => {
   says('All six children of the seed are new.');
-  expect(run.chapters[0].fates.added).toBe(6);
-  says('Five slots are left.');
-  const { added, matched } = run.chapters[1].fates;
-  expect(added + matched).toBe(6 * 5);
+  const { chapters, client } = await runOn(lab, PATCHES[0]);
+  client.close();
+  expect(chapters[0].fates.added).toBe(6);
+  const { right, words } = await childrenOf(lab);
+  expect([right, words]).toEqual([3, expect.stringContaining('2 children fall on particles that the seed has placed')]);
+  const run = await lab.coarse();
+  says('of a run with some 180 particles');
+  expect(Math.abs(run.end.radii.length / 180 - 1)).toBeLessThan(0.12);
   // Every particle but a seed is the new child of exactly one other.
   says('every particle but a seed is the new child of exactly one other');
   expect(run.chapters.reduce((sum, { fates }) => sum + fates.added, 0)).toBe(run.end.radii.length - 1);

@@ -14,14 +14,14 @@ import { button } from '../../ui/button.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { loadSheet } from '../../ui/sheet.js';
-import { decisionsOf, lineAt, objection } from '../decisions.js';
+import { decisionsOf, lineAt, objection, PATCHES, runOn } from '../decisions.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 import sheet from '../plane.css?url';
 
 /**
  * @import { Moment, Opened, Point } from '../../figures/types.js'
  * @import { LessonParticles } from '../../engine/types.js'
- * @import { Answer, Context, Decision, Lab, LabRun, Mark, Patch, Stops, Verdict } from '../types.js'
+ * @import { Context, Decision, LabRun, Mark, Patch, Stops, Verdict } from '../types.js'
  */
 
 /** @typedef {{ opened: Opened, decisions: Decision[], at: number, moment: Moment }} Shown */
@@ -32,53 +32,6 @@ const TREATED = 10;
 const FINER = 8;
 /** Size of a ring around a place, over that of other rings, which are wider than a disc. */
 const RING = 0.7;
-
-/** @type {readonly Patch[]} */
-export const PATCHES = [
-  {
-    id: 'plane',
-    name: 'A plane',
-    surface: { formula: 'z = 0', parameters: [], bounds: { min: [-1, -1, -0.5], max: [1, 1, 0.5] } },
-    radius: 0.13,
-    seed: [0, 0, 0],
-    ends: 'In a plane every child met its particle exactly, or none at all.',
-  },
-  {
-    id: 'cap',
-    name: 'A cap',
-    surface: {
-      formula: 'x^2 + y^2 + z^2 = 1',
-      parameters: [],
-      bounds: { min: [-1.1, -1.1, -0.6], max: [1.1, 1.1, 1.1] },
-    },
-    radius: 0.27,
-    seed: [0, 0, 1],
-    ends: 'On a cap a circle is shorter than in a plane, and has no room for six more on every ring.',
-  },
-];
-
-/** @param {Lab} lab @param {Patch} patch */
-const runOn = (lab, { surface, radius, seed }) =>
-  lab.beside(surface).run({ relax_steps: 0, radius, seeds: [seed] }, { keep: true });
-
-/** How many children of the seed's first child are new. @param {Lab} lab @returns {Promise<Answer>} */
-export async function childrenOf(lab) {
-  const run = await runOn(lab, PATCHES[0]);
-  try {
-    const { events } = await openParticle(run.client, run, 1);
-    const fates = momentAt(events, events.length - 1).children.map(({ fate }) => fate);
-    const count = (/** @type {string} */ name) => fates.filter((fate) => fate === name).length;
-    const [right, met] = [count('added'), count('matched')];
-    const words = [
-      `${plural(right, 'child is', 'children are')} new.`,
-      `Slot 0 holds the parent, and ${plural(met, 'child falls', 'children fall')} on particles that the seed has placed beside this one.`,
-      'The figure has done the seed. Now it is your turn with its first child.',
-    ];
-    return { right, words: words.join(' ') };
-  } finally {
-    run.client.close();
-  }
-}
 
 /** @param {Context} context */
 export async function plane(context) {
@@ -388,7 +341,10 @@ const newRound = () => ({
 /** @param {Round} round */
 const isBegun = ({ right, left, mistakes }) => right + left + mistakes.length > 0;
 
-/** The round that went to its end with the fewest slots that were not decided rightly at once. @param {Round[]} rounds */
+/**
+ * The round that went to its end with the fewest slots that were not decided rightly at once.
+ * @param {readonly Round[]} rounds
+ */
 const bestOf = (rounds) =>
   rounds
     .filter(({ isWhole }) => isWhole)
@@ -400,7 +356,10 @@ function scoreOf({ mistakes, right, left }) {
   return left > 0 ? [...parts, `${formatCount(left)} left to the run`] : parts;
 }
 
-/** Rings around the children of some slots, where they have landed. @param {Opened} opened @param {readonly number[]} slots */
+/**
+ * Rings around the children of some slots, where they have landed.
+ * @param {Opened} opened @param {readonly number[]} slots
+ */
 const marksOf = ({ events, subject }, slots) =>
   events.flatMap((event) =>
     event.type === 'landed' && slots.includes(event.slot)
