@@ -11,7 +11,7 @@ import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { namedFigures } from './score.js';
 import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, particleTable, tableOf } from './task.js';
-import { WHAT_IFS } from './whatifs.js';
+import { whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, LabRun, Score, Setup, Stops, Task, Work } from './types.js' */
 
@@ -53,8 +53,6 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   host.addEventListener('input', () => keep(boxes.map(({ value }) => value).join('\0')));
   /** @returns {Work} */
   const workOf = () => {
-    const { runs, scores } = bench.pair;
-    const labels = [bench.setup().left, bench.setup().right];
     return {
       assignment: task.title,
       surface,
@@ -62,15 +60,12 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
       group: group.box.value,
       answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
       predictions: stops.predictions(),
-      runs: (runs ?? []).map((run, k) => recordOf(labels[k], run, scores?.[k])),
+      runs: bench.runs().map(({ label, run, score }) => recordOf(label, run, score)),
     };
   };
-  const particles = () => {
-    const labels = [bench.setup().left, bench.setup().right];
-    return particleTable((bench.pair.runs ?? []).map(({ end }, k) => ({ label: labels[k], end })));
-  };
+  const particles = () => particleTable(bench.runs().map(({ label, run }) => ({ label, end: run.end })));
   const save = async (/** @type {string} */ ending, /** @type {() => string} */ write) => {
-    await bench.pair.settled;
+    await bench.settled();
     const type = ending.endsWith('json') ? 'application/json' : 'text/csv;charset=utf-8';
     download(new Blob([write()], { type }), fileName([task.title, group.box.value, name.box.value]) + ending);
   };
@@ -102,7 +97,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   host.setAttribute('aria-labelledby', id);
   host.hidden = false;
   const bench = createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
-  void bench.show(task.setup);
+  void bench.open(task.setup.what, task.setup);
   lockParts(document.body, task.locks);
 }
 
@@ -122,8 +117,7 @@ export function createMaker({ setup, linkOf }) {
   const told = h('p', { class: 'quiet', role: 'status' });
   const write = () => {
     const { what: id, left, right } = setup();
-    const name = WHAT_IFS.find((known) => known.id === id)?.name ?? id;
-    what.textContent = `It compares what stands under “What if”: ${name}.`;
+    what.textContent = `It compares what stands under “What if”: ${whatIfOf(id).name}.`;
     const task = {
       title: title.value,
       setup: { what: id, left, right },
@@ -172,6 +166,8 @@ export function createMaker({ setup, linkOf }) {
   document.body.append(dialog);
   return {
     open() {
+      // Who is to turn several choices at once has them open.
+      for (const { box } of locks) if (box.value === 'right' && whatIfOf(setup().what).knobs) box.checked = false;
       write();
       dialog.showModal();
     },

@@ -5,9 +5,9 @@ import { fill, h } from '../ui/dom.js';
 import { BENCH } from './address.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
-import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
+import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
-/** @import { Control, Lab, Setup } from './types.js' */
+/** @import { Control, Lab, Setup, WhatIf } from './types.js' */
 
 /** Stops of the bench in the address: one for each choice. */
 export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);
@@ -26,12 +26,20 @@ export function createBench(
   const pair = createPair(lab);
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
+  const [above, below] = [h('div', { class: 'beside' }), h('div', { class: 'beside' })];
   let setup = first;
+  let shown = Promise.resolve();
+  /** The choice whose controls stand there. */
+  let standing = '';
+  /** Shows the values of the controls. */
+  let follow = (/** @type {Setup} */ _next) => {};
+  /** What is kept of several choices at once. @type {ReturnType<typeof import('./fail.js').createFail> | null} */
+  let fail = null;
   const what = createSelect({
     name: 'What changes',
     choices: WHAT_IFS.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
-    change: (id) => choose(setupOf(id)),
+    change: (id) => open(id, {}, choose),
   });
   what.select.disabled = locks.includes('what');
 
@@ -41,40 +49,105 @@ export function createBench(
     onChoice(next);
   }
 
+  /**
+   * Shows a choice with the values that are given. Without any, several at once are shown as they are kept.
+   * @param {string} id @param {{ left?: unknown, right?: unknown }} given @param {(next: Setup) => unknown} [act]
+   */
+  async function open(id, given, act = show) {
+    const values = whatIfOf(id).knobs ? (await import('./fail.js')).keptSides(lab) : {};
+    await act(setupOf(id, { ...values, ...given }));
+  }
+
+  /** Makes the controls of a choice. @param {WhatIf} whatIf */
+  async function stand({ id, values, knobs, look: words }) {
+    if (standing === id) return;
+    if (knobs) fail ??= (await import('./fail.js')).createFail(lab, { choose, isLocked: locks.includes('right') });
+    if (setup.what !== id || standing === id) return;
+    standing = id;
+    look.textContent = words;
+    fill(above, knobs ? fail?.kept : null);
+    fill(below, knobs ? fail?.verdict : null);
+    if (knobs && fail) {
+      follow = fail.follow;
+      fill(chosen, what.element, fail.controls);
+      return;
+    }
+    const sides = createSides(values, locks, (side, value) => choose({ ...setup, [side]: value }));
+    follow = sides.follow;
+    fill(chosen, what.element, sides.controls);
+  }
+
   /** @param {Setup} next */
-  async function show(next) {
+  function show(next) {
+    shown = compare(next);
+    return shown;
+  }
+
+  /** @param {Setup} next */
+  async function compare(next) {
     setup = next;
     const whatIf = whatIfOf(setup.what);
     what.select.value = whatIf.id;
-    look.textContent = whatIf.look;
-    const sides = /** @type {const} */ (['left', 'right']).map((side, k) => {
-      const control = createSelect({
-        name: k === 0 ? 'Left' : 'Right',
-        choices: withOwn(whatIf.values, setup[side]),
-        value: setup[side],
-        change: (value) => choose({ ...setup, [side]: value }),
-      });
-      control.select.disabled = locks.includes(side);
-      return control.element;
-    });
-    fill(chosen, what.element, sides);
-    // The picture on the right begins where one of the two is pressed.
-    const seeds = (/** @type {number[]} */ place) => choose({ ...setup, right: seedAt(place) });
-    pair.pickWith(setup.what === 'seed' && !locks.includes('right') ? seeds : null);
+    await stand(whatIf);
+    if (setup !== next) return;
+    follow(next);
+    const isPicked = whatIf.knobs && !locks.includes('right');
+    pair.pickWith(isPicked ? (place) => fail?.seed(place) : null);
     await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf.colouring);
+    if (setup === next && whatIf.knobs) await fail?.tell(next);
   }
 
-  fill(host, chosen, look, pair.element);
-  return { show, pair, setup: () => setup };
+  // A presentation goes through the values on the right.
+  host.addEventListener('walk', (event) => {
+    const { values } = whatIfOf(setup.what);
+    const others = values.filter(({ value }) => value !== setup.left);
+    const at = others.findIndex(({ value }) => value === setup.right);
+    const to = others[at + /** @type {CustomEvent<number>} */ (event).detail];
+    if (!to) return;
+    event.preventDefault();
+    void show({ ...setup, right: to.value });
+  });
+
+  const asks = h('p', { class: 'asks' }, 'Which of the two is better, and at what?');
+  fill(host, asks, chosen, above, look, pair.element, below);
+  return {
+    show,
+    open,
+    setup: () => setup,
+    /** Fulfilled once what is shown is measured. */
+    settled: () => shown,
+    /** The runs that are shown and those that are kept, each with its name, once they are measured. */
+    runs() {
+      const { runs, scores } = pair;
+      const sides = (runs ?? []).map((run, k) => ({
+        label: [setup.left, setup.right][k],
+        run,
+        score: scores?.[k],
+      }));
+      return [...sides, ...((whatIfOf(setup.what).knobs && fail?.runs()) || [])];
+    },
+  };
 }
 
 /**
- * The values to choose from, with one that was found otherwise.
- * @param {readonly { value: string, label: string }[]} values
- * @param {string} own
+ * The controls of one choice, whose values are on the left and on the right.
+ * @param {WhatIf['values']} choices @param {readonly Control[]} locks
+ * @param {(side: 'left' | 'right', value: string) => void} change
  */
-const withOwn = (values, own) =>
-  values.some(({ value }) => value === own) ? values : [...values, { value: own, label: own }];
+function createSides(choices, locks, change) {
+  const sides = /** @type {const} */ (['left', 'right']).map((side, k) => {
+    const name = k === 0 ? 'Left' : 'Right';
+    const control = createSelect({ name, choices, change: (value) => change(side, value) });
+    control.select.disabled = locks.includes(side);
+    return { side, ...control };
+  });
+  return {
+    controls: sides.map(({ element }) => element),
+    follow(/** @type {Setup} */ setup) {
+      for (const { side, set } of sides) set(setup[side]);
+    },
+  };
+}
 
 /** Gives each card that has one a button that shows both. @param {HTMLElement} cards @param {Lab} lab */
 export function mountCards(cards, lab) {
@@ -92,7 +165,7 @@ export function mountCards(cards, lab) {
       if (pair || !isOpen.peek()) return;
       pair = createPair(lab);
       const whatIf = whatIfOf(id);
-      const { left, right } = setupOf(id);
+      const { left, right } = setupOf(id, { right: card.getAttribute('data-right') });
       fill(place, h('p', { class: 'look' }, whatIf.look), pair.element);
       void pair.show(sidesOf(whatIf, [left, right]), whatIf.colouring);
     };

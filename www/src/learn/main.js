@@ -18,7 +18,7 @@ import { PREDICTIONS } from './predictions.js';
 import { keepSetup, mountStops } from './stops.js';
 import { subjectOf } from './surface.js';
 import { unpackTask } from './task.js';
-import { setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
+import { FAIL, setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
 
 const address = readAddress(location.hash);
 const subject = subjectOf(address.parts.surface);
@@ -83,8 +83,10 @@ const { present } = mountStops({
   others: stopsOfBench,
   questions: stops,
   onBench: async (id, given) => {
-    const { show, setup } = await bench;
-    await show(id ? setupOf(id, given) : setup());
+    const { open, show, setup } = await bench;
+    // What has a slide of its own is not on that of the comparisons.
+    if (id) await open(id, given);
+    else await show(setup().what === FAIL ? setupOf(WHAT_IFS[0].id) : setup());
   },
   onCollect: async () => {
     const { mountCollect } = await import('./collect.js');

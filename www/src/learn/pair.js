@@ -6,7 +6,7 @@ import { reasonOf } from './figure.js';
 import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
-import { scoreOf } from './score.js';
+import { scoreAtEnd } from './score.js';
 import { createScorecard } from './scorecard.js';
 
 /** @import { Colouring, Lab, LabRun, Score, ScorePlace, Side } from './types.js' */
@@ -49,10 +49,6 @@ function legendOf(colouring, [least, most]) {
   }
 }
 
-/** The score of a run at its end. @param {Lab} lab @param {LabRun} run */
-const scoreAtEnd = (lab, { end, progress, settings }) =>
-  scoreOf(lab, end, { evaluations: progress.evaluations, isAdaptive: settings.sampling === 'adaptive' });
-
 /**
  * @param {Lab} lab @param {{ bare?: boolean }} [how]  `bare`: pictures alone, since figures would tell which is which
  */
@@ -90,7 +86,10 @@ export function createPair(lab, { bare = false } = {}) {
     for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
     if (place) orbit.turnTo(place.normal);
   }
-  let asked = 0;
+  /** What waits to be shown. @type {[readonly [Side, Side], Colouring] | null} */
+  let wanted = null;
+  let isBusy = false;
+  let isFirst = true;
   return {
     element,
     /** @type {readonly [LabRun, LabRun] | null} */
@@ -104,24 +103,36 @@ export function createPair(lab, { bare = false } = {}) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
-    /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
+    /**
+     * Of several that are asked for one after the other, as a number is dragged, the last is shown.
+     * @param {readonly [Side, Side]} sides @param {Colouring} colouring
+     */
     show(sides, colouring) {
-      this.settled = this.compare(sides, colouring);
+      wanted = [sides, colouring];
+      if (!isBusy) this.settled = this.work();
       return this.settled;
+    },
+    async work() {
+      isBusy = true;
+      while (wanted) {
+        const [sides, colouring] = wanted;
+        wanted = null;
+        await this.compare(sides, colouring);
+      }
+      isBusy = false;
     },
     /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
     async compare(sides, colouring) {
-      asked += 1;
-      const mine = asked;
       status.textContent = 'Running both';
       try {
         const left = await sides[0].make(lab);
         const right = await sides[1].make(lab);
-        if (mine !== asked) return;
+        if (wanted) return;
         this.runs = [left, right];
         this.scores = null;
         orbit.fitTo(left.end);
-        if (mine === 1) orbit.faceFront(left.placed);
+        if (isFirst) orbit.faceFront(left.placed);
+        isFirst = false;
         const all = [...left.end.radii, ...right.end.radii];
         /** @type {[number, number]} */
         const radii = [Math.min(...all), Math.max(...all)];
@@ -134,7 +145,7 @@ export function createPair(lab, { bare = false } = {}) {
         status.textContent = bare ? '' : 'Measuring both';
         if (bare) return;
         const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];
-        if (mine !== asked) return;
+        if (wanted) return;
         this.scores = scores;
         scorecard.tell(
           sides.map(({ label }) => label),
@@ -142,7 +153,7 @@ export function createPair(lab, { bare = false } = {}) {
         );
         status.textContent = '';
       } catch (error) {
-        if (mine === asked) status.textContent = reasonOf(error);
+        if (!wanted) status.textContent = reasonOf(error);
       }
     },
   };

@@ -113,10 +113,21 @@ export function createSelect({ name, choices, value, change }) {
   const id = uniqueId('select');
   const select = h(
     'select',
-    { class: 'select', id, on: { change: () => change(choices[select.selectedIndex].value) } },
+    { class: 'select', id, on: { change: () => change(/** @type {T} */ (select.value)) } },
     choices.map((choice) => h('option', { value: choice.value, selected: choice.value === value }, choice.label)),
   );
-  return { element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select), select };
+  return {
+    element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select),
+    select,
+    /** Shows a value, which need not be one of the choices. @param {string} own */
+    set(own) {
+      if (!choices.some((choice) => choice.value === own) && select.value !== own) {
+        for (const old of [...select.options].slice(choices.length)) old.remove();
+        select.append(h('option', { value: own }, own));
+      }
+      select.value = own;
+    },
+  };
 }
 
 /** Names and values in two columns. @param {readonly [string, string][]} rows */

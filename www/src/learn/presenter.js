@@ -99,6 +99,7 @@ export async function createPresenter({ stops, questions, to }) {
       isBlank.value = false;
       root.dataset.mode = 'present';
       setCurrent(document.getElementById(id));
+      for (const bench of queryAll(document, '.bench')) bench.dataset.asks = '';
       walk = createWalk(id, questions);
       scrollTo(0, 0);
     },
@@ -123,7 +124,7 @@ function setCurrent(stop) {
   for (const shown of [stop, chapter]) shown?.setAttribute('data-current', '');
   // A part of a chapter stands below its title; a question that has no figure of its own, with that of the chapter.
   if (stop && chapter && stop !== chapter)
-    chapter.setAttribute('data-part', stop.matches('.predict:not(:has(.stage))') ? 'asks' : 'alone');
+    chapter.setAttribute('data-part', stop.matches('.predict:not(:has(.stage)), .challenge') ? 'asks' : 'alone');
   const card = stop?.querySelector('.card');
   if (card) showCard(card);
 }
@@ -139,13 +140,14 @@ function showCard(card) {
 function wordsOf(id) {
   if (id === undefined) return null;
   const stop = byId(id);
-  const title = stop.querySelector(':is(.predict-question, h2, caption)')?.textContent ?? '';
+  const title = stop.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
   return { title, notes: stop.closest('.chapter')?.querySelector('.notes')?.textContent ?? '' };
 }
 
 /**
  * Returns what goes one step within a stop, and says whether there was one: the answer of its question, then the steps
- * of its figure if no later question shows it, the start of its race, or the next of its cards.
+ * of its figure if no later question shows it, the start of its race, the next of its cards, or the figures of its
+ * comparison and then its values.
  * @param {string} id @param {PresenterOptions['questions']} questions
  */
 function createWalk(id, questions) {
@@ -158,6 +160,7 @@ function createWalk(id, questions) {
   const stage = own ?? (stop === asking.at(-1) ? chapter.querySelector('figure > .stage') : null);
   const start = stop.querySelector('.race > .controls .primary');
   const cards = [...stop.querySelectorAll('.card')];
+  const bench = stop.querySelector('.bench') ?? stop.closest('.challenge')?.parentElement?.querySelector('.bench');
   let [isAsked, isBegun, pressed] = [questions.isOpen(id), false, 0];
   /** @param {1 | -1} by */
   return (by) => {
@@ -171,6 +174,11 @@ function createWalk(id, questions) {
       isBegun = true;
       start.click();
       return true;
+    }
+    if (bench) {
+      const isHidden = bench.hasAttribute('data-asks');
+      if (isHidden) bench.toggleAttribute('data-asks', by < 0);
+      return isHidden ? by > 0 : !bench.dispatchEvent(new CustomEvent('walk', { detail: by, cancelable: true }));
     }
     const card = cards[cards.findIndex((one) => one.hasAttribute('data-current')) + by];
     if (card) showCard(card);

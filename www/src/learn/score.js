@@ -4,7 +4,7 @@ import { formatFixed, formatSignificant } from '../ui/format.js';
 
 /**
  * @import { LessonParticles, Measures } from '../engine/types.js'
- * @import { Lab, Score, ScorePlace, ScoreRow } from './types.js'
+ * @import { Lab, LabRun, Score, ScorePlace, ScoreRow } from './types.js'
  */
 
 /** @param {number} share */
@@ -21,6 +21,10 @@ export const ROWS = [
   { key: 'count', name: 'Particles, over A/(2√3 r²)', best: 1, write: ratio },
   { key: 'evaluations', name: 'Evaluations of f for each', best: 0, write: (value) => formatSignificant(value, 3) },
 ];
+
+/** What the row of the count compares with. */
+export const COUNT_WORDS =
+  'In the densest packing a disc of radius r takes a hexagon of area 2√3 r². So A/(2√3 r²) of them would fill an area A in a plane.';
 
 /**
  * Measures particles. Those of many sizes are measured each against its own.
@@ -42,6 +46,10 @@ export async function scoreOf(lab, particles, { evaluations, isAdaptive }) {
     places: placesOf(particles, places),
   };
 }
+
+/** The score of a run at its end. @param {Lab} lab @param {LabRun} run */
+export const scoreAtEnd = (lab, { end, progress, settings }) =>
+  scoreOf(lab, end, { evaluations: progress.evaluations, isAdaptive: settings.sampling === 'adaptive' });
 
 /**
  * The largest hole, with the particle beside it, and the closest pair.

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals-core';
 import { fill, h } from '../ui/dom.js';
 import { MISSING } from '../ui/format.js';
-import { bestOf, ROWS } from './score.js';
+import { bestOf, COUNT_WORDS, ROWS } from './score.js';
 
 /** @import { Score, ScorePlace, ScoreRow } from './types.js' */
 
@@ -61,7 +61,7 @@ export function createScorecard(show) {
       fill(
         element,
         h('table', { class: 'compare' }, h('thead', null, h('tr', null, h('td'), heads)), h('tbody', null, rows)),
-        h('p', { class: 'quiet' }, 'Press a hole or a pair to turn to it.'),
+        h('p', { class: 'quiet' }, `Press a hole or a pair to turn to it. ${COUNT_WORDS}`),
       );
     },
   };

@@ -49,11 +49,12 @@ export function mountStops({ stops, others, questions, onBench, onCollect, say }
     }
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(BENCH.length + 1), parts);
+    else if (isPresenting && found.stop === BENCH) showBench('');
     if (found.stop === COLLECT) void onCollect();
     const target = isBench ? BENCH : found.stop;
     if (isPresenting)
       presenter().then(
-        ({ show }) => show(target),
+        ({ show }) => show(stops.includes(found.stop) ? found.stop : target),
         () => say('The presentation did not load. The lesson is complete without it.'),
       );
     else settleOn(document.getElementById(target));

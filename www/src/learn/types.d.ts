@@ -13,13 +13,26 @@ export type { Lab, Stops };
 export type Control = 'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race';
 /** The comparison on the bench. */
 export type Setup = { what: string; left: string; right: string };
-/** One choice. `make` is given a value and makes the run; the first two values are shown first. */
+/** One of several choices that are made at once. Its values, or the range of its numbers. */
+export interface Knob {
+  name: string;
+  values: readonly { value: string; label: string }[];
+  scale?: Scale;
+  set: (value: string) => Partial<LessonSettings>;
+}
+/** What knobs give. */
+export type Try = { value: string; run: LabRun; score: Score };
+/**
+ * One choice. `make` is given a value and makes the run; the first two values are shown first. One with knobs has a
+ * value for each position of them, and names those that a presentation goes through.
+ */
 export interface WhatIf {
   id: string;
   name: string;
   /** what to look for */
   look: string;
   colouring: Colouring;
+  knobs?: readonly Knob[];
   values: readonly { value: string; label: string }[];
   make: (lab: Lab, value: string) => Promise<LabRun>;
 }

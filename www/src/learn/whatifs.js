@@ -3,7 +3,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
- * @import { Lab, Setup, Side, WhatIf } from './types.js'
+ * @import { Knob, Lab, Setup, Side, WhatIf } from './types.js'
  */
 
 /**
@@ -20,10 +20,6 @@ export const seedAt = (place) => AT + place.map((v) => Number(v.toPrecision(4)))
 
 /** @param {string} value */
 const isPlace = (value) => value.startsWith(AT) && parsePlace(value).every(Number.isFinite);
-
-/** Whether a choice has a value, which may be anything. @param {WhatIf} whatIf @param {unknown} value */
-const hasValue = ({ id, values: all }, value) =>
-  all.some((known) => known.value === value) || (id === 'seed' && typeof value === 'string' && isPlace(value));
 
 /** @param {string} value @returns {[number, number, number]} */
 function parsePlace(value) {
@@ -46,7 +42,86 @@ const setting = (key, pairs, others) => ({
   make: even((value) => ({ [key]: value, ...others })),
 });
 
+/** What stands between the values of knobs. */
+const BETWEEN = '~';
+
+/** The values of the knobs. @param {string} value */
+export const partsOf = (value) => value.split(BETWEEN);
+
+/** The value of knobs in which one is turned. @param {string} value @param {number} k @param {string} part */
+export const turned = (value, k, part) => partsOf(value).with(k, part).join(BETWEEN);
+
+/** The choices that can be made at once. @type {readonly Knob[]} */
+export const KNOBS = [
+  {
+    name: 'Who comes next',
+    values: values([
+      ['queue', 'Queue'],
+      ['stack', 'Stack'],
+    ]),
+    set: (order) => ({ order: /** @type {LessonSettings['order']} */ (order) }),
+  },
+  {
+    name: 'Match tolerance',
+    values: [],
+    scale: { min: 0.4, max: 0.95, step: 0.05 },
+    set: (tolerance) => ({ match_tolerance: Number(tolerance) }),
+  },
+  {
+    name: 'Relaxation',
+    values: values([
+      ['10', 'Ten steps'],
+      ['0', 'No steps'],
+      ['100', 'A hundred steps'],
+    ]),
+    set: (steps) => ({ relax_steps: Number(steps) }),
+  },
+  {
+    name: 'Seed',
+    values: values([
+      ['0', 'Seed 0'],
+      ['1', 'Seed 1'],
+      ['2', 'Seed 2'],
+      ['3', 'Seed 3'],
+    ]),
+    set: (seed) => (isPlace(seed) ? { seeds: [parsePlace(seed)] } : { seed: Number(seed) }),
+  },
+];
+/** The number of the knob that takes a place, too. */
+export const SEED = 3;
+
+/** The knobs as they stand in the lesson. */
+export const USUAL = ['queue', '0.7', '10', '0'].join(BETWEEN);
+
+/** A value of a knob in words. @param {number} k @param {string} part */
+export const partWords = (k, part) =>
+  KNOBS[k].scale ? `${part} · 2r` : (KNOBS[k].values.find(({ value }) => value === part)?.label ?? part);
+
+/** @param {number} k @param {string} part */
+function isPart(k, part) {
+  const { scale, values: all } = KNOBS[k];
+  if (scale) return Number(part) >= scale.min && Number(part) <= scale.max;
+  return all.some(({ value }) => value === part) || (k === SEED && isPlace(part));
+}
+
+/** Knobs in words. @param {string} value */
+export function knobWords(value) {
+  const [first, ...others] = partsOf(value).map((part, k) => partWords(k, part));
+  return [first, ...others.map((words) => words.toLowerCase())].join(', ');
+}
+
+/** @param {WhatIf} whatIf @param {unknown} value */
+function hasValue({ values: all, knobs }, value) {
+  if (typeof value !== 'string') return false;
+  if (!knobs) return all.some((known) => known.value === value);
+  const parts = partsOf(value);
+  return parts.length === knobs.length && parts.every((part, k) => isPart(k, part));
+}
+
 const ONE_SIZE = 'one_size';
+
+/** The choice that has knobs. */
+export const FAIL = 'fail';
 
 /** @type {readonly WhatIf[]} */
 export const WHAT_IFS = [
@@ -61,6 +136,19 @@ export const WHAT_IFS = [
     ]),
   },
   {
+    id: FAIL,
+    name: 'Make it fail',
+    look: 'A dark particle is too near to another. Where the pale body shows between discs, a hole is open.',
+    colouring: 'nearest',
+    knobs: KNOBS,
+    values: [
+      USUAL,
+      ...[turned(USUAL, 0, 'stack'), turned(USUAL, 1, '0.4'), turned(USUAL, 1, '0.95'), turned(USUAL, 2, '0')],
+      ...[turned(USUAL, SEED, '1'), ['stack', '0.4', '0', '0'].join(BETWEEN)],
+    ].map((value) => ({ value, label: knobWords(value) })),
+    make: even((value) => Object.assign({}, ...partsOf(value).map((part, k) => KNOBS[k].set(part)))),
+  },
+  {
     id: 'projection',
     name: 'Circle or Newton',
     look: 'The distance of each child to its parent. The circle keeps 2r everywhere; Newton’s method falls short of it where the surface bends.',
@@ -73,45 +161,6 @@ export const WHAT_IFS = [
       ],
       { relax_steps: 0 },
     ),
-  },
-  {
-    id: 'tolerance',
-    name: 'Match tolerance',
-    look: 'How near a particle has to be to count as the child. Too small, and particles crowd along the seams; too large, and holes stay open.',
-    colouring: 'nearest',
-    values: values([
-      ['0.7', '0.7 · 2r'],
-      ['0.4', '0.4 · 2r'],
-      ['0.55', '0.55 · 2r'],
-      ['0.85', '0.85 · 2r'],
-      ['0.95', '0.95 · 2r'],
-    ]),
-    make: even((tolerance) => ({ match_tolerance: Number(tolerance), relax_steps: 0 })),
-  },
-  {
-    id: 'seed',
-    name: 'Another seed',
-    look: 'Where the front begins moves the rings and the seams. The number of particles and the spacing hardly change. Press a particle of a picture to begin there.',
-    colouring: 'level',
-    values: values([
-      ['0', 'Seed 0'],
-      ['1', 'Seed 1'],
-      ['2', 'Seed 2'],
-      ['3', 'Seed 3'],
-    ]),
-    make: even((seed) => (isPlace(seed) ? { seeds: [parsePlace(seed)] } : { seed: Number(seed) })),
-  },
-  {
-    id: 'steps',
-    name: 'Steps of relaxation',
-    look: 'Ten steps close most of the holes. Ninety more change little that one can see.',
-    colouring: 'nearest',
-    values: values([
-      ['0', 'None'],
-      ['10', 'Ten steps'],
-      ['100', 'A hundred steps'],
-    ]),
-    make: even((steps) => ({ relax_steps: Number(steps) })),
   },
   {
     id: 'step',
@@ -200,10 +249,10 @@ export const WHAT_IFS = [
 ];
 
 /** @param {WhatIf} whatIf @param {readonly [string, string]} chosen @returns {[Side, Side]} */
-export function sidesOf({ values: all, make }, [left, right]) {
+export function sidesOf({ values: all, knobs, make }, [left, right]) {
   /** @param {string} value @returns {Side} */
   const side = (value) => ({
-    label: all.find((known) => known.value === value)?.label ?? value,
+    label: knobs ? knobWords(value) : (all.find((known) => known.value === value)?.label ?? value),
     make: (lab) => make(lab, value),
   });
   return [side(left), side(right)];

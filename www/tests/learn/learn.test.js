@@ -12,7 +12,7 @@ import {
 import { bestOf, ROWS, scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { packTask, readWork, tableOf, unpackTask } from '../../src/learn/task.js';
-import { seedAt } from '../../src/learn/whatifs.js';
+import { FAIL, SEED, seedAt, turned, USUAL } from '../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
 /** @import { Control } from '../../src/learn/types.js' */
@@ -130,20 +130,21 @@ test('nine tenths of a fall are done at a step, and a fine sampling counts areas
 test('an assignment comes out of a link as it went in, and what is damaged of it is set right', () => {
   const task = {
     title: 'Seams',
-    setup: { what: 'tolerance', left: '0.7', right: '0.95' },
+    setup: { what: 'fail', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
     locks: /** @type {Control[]} */ (['what', 'right', 'figures', 'race']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);
   const odd = unpackTask(
-    packed({ setup: { what: 'seed', left: 9, right: '2' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
+    packed({ setup: { what: 'step', left: 9, right: '1' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
   );
-  const pressed = { what: 'seed', left: '0', right: seedAt([0.123456, -1, 1e-7]) };
-  expect(pressed.right).toBe('at 0.1235 -1 1e-7');
+  const pressed = { what: FAIL, left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
+  expect(pressed.right).toBe('queue~0.7~10~at 0.1235 -1 1e-7');
   expect(unpackTask(packed({ setup: pressed, questions: [] }))?.setup).toEqual(pressed);
-  const damaged = { ...pressed, right: 'at 1 x 2' };
-  expect(unpackTask(packed({ setup: damaged, questions: [] }))?.setup.right).toBe('1');
-  expect(odd).toMatchObject({ title: '', setup: { what: 'seed', left: '0', right: '2' }, locks: [] });
+  const stack = 'stack~0.7~10~0';
+  for (const right of ['at 1 x 2', 'heap~0.7~10~0', 'stack~0.1~10~0', 'stack~0.7~10', 'stack~0.7~10~at 1 x 2'])
+    expect(unpackTask(packed({ setup: { ...pressed, right }, questions: [] }))?.setup.right, right).toBe(stack);
+  expect(odd).toMatchObject({ title: '', setup: { what: 'step', left: '0.6', right: '1' }, locks: [] });
   expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
   for (const bad of [
     '',

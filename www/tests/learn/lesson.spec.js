@@ -101,11 +101,11 @@ test('a question is answered from the keyboard alone, by a press on the picture,
 test('in a comparison one camera turns both pictures, and a press on one sets the seed of the other', async ({
   page,
 }) => {
-  const { clean } = await openLesson(page, { hash: `#what-if-seed&surface=${TORUS}` });
+  const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   const bench = page.locator('#bench');
   await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
-  await expect(bench.getByLabel('What changes')).toHaveValue('seed');
-  await expect(bench.getByRole('columnheader', { name: 'Seed 1' })).toBeVisible();
+  await expect(bench.getByLabel('What changes')).toHaveValue('fail');
+  await expect(bench.getByRole('columnheader', { name: /^Stack/ })).toBeVisible();
   const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
   const unturned = [await fingerprint(left), await fingerprint(right)];
   expect(unturned[0]).not.toBe(unturned[1]);
@@ -118,8 +118,8 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   if (!box) throw new Error('the picture has no box');
   // A particle of the near side of the torus.
   await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.62 * box.height);
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
-  await expect(bench.getByRole('columnheader', { name: /^at / })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByLabel('Seed', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
+  await expect(bench.getByRole('columnheader', { name: /, at / })).toBeVisible({ timeout: 60_000 });
   await expect.poll(() => fingerprint(right)).not.toBe(before);
   // Elsewhere a press chooses nothing.
   await bench.getByLabel('What changes').selectOption('law');
@@ -230,7 +230,7 @@ test.describe('without JavaScript', () => {
     }
     // Every choice of the method, too.
     const choices = page.locator('.what-if-stills figure');
-    await expect(choices).toHaveCount(12);
+    await expect(choices).toHaveCount(10);
     await expect(choices.first()).toBeVisible();
     await page.getByRole('link', { name: 'Rings', exact: true }).click();
     await expect(page.locator('#rings h2')).toBeInViewport();

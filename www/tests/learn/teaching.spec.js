@@ -164,13 +164,13 @@ test('what the browser prints by itself has the answers of the figures that are 
 });
 
 test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
-  const { clean } = await openLesson(page, { hash: `#what-if-tolerance&surface=${TORUS}` });
+  const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
   await page.getByRole('button', { name: 'Assignment' }).click();
   const dialog = page.getByRole('dialog');
   await dialog.getByLabel('Title').fill('Seams');
   await dialog.getByLabel('Questions, one on each line').fill('Which run has closer pairs?');
-  await dialog.getByRole('checkbox', { name: 'Right' }).uncheck();
+  await expect(dialog.getByRole('checkbox', { name: 'Right' })).not.toBeChecked();
   for (const name of ['Sliders and buttons of the figures', 'Answers of the questions', 'The race'])
     await dialog.getByRole('checkbox', { name }).check();
   const link = await dialog.getByLabel('Link of the assignment').inputValue();
@@ -179,9 +179,9 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   const task = page.getByRole('region', { name: 'Seams' });
   await expect(task.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
   await expect(task.getByLabel('What changes')).toBeDisabled();
-  await expect(task.getByLabel('Left', { exact: true })).toBeDisabled();
-  await task.getByLabel('Right', { exact: true }).selectOption('0.95');
-  await expect(task.getByRole('columnheader', { name: '0.95 · 2r' })).toBeVisible({ timeout: 60_000 });
+  await task.getByRole('slider', { name: 'Match tolerance' }).press('End');
+  const header = task.getByRole('columnheader', { name: 'Stack, 0.95 · 2r, ten steps, seed 0' });
+  await expect(header).toBeVisible({ timeout: 60_000 });
   await task.getByLabel('Which run has closer pairs?').fill('The left one, "clearly".');
   const saved = async (/** @type {string} */ name) => {
     const [file] = await Promise.all([page.waitForEvent('download'), task.getByRole('button', { name }).click()]);
@@ -205,19 +205,31 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   await expect(ring).not.toHaveAttribute('data-state', 'open');
   const guesses = JSON.parse(await saved('Save as JSON')).predictions;
   expect(guesses).toMatchObject([{ stop: 'predict-ring', guess: 70, answer: '' }]);
-  expect(work.runs.map((/** @type {any} */ { settings }) => settings.match_tolerance)).toEqual([0.7, 0.95]);
+  expect(work.runs.map((/** @type {any} */ { settings }) => settings.match_tolerance)).toEqual([0.7, 0.95, 0.7, 0.95]);
+  const labels = work.runs.map((/** @type {any} */ { label }) => label);
+  expect(labels).toEqual([
+    'queue~0.7~10~0',
+    'stack~0.95~10~0',
+    'Best so far: Queue, 0.7 · 2r, ten steps, seed 0',
+    'Worst so far: Stack, 0.95 · 2r, ten steps, seed 0',
+  ]);
   expect(work.runs[0].new_per_level.slice(0, 2)).toEqual([1, 6]);
-  // The figures that decide: the larger tolerance leaves the larger hole.
-  const holes = work.runs.map((/** @type {any} */ { figures }) => figures['Largest hole, over the ideal']);
-  expect(holes[0]).toBeLessThan(holes[1]);
-  expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,,"The left one, ""clearly""."');
+  // The figures that decide: the larger tolerance leaves more of the surface open.
+  const open = work.runs.map((/** @type {any} */ { figures }) => figures['Surface outside all discs']);
+  expect(open[0]).toBeLessThan(open[1]);
+  const csv = await saved('Save as CSV');
+  expect(csv).toContain('answer,Which run has closer pairs?,,"The left one, ""clearly""."');
+  expect(csv).toContain('run 4,label,,"Worst so far: Stack, 0.95 · 2r, ten steps, seed 0"');
   const particles = (await saved('Save the particles')).trim().split('\r\n');
   expect(particles[0]).toBe('run,particle,level,parent,radius,x,y,z,normal_x,normal_y,normal_z');
   const counts = work.runs.map((/** @type {any} */ run) => run.particles);
-  expect(particles).toHaveLength(1 + counts[0] + counts[1]);
+  expect(particles).toHaveLength(1 + counts.reduce((/** @type {number} */ sum, /** @type {number} */ n) => sum + n, 0));
   // The torus of the formula, in the coordinates of each row.
   for (const row of particles.slice(1)) {
-    const [, , , , , x, y, z] = row.split(',').map(Number);
+    const [, , , , , x, y, z] = row
+      .replace(/^"[^"]*"/, '')
+      .split(',')
+      .map(Number);
     expect(Math.hypot(Math.hypot(x, y) - 0.7, z)).toBeCloseTo(0.3, 3);
   }
   // A reload loses nothing, and the file bears the name.
@@ -289,17 +301,75 @@ test('a lecturer drops thirty files and sees the answers beside what the run say
 });
 
 test('the values of a comparison are part of the address', async ({ page }) => {
-  await openLesson(page, { hash: '#what-if-tolerance&left=0.55&right=none' });
+  await openLesson(page, { hash: '#what-if-step&left=0.2&right=none' });
   const bench = page.locator('#bench');
-  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.55', { timeout: 60_000 });
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.4');
-  await bench.getByLabel('Right', { exact: true }).selectOption('0.95');
-  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-tolerance&left=0.55&right=0.95');
+  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2', { timeout: 60_000 });
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.2');
+  await bench.getByLabel('Right', { exact: true }).selectOption('1');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-step&left=0.2&right=1');
   await page.reload();
-  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.95', { timeout: 60_000 });
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('1', { timeout: 60_000 });
   // They do not follow to another stop.
   await page.getByRole('link', { name: 'Rings', exact: true }).click();
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
+});
+
+test('the worst sampling is looked for by keys, and the best and the worst are kept', async ({ page }) => {
+  test.setTimeout(120_000);
+  const { clean } = await openLesson(page, { hash: '#what-if-fail' });
+  const bench = page.locator('#bench');
+  const kept = (/** @type {string} */ name) => bench.getByRole('button', { name });
+  const verdict = bench.locator('.verdict');
+  await expect(kept('Best so far')).toContainText('Queue, 0.7 · 2r, ten steps, seed 0', { timeout: 60_000 });
+  await expect(kept('Worst so far')).toContainText('Stack, 0.7');
+  await expect(verdict).toContainText(
+    /Worse\. 7\d\.\d % have six neighbours, and 89\.\d % in the sampling of the lesson/,
+  );
+  await expect(verdict.getByRole('listitem')).toHaveText(/^Stack\. .* Put back to queue, it is 89\.\d %\.$/);
+  await bench.getByRole('slider', { name: 'Match tolerance' }).press('Home');
+  await bench.getByLabel('Relaxation', { exact: true }).selectOption('0');
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  await expect(verdict.getByRole('listitem')).toHaveCount(3);
+  // A choice that does no harm is named as one.
+  await kept('Best so far').click();
+  await expect(bench.locator('figcaption')).toHaveText([/^Stack, 0\.4/, /^Queue, 0\.7/]);
+  await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
+  await expect(verdict).toContainText('Not worse.', { timeout: 60_000 });
+  await expect(verdict).toContainText('A hundred steps. It does no harm here.');
+  await kept('Worst so far').click();
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, a hundred/, /^Stack, 0\.4/]);
+  const values = 'left=queue~0.7~100~0&right=stack~0.4~0~0';
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe(`#what-if-fail&${values}`);
+  // They are there again later, and where the address says nothing both are shown.
+  await page.goto('about:blank');
+  await openLesson(page, { hash: '#what-if-fail' });
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, a hundred/, /^Stack, 0\.4/], {
+    timeout: 60_000,
+  });
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
+  clean();
+});
+
+test('a clicker asks, shows the figures and goes through the values of a comparison', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#what-if-step&mode=present' });
+  const bench = page.locator('#bench');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeHidden();
+  await expect(bench.getByText('Which of the two is better')).toBeVisible();
+  await expect(bench.locator('table.compare')).toHaveCount(1, { timeout: 60_000 });
+  await page.keyboard.press('PageDown');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect(bench.getByRole('columnheader', { name: '1.0 r²' })).toBeVisible({ timeout: 60_000 });
+  await page.keyboard.press('PageUp');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible({ timeout: 60_000 });
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
+  await expect.poll(() => page.evaluate(() => location.hash)).toContain('#what-if-fail&');
+  await expect(page.locator('.challenge')).toBeVisible();
+  await expect(bench.locator('figcaption').last()).toHaveText(/^Stack/, { timeout: 60_000 });
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
+  await expect(bench.locator('figcaption').last()).toHaveText(/0\.4 · 2r/, { timeout: 60_000 });
+  clean();
 });
 
 test('a damaged assignment is named, and the lesson stays', async ({ page }) => {
