@@ -32,13 +32,28 @@ export const onCircle = (reach, theta) => [reach * Math.cos(theta), reach * Math
 export const isOn = ({ valueAt, slope, radius }, theta) => Math.abs(valueAt(theta)) <= NEAR * radius * slope;
 
 /**
- * The angle after one step of the search on the circle: Newton's method in θ, by no more than 23°.
- * @param {SlotCase} slot @param {number} theta
+ * The narrowest pair of angles that were tried between which f changes its sign; null if there is none.
+ * @param {SlotCase} slot @param {readonly number[]} tried  @returns {[number, number] | null}
  */
-export function turned({ valueAt }, theta) {
+export function bracketOf({ valueAt }, tried) {
+  const known = tried.filter((theta) => Number.isFinite(valueAt(theta))).sort((one, other) => one - other);
+  /** @type {[number, number][]} */
+  const pairs = known.slice(1).map((theta, k) => [known[k], theta]);
+  const changing = pairs.filter(([from, to]) => valueAt(from) < 0 !== valueAt(to) < 0);
+  return changing.sort((one, other) => one[1] - one[0] - (other[1] - other[0]))[0] ?? null;
+}
+
+/**
+ * The angle after one step of the search on the circle: Newton's method in θ, by no more than 23°, or where that leaves
+ * the bracket, the middle of it.
+ * @param {SlotCase} slot @param {number} theta @param {readonly [number, number] | null} [bracket]
+ */
+export function turned({ valueAt }, theta, bracket = null) {
   const half = STEP / 2;
   const rise = (valueAt(theta + half) - valueAt(theta - half)) / STEP;
   const turn = -valueAt(theta) / rise;
+  const next = theta + turn;
+  if (bracket && !(next >= bracket[0] && next <= bracket[1])) return (bracket[0] + bracket[1]) / 2;
   if (!Number.isFinite(turn)) return theta;
   return Math.max(-MOST_THETA, Math.min(MOST_THETA, theta + Math.max(-MOST_TURN, Math.min(MOST_TURN, turn))));
 }
@@ -157,6 +172,8 @@ export function landingsOf(events, positions, radius) {
       const way = along(event.position, triple(positions, event.parent), -1);
       const [high, far] = [dot(way, normal), size(way)];
       slots[event.slot].landing = {
+        parent: event.parent,
+        slot: event.slot,
         bend: Math.abs((2 * high * radius) / (far * far)),
         share: far / (2 * radius),
         aside: Math.abs(dot(way, cross(slots[event.slot].direction, normal))) / radius,

@@ -4,6 +4,7 @@ import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
 import { between, createGrid } from '../ui/neighbours.js';
 import { NoSurface } from './lab.js';
+import { scoreOf } from './score.js';
 
 /**
  * @import { Lane } from '../engine/lesson/types.js'
@@ -35,6 +36,9 @@ export function nearestDistances({ positions, radii }) {
 export const parentDistances = ({ positions, parents }, radius) =>
   Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
+/** The ring that is asked for. */
+export const RING = 12;
+
 /** Number of particles of each level of the first front. @param {LessonParticles} particles */
 export function ringsOf({ levels, fronts }) {
   /** @type {number[]} */
@@ -43,23 +47,14 @@ export function ringsOf({ levels, fronts }) {
   return Array.from(rings, (count) => count ?? 0);
 }
 
-/** The relaxation steps of a run: energy per particle, from before the first step on. @param {LabRun} run */
-export async function energiesOf({ client, chapters }) {
-  const steps = chapters.filter(({ kind }) => kind === 'relaxation');
-  if (steps.length === 0) return [];
-  const [begins] = await client.ask('events', { first: steps[0].first_event, count: 1 });
-  const before = begins?.type === 'step_begins' ? begins.energy : Number.NaN;
-  return [before, ...steps.map(({ energy }) => energy ?? Number.NaN)];
-}
-
 /**
- * The first step after which nine tenths of the fall in energy are done.
- * @param {readonly number[]} energies
+ * The scores of a run before its first step and after its last.
+ * @param {Lab} lab
  */
-export function stepOfRest(energies) {
-  const [first, last] = [energies[0], energies[energies.length - 1]];
-  const at = energies.findIndex((energy) => first - energy >= 0.9 * (first - last));
-  return Math.max(1, at);
+export async function scoresOfRest(lab) {
+  const run = await lab.run({}, { keep: true });
+  const how = { evaluations: run.progress.evaluations, isAdaptive: false };
+  return [await scoreOf(lab, run.placed, { ...how, evaluations: run.placing }), await scoreOf(lab, run.end, how)];
 }
 
 /**
@@ -78,6 +73,16 @@ export function sharpestBend({ normals, parents }) {
 }
 
 /**
+ * Opens a particle at one of its slots.
+ * @param {LabRun} run @param {number} particle @param {number} slot
+ */
+export async function openSlot(run, particle, slot) {
+  const opened = await openParticle(run.client, run, particle);
+  const whole = momentAt(opened.events, opened.events.length - 1);
+  return { run, opened, whole, slot, profile: opened.profiles[slot] };
+}
+
+/**
  * Opens the particle around which the surface bends most, at the slot of the child beyond the bend.
  * @param {Lab} lab
  */
@@ -85,10 +90,9 @@ export async function openBend(lab) {
   const run = await lab.coarse();
   const bend = sharpestBend(run.placed);
   if (!bend) throw new NoSurface('The surface holds one particle only, which has no children.');
-  const opened = await openParticle(run.client, run, bend.parent);
-  const whole = momentAt(opened.events, opened.events.length - 1);
-  const slot = whole.children.find(({ particle, fate }) => particle === bend.child && fate === 'added')?.slot ?? 1;
-  return { run, opened, whole, slot, profile: opened.profiles[slot] };
+  const at = await openSlot(run, bend.parent, 1);
+  const beyond = at.whole.children.find(({ particle, fate }) => particle === bend.child && fate === 'added');
+  return beyond ? { ...at, slot: beyond.slot, profile: at.opened.profiles[beyond.slot] } : at;
 }
 
 /**

@@ -109,6 +109,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
       input.lock();
       form.querySelector('.controls')?.remove();
       stops.state(id).value = true;
+      showFigure(host);
     } catch (error) {
       fill(result, h('p', null, reasonOf(error)));
       reveal.disabled = false;
@@ -116,6 +117,18 @@ export function mountPrediction(host, prediction, { lab, stops }) {
     }
   }
   host.append(form, result);
+}
+
+/**
+ * Brings the figure of a question into view, and as much of the answer as there is room for.
+ * @param {HTMLElement} host
+ */
+function showFigure(host) {
+  const stages = [...(host.closest('.chapter')?.querySelectorAll('.stage') ?? [])];
+  const isBelow = (/** @type {Element} */ one) =>
+    (host.compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING) !== 0;
+  const stage = stages.find(isBelow) ?? stages[0];
+  stage?.querySelector('.picture, .drawing, .cost')?.scrollIntoView({ block: 'nearest' });
 }
 
 /** @param {string | number} guess @param {string | number} right */

@@ -6,17 +6,16 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
 import { adaptiveRun } from './adaptive.js';
 import { costOf } from './chapters/cost.js';
 import { widestHole } from './chapters/rest.js';
-import { NoSurface } from './lab.js';
-import { asFineEverywhere, energiesOf, openBend, ringsOf, stepOfRest } from './measure.js';
+import { asFineEverywhere, openBend, RING, ringsOf, scoresOfRest } from './measure.js';
 
 /** @import { Prediction } from './types.js' */
 
-/** The ring that is asked for. */
-const RING = 12;
 /** Two amounts that differ by less than this factor are called alike. */
 const ALIKE = 1.25;
 /** A guess within this share of the number is close. */
 const CLOSE = 0.1;
+/** By more than this share ten steps change a figure, or they do not. */
+const CHANGED = 0.05;
 /** Distances below this share of 2r are called nearer. */
 const NEARER = 0.999;
 
@@ -110,10 +109,10 @@ export const PREDICTIONS = {
       const count = rings[level];
       const reason =
         count === 6 * level
-          ? 'The bars beside the picture follow 6k, as in a plane.'
+          ? 'The bars below the picture follow 6k, as in a plane.'
           : count < 6 * level
-            ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars beside the picture fall behind 6k.'
-            : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars beside the picture run ahead of 6k.';
+            ? 'The surface closes around the seed, or ends at its box, and takes room from the rings: the bars below the picture fall behind 6k.'
+            : 'The surface bends like a saddle around the seed, which gives the rings more room: the bars below the picture run ahead of 6k.';
       const words = `Ring ${level} of this surface has ${plural(count, 'particle')}; on a plane it would have ${6 * level}. ${reason}`;
       return { right: count, words };
     },
@@ -152,19 +151,27 @@ export const PREDICTIONS = {
     judge: (guess, right) => (guess === right ? 'Exactly there.' : ''),
   },
   'predict-rest': {
-    kind: 'number',
-    label: 'Steps, 1 to 10',
-    most: 10,
+    kind: 'choice',
+    choices: [
+      { value: 'hole', label: 'The largest hole' },
+      { value: 'six', label: 'The share with six neighbours' },
+      { value: 'both', label: 'Both' },
+      { value: 'neither', label: 'Neither' },
+    ],
     async answer(lab) {
-      const energies = await energiesOf(await lab.run({}, { keep: true }));
-      if (energies.length < 2) throw new NoSurface('This run has no steps.');
-      const right = stepOfRest(energies);
-      return {
-        right,
-        words: `After ${plural(right, 'step')} nine tenths of the fall in energy were done. A push falls off steeply with the distance: the nearest pairs part at once, as the colours of the steps show, and little is left to push.`,
-      };
+      const [before, after] = await scoresOfRest(lab);
+      const changed = (/** @type {'hole' | 'six'} */ key) =>
+        Math.abs(Number(after[key]) / Number(before[key]) - 1) > CHANGED;
+      const right = changed('hole') ? (changed('six') ? 'both' : 'hole') : changed('six') ? 'six' : 'neither';
+      const [hole, six] = /** @type {const} */ (['hole', 'six']).map((key) =>
+        [before, after].map((score) => formatFixed(Number(score[key]), 2)),
+      );
+      const words = [
+        `The largest hole was ${hole[0]} times that of the ideal pattern and is ${hole[1]}; the share with six neighbours was ${six[0]} and is ${six[1]}.`,
+        'Pushes even out the room that there is: those around a hole move in. For another neighbour whole rows would have to slip past each other, and hardly any does.',
+      ];
+      return { right, words: words.join(' ') };
     },
-    judge: judgeNumber,
   },
   'predict-sizes': {
     kind: 'choice',

@@ -189,7 +189,7 @@ export interface SlotCase {
   section: Float32Array;
 }
 /** A landing of Newton's method: bend · r, the distance from the parent over 2r, and how far beside the plane in r. */
-export type Landing = { bend: number; share: number; aside: number };
+export type Landing = { parent: number; slot: number; bend: number; share: number; aside: number };
 /** A number in a sentence. */
 export interface NumberOptions {
   name: string;

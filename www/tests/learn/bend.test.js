@@ -1,6 +1,6 @@
 /** The laboratory of the circle: its sphere, its hand and the landings of Newton's method. */
 import { expect, test } from 'vitest';
-import { isOn, landingsOf, MOST_THETA, newtonShare, slotOn, turned } from '../../src/learn/bend.js';
+import { bracketOf, isOn, landingsOf, MOST_THETA, newtonShare, slotOn, turned } from '../../src/learn/bend.js';
 
 /** @import { LessonEvent } from '../../src/engine/types.js' */
 
@@ -74,4 +74,18 @@ test('a landing has the bend of the chord, its distance, and how far it left the
   expect(first.aside).toBe(0);
   expect(second).toMatchObject({ bend: 0, aside: 0.5 });
   expect(none).toEqual([]);
+});
+
+test('the search stays where f changes its sign, between the nearest angles that were tried', () => {
+  const slot = slotOn(0.5, 1);
+  expect(bracketOf(slot, [0, 0.4])).toBe(null);
+  const tried = [0, -1.2, 0.4, -0.1, -0.9];
+  const [from, to] = bracketOf(slot, tried) ?? [];
+  expect([from, to]).toEqual([-0.9, -0.1]);
+  expect(slot.valueAt(Number(from)) < 0 && slot.valueAt(Number(to)) > 0).toBe(true);
+  // A flat f would send Newton's method away: the middle is next. Within the bracket it has its way.
+  const flat = { ...slot, valueAt: (/** @type {number} */ theta) => theta ** 3 - 1e-3 };
+  expect(turned(flat, 0, [-0.5, 0.5])).toBe(0);
+  expect(turned(slot, -0.1, [-0.9, -0.1])).toBe(turned(slot, -0.1));
+  expect(bracketOf({ ...slot, valueAt: () => Number.NaN }, tried)).toBe(null);
 });

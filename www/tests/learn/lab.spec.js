@@ -37,7 +37,9 @@ test('the child is turned by mouse and keyboard until f = 0, and Newton’s meth
   // By the handle of the drawing, a quarter of the circle down.
   const hand = figure.locator('.drawing-box .hand');
   await drag(page, hand, -60, 120);
-  await expect(told).toContainText('f is negative');
+  // What was tried on the way is the bracket of the search.
+  await expect(told).toContainText(/f is negative: the child is inside\. f changes its sign between −[\d.]+° and/);
+  await expect(figure.locator('.bracket')).toHaveCount(2);
   // By the keys, half a degree at a time, up to the surface.
   await theta.focus();
   for (let press = 0; press < 120 && !(await told.textContent())?.startsWith('f = 0'); press += 1)
@@ -55,6 +57,23 @@ test('the child is turned by mouse and keyboard until f = 0, and Newton’s meth
   await expect(figure.locator('.figure-count')).toContainText(/Dots: \d+ particles/, { timeout: 60_000 });
   await expect(figure.locator('.figure-count')).toContainText('left the plane of their slot');
   expect(await figure.locator('.lab-chart .dot').count()).toBeGreaterThan(300);
+  // A press on a dot shows that landing, and so do the keys; the cross in the drawing is where it came down.
+  const sentence = figure.locator('.side > p').first();
+  const lands = figure.locator('.facts');
+  await figure.locator('.lab-chart .dot').nth(200).click({ force: true });
+  await expect(sentence).toContainText('Here this surface curves by');
+  const dot = figure.getByRole('slider', { name: 'Dot' });
+  await expect(dot).not.toHaveValue('0');
+  const pressed = await sentence.textContent();
+  await dot.focus();
+  await page.keyboard.press('End');
+  await expect(sentence).not.toHaveText(pressed ?? '');
+  // It is the one with the sharpest bend, which falls shortest of 2r.
+  await expect(lands).toContainText(/Newton lands at1\.[5-7]/);
+  await page.keyboard.press('Home');
+  await expect(lands).toContainText('Newton lands at1.99');
+  await figure.getByRole('button', { name: 'Back to the sharpest bend' }).click();
+  await expect(sentence).toContainText('At its sharpest bend');
   clean();
 });
 
@@ -79,7 +98,7 @@ test('bend and r are dragged in the sentence, by keys, too; a bend of one’s ow
   await radius.press('Home');
   await expect(sentence).toContainText('bend · r = 0.23');
   await expect(figure.locator('.facts')).toContainText('Newton lands at1.8');
-  await figure.getByRole('button', { name: 'Back to this surface' }).click();
+  await figure.getByRole('button', { name: 'Back to the sharpest bend' }).click();
   expect(await numberOf(bend)).toBe(before);
   await expect(sentence).toContainText('At its sharpest bend this surface');
   clean();

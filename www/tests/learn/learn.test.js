@@ -1,14 +1,7 @@
 /** The parts of the lesson that need no browser. */
 import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.js';
-import {
-  asFineEverywhere,
-  nearestDistances,
-  ringsOf,
-  sharpestBend,
-  shotAt,
-  stepOfRest,
-} from '../../src/learn/measure.js';
+import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, shotAt } from '../../src/learn/measure.js';
 import { bestOf, ROWS, scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { packTask, readWork, tableOf, unpackTask } from '../../src/learn/task.js';
@@ -121,9 +114,7 @@ test('the sharpest bend is where the normals of parent and child differ most', (
   expect(sharpestBend(particles([[0, 0, 1]], { parents: [none] }))).toBe(null);
 });
 
-test('nine tenths of a fall are done at a step, and a fine sampling counts areas', () => {
-  expect(stepOfRest([10, 5, 1.5, 0.9, 0])).toBe(3);
-  expect(stepOfRest([1, 0])).toBe(1);
+test('a fine sampling counts areas', () => {
   expect(asFineEverywhere([1, 2])).toBe(5);
 });
 

@@ -6,13 +6,17 @@ import { inDegrees, inRadii } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live, s } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING } from '../../ui/format.js';
-import { isOn, landingsOf, MOST_THETA, newtonShare, onCircle, slotOf, slotOn, turned } from '../bend.js';
+import { bracketOf, isOn, landingsOf, MOST_THETA, newtonShare, onCircle, slotOf, slotOn, turned } from '../bend.js';
 import { createNumber, dragIn } from '../drag.js';
-import { openBend } from '../measure.js';
+import { openBend, openSlot } from '../measure.js';
 import { createRange, facts } from '../parts.js';
 
+/** @import { Signal } from '../../engine/types.js' */
 /** @import { Child, Opened, Point } from '../../figures/types.js' */
 /** @import { Context, Lab, Landing, LabRun, SlotCase } from '../types.js' */
+
+/** @typedef {{ slot: SlotCase, opened: Opened }} Shown */
+/** @typedef {Landing & { run: LabRun }} Landed */
 
 /** Places of the range of θ: half a degree each. */
 const PLACES = 400;
@@ -23,23 +27,25 @@ const [LEAST_R, MOST_R, MOST_BEND] = [0.25, 1.1, 0.9];
 const RUNS = [180, 720];
 /** From here on the place of the child is named. */
 const NAMED_RAD = 0.2;
+/** Parts of the arc on which f changes its sign. */
+const ARC = 24;
 /** Size of the charts, in rem, and the place of their axes. */
 const CHART = { width: 22.5, left: 2.4, right: 21.6, top: 0.7 };
 
 /** @param {Context} context */
 export async function circle({ lab, stops }) {
   const own = await lab;
-  const opened = await openBend(own);
-  const here = await slotOf(opened);
-  const { radius: unit } = here;
+  const first = await openBend(own);
+  const sharpest = { slot: await slotOf(first), opened: first.opened };
+  const { radius: unit } = sharpest.slot;
   const isOpen = () => stops.isOpen('predict-newton');
-  const [bend, radius, isHere, place] = [
-    signal(Math.min(MOST_BEND / unit, Math.max(0, here.bend))),
-    signal(unit),
-    signal(true),
-    signal(PLACES / 2),
-  ];
-  const slot = computed(() => (isHere.value ? here : slotOn(bend.value, radius.value)));
+  /** A slot of this surface. @type {Signal<Shown>} */
+  const here = signal(sharpest);
+  const [bend, radius, isHere, place] = [signal(0), signal(unit), signal(true), signal(PLACES / 2)];
+  const slot = computed(() => (isHere.value ? here.value.slot : slotOn(bend.value, radius.value)));
+  /** The angles that were tried at this slot. @type {Signal<readonly number[]>} */
+  const tried = signal([]);
+  const bracket = computed(() => bracketOf(slot.value, tried.value));
   const theta = () => (place.value - PLACES / 2) * PLACE_RAD;
   const take = (/** @type {number} */ angle) =>
     range.set(Math.max(0, Math.min(PLACES, angle / PLACE_RAD + PLACES / 2)));
@@ -50,8 +56,17 @@ export async function circle({ lab, stops }) {
     say: (at) => inDegrees((at - PLACES / 2) * PLACE_RAD, 1),
     change(at) {
       place.value = at;
+      tried.value = [...tried.peek(), theta()];
     },
   });
+  /** Shows a slot of this surface. @param {Shown} shown */
+  function show(shown) {
+    here.value = shown;
+    bend.value = Math.min(MOST_BEND / unit, Math.max(0, shown.slot.bend));
+    radius.value = shown.slot.radius;
+    isHere.value = true;
+  }
+  show(sharpest);
 
   /** @param {string} name @param {typeof bend} number @param {number} min @param {number} max */
   const handle = (name, number, min, max) =>
@@ -70,7 +85,7 @@ export async function circle({ lab, stops }) {
     null,
     () =>
       isHere.value
-        ? 'At its sharpest bend this surface curves by '
+        ? `${here.value === sharpest ? 'At its sharpest bend' : 'Here'} this surface curves by `
         : `A ${bend.value > 0 ? 'sphere' : 'plane'} curves by `,
     handle('Bend', bend, 0, MOST_BEND / unit),
     ', and r is ',
@@ -79,57 +94,102 @@ export async function circle({ lab, stops }) {
   );
 
   const box = h('div', { class: 'drawing-box' });
-  live(box, () => fill(box, drawingOf(opened.opened, slot.value, theta(), isOpen())));
+  live(box, () =>
+    fill(box, drawingOf(here.value.opened, slot.value, { theta: theta(), bracket: bracket.value, isOpen: isOpen() })),
+  );
   dragIn(box, ([x, y]) => take(Math.atan2(y, x)));
   const values = h('div', { class: 'lab-chart' });
-  live(values, () => fill(values, valuesOf(slot.value, theta())));
-  dragIn(values, ([x]) => take(MOST_THETA * (2 * shareOf(x) - 1)));
-  const landings = signal(/** @type {Landing[]} */ ([]));
-  const errors = h('div', { class: 'lab-chart', hidden: () => !isOpen() });
-  live(errors, () => fill(errors, errorsOf(landings.value, slot.value)));
-  let isAsked = false;
-  live(errors, () => {
-    if (!isOpen() || isAsked) return;
-    isAsked = true;
-    void newtonRuns(own, opened.run).then((all) => {
-      landings.value = all;
-    });
+  live(values, () => fill(values, valuesOf(slot.value, theta(), bracket.value)));
+  // At another slot the search begins anew.
+  live(values, () => {
+    void slot.value;
+    tried.value = [(place.peek() - PLACES / 2) * PLACE_RAD];
   });
+  dragIn(values, ([x]) => take(MOST_THETA * (2 * shareOf(x) - 1)));
+  const newton = landingsPart(own, { isOpen, slot, show, first: first.run });
 
   const side = h(
     'div',
     { class: 'side' },
     sentence,
-    h('p', { class: 'told', 'aria-live': 'polite' }, () => told(slot.value, theta())),
+    h('p', { class: 'told', 'aria-live': 'polite' }, () => told(slot.value, theta(), bracket.value)),
     values,
     h(
       'div',
       { class: 'controls' },
       range.element,
-      button({ press: () => take(turned(slot.value, theta())) }, 'One step of the search'),
-      button({ hidden: () => isHere.value, press: () => back() }, 'Back to this surface'),
+      button({ press: () => take(turned(slot.value, theta(), bracket.peek())) }, 'One step of the search'),
+      button(
+        {
+          hidden: () => isHere.value && here.value === sharpest,
+          press: () => show(sharpest),
+        },
+        'Back to the sharpest bend',
+      ),
     ),
     h('div', null, () => facts(factsOf(slot.value, isOpen()))),
-    errors,
-    h('p', { class: 'figure-count', hidden: () => !isOpen() }, () => landingWords(landings.value)),
+    newton,
   );
-  function back() {
-    bend.value = Math.max(0, here.bend);
-    radius.value = unit;
-    isHere.value = true;
-  }
   return [h('div', { class: 'two lab' }, box, side)];
 }
 
-/** @param {SlotCase} slot @param {number} theta */
-function told(slot, theta) {
+/**
+ * The chart of the landings of Newton's method. A dot that is pressed shows its landing.
+ * @param {Lab} lab
+ * @param {{ isOpen: () => boolean, slot: { value: SlotCase }, show: (shown: Shown) => void, first: LabRun }} about
+ */
+function landingsPart(lab, { isOpen, slot, show, first }) {
+  /** In the order of their bends. @type {Signal<readonly Landed[]>} */
+  const landings = signal([]);
+  const errors = h('div', { class: 'lab-chart', hidden: () => !isOpen() });
+  live(errors, () => fill(errors, errorsOf(landings.value, slot.value)));
+  const dots = h('div', { class: 'controls', hidden: () => !isOpen() });
+  let isAsked = false;
+  live(errors, () => {
+    if (!isOpen() || isAsked) return;
+    isAsked = true;
+    void newtonRuns(lab, first).then((all) => {
+      landings.value = all;
+      fill(dots, dotRange(all, open).element);
+    });
+  });
+  /** The dot that is asked for; −1 for none. */
+  let wanted = -1;
+  let isBusy = false;
+  /** Shows where the child of a dot has landed, the newest that is asked for. @param {number} at */
+  async function open(at) {
+    wanted = at;
+    if (isBusy) return;
+    isBusy = true;
+    try {
+      while (wanted >= 0) {
+        const { run, parent, slot: number } = landings.peek()[wanted];
+        wanted = -1;
+        const opened = await openSlot(run, parent, number);
+        show({ slot: await slotOf(opened), opened: opened.opened });
+      }
+    } finally {
+      isBusy = false;
+    }
+  }
+  dragIn(errors, (at) => {
+    const input = dots.querySelector('input');
+    if (!input) return;
+    input.valueAsNumber = nearestDot(landings.peek(), at);
+    input.dispatchEvent(new Event('input', { bubbles: true }));
+  });
+  return [errors, dots, h('p', { class: 'figure-count', hidden: () => !isOpen() }, () => landingWords(landings.value))];
+}
+
+/** @param {SlotCase} slot @param {number} theta @param {[number, number] | null} bracket */
+function told(slot, theta, bracket) {
   if (isOn(slot, theta))
     return 'f = 0: the child lies on the surface, and at 2r from its parent, as all of the circle.';
   const value = slot.valueAt(theta);
   if (!Number.isFinite(value)) return 'f is undefined here.';
-  return value > 0
-    ? 'f is positive: the child is outside. Turn it down.'
-    : 'f is negative: the child is inside. Turn it up.';
+  const side = value > 0 ? 'f is positive: the child is outside.' : 'f is negative: the child is inside.';
+  if (!bracket) return `${side} Turn it ${value > 0 ? 'down' : 'up'}.`;
+  return `${side} f changes its sign between ${inDegrees(bracket[0], 1)} and ${inDegrees(bracket[1], 1)}.`;
 }
 
 /** @param {SlotCase} slot @param {boolean} isOpen @returns {[string, string][]} */
@@ -141,9 +201,10 @@ function factsOf({ landing, radius, aside }, isOpen) {
 
 /**
  * The slot from the side, with the child where the hand has turned it.
- * @param {Opened} opened @param {SlotCase} slot @param {number} theta @param {boolean} isOpen
+ * @param {Opened} opened @param {SlotCase} slot
+ * @param {{ theta: number, bracket: [number, number] | null, isOpen: boolean }} state
  */
-function drawingOf({ subject, normals, radii, positions }, slot, theta, isOpen) {
+function drawingOf({ subject, normals, radii, positions }, slot, { theta, bracket, isOpen }) {
   const { radius, newton, section, landing, aside } = slot;
   const unit = subject.radius;
   const reach = 2 * radius;
@@ -180,6 +241,11 @@ function drawingOf({ subject, normals, radii, positions }, slot, theta, isOpen) 
     child,
   );
   const [x, y] = [hand[0] / unit, hand[1] / unit];
+  if (bracket) {
+    const [from, to] = bracket;
+    const arc = Array.from({ length: ARC + 1 }, (_, k) => onCircle(reach / unit, from + ((to - from) * k) / ARC));
+    svg.append(line('bracket', arc));
+  }
   svg.append(
     line('distance', [
       [0, 0],
@@ -215,8 +281,8 @@ function chartOf(bottom, words) {
 /** Parts of the curve of f. */
 const PARTS = 100;
 
-/** Charts f along the circle. @param {SlotCase} slot @param {number} theta */
-function valuesOf(slot, theta) {
+/** Charts f along the circle. @param {SlotCase} slot @param {number} theta @param {[number, number] | null} bracket */
+function valuesOf(slot, theta, bracket) {
   const angles = Array.from({ length: PARTS + 1 }, (_, k) => MOST_THETA * ((2 * k) / PARTS - 1));
   const values = angles.map(slot.valueAt);
   const finite = values.filter(Number.isFinite);
@@ -227,6 +293,7 @@ function valuesOf(slot, theta) {
   const upTo = (/** @type {number} */ value) => (value - low) / (high - low || 1);
   const xOf = (/** @type {number} */ angle) => (angle / MOST_THETA + 1) / 2;
   svg.append(across('axis', upTo(0)), beside(upTo(0), '0'), beside(1, 'f'));
+  if (bracket) svg.append(line('bracket', [at(xOf(bracket[0]), upTo(0)), at(xOf(bracket[1]), upTo(0))]));
   /** @type {Point[]} */
   let piece = [];
   for (const [k, value] of values.entries()) {
@@ -251,13 +318,20 @@ function valuesOf(slot, theta) {
 
 /** The largest distance in r that the chart of Newton's method shows. */
 const MOST_FAR = 2.15;
+/** The bottom of that chart. */
+const ERRORS_REM = 6.8;
+
+/** Where the chart of Newton's method has a landing. @param {Pick<Landing, 'bend' | 'share'>} landing */
+const dotAt = ({ bend, share }) => [Math.min(1, Math.abs(bend)), Math.min(1, (2 * share) / MOST_FAR)];
 
 /** Charts where Newton's method lands against bend · r. @param {readonly Landing[]} landings @param {SlotCase} slot */
 function errorsOf(landings, slot) {
   const words = `Distance at which Newton’s method lands, from 2r without a bend down to ${inRadii(2 * newtonShare(1), 1, 2)} at bend · r = 1; ${landingWords(landings)}`;
-  const { svg, at, across, below, beside } = chartOf(6.8, words);
-  const place = (/** @type {number} */ bend, /** @type {number} */ share) =>
-    at(Math.min(1, Math.abs(bend)), Math.min(1, (2 * share) / MOST_FAR));
+  const { svg, at, across, below, beside } = chartOf(ERRORS_REM, words);
+  const place = (/** @type {number} */ bend, /** @type {number} */ share) => {
+    const [x, y] = dotAt({ bend, share });
+    return at(x, y);
+  };
   for (const far of [0, 1, 2]) {
     const y = far / MOST_FAR;
     svg.append(across(far === 1 ? 'rule' : 'axis', y), beside(y, far === 0 ? '0' : `${far}r`));
@@ -280,6 +354,25 @@ function errorsOf(landings, slot) {
   return svg;
 }
 
+/** The landing whose dot is nearest to a place of the chart. @param {readonly Landing[]} landings @param {Point} at */
+function nearestDot(landings, [x, y]) {
+  const { left, right, top } = CHART;
+  const far = landings.map((landing) => {
+    const [across, up] = dotAt(landing);
+    return Math.hypot(left + across * (right - left) - x, up * (ERRORS_REM - top) - ERRORS_REM - y);
+  });
+  return far.indexOf(Math.min(...far));
+}
+
+/** Goes through the dots in their order. @param {readonly Landed[]} all @param {(at: number) => void} open */
+const dotRange = (all, open) =>
+  createRange({
+    name: 'Dot',
+    max: all.length - 1,
+    say: (at) => `${formatCount(at + 1)} of ${formatCount(all.length)}`,
+    change: open,
+  });
+
 /** What the dots are. @param {readonly Landing[]} landings */
 function landingWords(landings) {
   if (landings.length === 0) return 'The runs with Newton’s method are on their way.';
@@ -292,16 +385,17 @@ function landingWords(landings) {
   return `Dots: ${formatCount(landings.length)} particles of this surface, placed by Newton’s method in two runs. ${aside}`;
 }
 
-/** The landings of Newton's method in runs on the surface. @param {Lab} lab @param {LabRun} coarse */
+/** The landings of Newton's method in runs on the surface, by their bends. @param {Lab} lab @param {LabRun} coarse */
 async function newtonRuns(lab, coarse) {
+  /** @type {Landed[]} */
   const all = [];
   for (const particles of RUNS) {
     const change = /** @type {const} */ ({ projection: 'newton', relax_steps: 0, seed: coarse.settings.seed });
-    const { client, chapters, radius, placed } = await lab.run(change, { particles, keep: true });
-    const last = chapters.at(-1);
+    const run = await lab.run(change, { particles, keep: true });
+    const last = run.chapters.at(-1);
     const count = last ? last.first_event + last.events : 0;
-    all.push(...landingsOf(await client.ask('events', { first: 0, count }), placed.positions, radius));
-    client.close();
+    const events = await run.client.ask('events', { first: 0, count });
+    for (const landing of landingsOf(events, run.placed.positions, run.radius)) all.push({ ...landing, run });
   }
-  return all;
+  return all.sort((one, other) => one.bend - other.bend);
 }

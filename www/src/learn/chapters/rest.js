@@ -1,15 +1,19 @@
 /** The chapter on the seams where rings meet, and on ten relaxation steps. */
+import { signal } from '@preact/signals-core';
 import { triple } from '../../engine/vector.js';
 import { fill, h, live } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
-import { energiesOf, nearestDistances } from '../measure.js';
+import { nearestDistances } from '../measure.js';
 import { createChart, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byValue, Orbit, Picture } from '../picture.js';
 import { placesOf, scoreOf } from '../score.js';
 import { createScorecard } from '../scorecard.js';
 
-/** @import { Context, Lab, LabRun, Mark } from '../types.js' */
+/**
+ * @import { Signal } from '../../engine/types.js'
+ * @import { Context, Lab, LabRun, Mark, Score } from '../types.js'
+ */
 
 const STEP_MS = 400;
 /** Colours span this range of distances, in 2r, and of energies, over the ideal one. */
@@ -97,36 +101,36 @@ export async function rest({ lab, stops }) {
   const own = await lab;
   const run = await own.run({}, { keep: true });
   const steps = run.chapters.filter(({ kind }) => kind === 'relaxation');
-  const energies = await energiesOf(run);
   const states = [run.placed];
-  for (const { first_event: first, events } of steps)
+  for (const { first_event: first, events } of steps.slice(0, -1))
     states.push(await run.client.ask('seek', { event: first + events }));
+  states.push(run.end);
   const colours = states.map((state) => byValue(nearestDistances(state), NEAR, FAR));
   const orbit = new Orbit(own.surface.bounds);
   orbit.fitTo(run.end);
   orbit.faceFront(run.placed);
   const picture = new Picture(orbit, { name: 'The particles, coloured by the distance to the nearest one' });
   const words = h('p', { class: 'figure-count' });
-  /** The step that is beside the placing in the scorecard. */
   const last = states.length - 1;
+  const isOpen = () => stops.isOpen('predict-rest');
+  /** Those of the states so far, in their order. @type {Signal<Score[]>} */
+  const scores = signal([]);
+  /** The step that is beside the placing in the scorecard. */
+  const scored = () => range.place.value || last;
   const scorecard = createScorecard((place, side) => {
-    if (place) range.set(side === 0 ? 0 : scored);
+    if (place) range.set(side === 0 ? 0 : scored());
     picture.ringed.value = place;
     if (place) orbit.turnTo(place.normal);
   });
-  let scored = last;
-  const scoreAt = (/** @type {number} */ step) =>
-    scoreOf(own, states[step], {
-      evaluations: step === 0 ? run.placing : steps[step - 1].evaluations,
-      isAdaptive: false,
-    });
-  async function score(/** @type {number} */ step) {
-    scored = step;
-    const scores = [await scoreAt(0), await scoreAt(step)];
-    if (step === scored) scorecard.tell(['As placed', `After step ${formatCount(step)}`], scores);
+  async function score() {
+    for (const [step, state] of states.entries()) {
+      const evaluations = step === 0 ? run.placing : steps[step - 1].evaluations;
+      const found = await scoreOf(own, state, { evaluations, isAdaptive: false });
+      scores.value = [...scores.peek(), found];
+      if (step === 0 && found.places.hole) orbit.turnTo(found.places.hole.normal);
+    }
   }
   const show = (/** @type {number} */ step) => {
-    picture.ringed.value = null;
     picture.show({ particles: states[step], colours: colours[step] });
     const { largest_move: move } = steps[step - 1] ?? {};
     words.textContent =
@@ -138,36 +142,49 @@ export async function rest({ lab, stops }) {
     name: 'Step',
     max: last,
     say: (step) => (step === 0 ? 'before the first' : `${formatCount(step)} of ${formatCount(last)}`),
-    change: (step) => {
-      show(step);
-      if (step > 0 && stops.isOpen('predict-rest')) void score(step);
-    },
+    change: show,
   });
   show(0);
-  const box = h('div', { hidden: () => !stops.isOpen('predict-rest') }, scorecard.element);
+  const box = h('div', { hidden: () => !isOpen() }, scorecard.element);
   live(box, () => {
-    if (stops.isOpen('predict-rest'))
-      score(last).catch((error) => fill(scorecard.element, h('p', { class: 'figure-status' }, reasonOf(error))));
+    if (isOpen() && scores.peek().length === 0)
+      score().catch((error) => fill(scorecard.element, h('p', { class: 'figure-status' }, reasonOf(error))));
+  });
+  // The largest hole of the step that is shown is ringed.
+  live(picture.element, () => {
+    picture.ringed.value = scores.value[range.place.value]?.places.hole ?? null;
+  });
+  live(box, () => {
+    const [before, after] = [scores.value[0], scores.value[scored()]];
+    if (before && after) scorecard.tell(['As placed', `After step ${formatCount(scored())}`], [before, after]);
   });
   const play = createPlay(range, { label: 'Relax', totalMs: STEP_MS * last });
-  const energy = (/** @type {number} */ value) => formatSignificant(value, 3);
+  const row = (/** @type {'hole' | 'six'} */ key) => states.map((_, step) => scores.value[step]?.[key] ?? 0);
+  const ratio = (/** @type {number} */ value) => formatFixed(value, 2);
+  const told = () =>
+    `By step, 1 is best: the largest hole over that of the ideal pattern ${row('hole').map(ratio).join(', ')}; the share with six neighbours ${row('six').map(ratio).join(', ')}.`;
   const chart = createChart({
-    hidden: () => !stops.isOpen('predict-rest'),
+    hidden: () => scores.value.length < states.length,
     chart: () => ({
       kind: 'line',
-      rows: [{ fate: 'energy', name: 'energy', counts: energies }],
+      rows: [
+        { fate: 'own', name: 'largest hole, over the ideal', counts: row('hole') },
+        { fate: 'other', name: 'share with six neighbours', counts: row('six') },
+      ],
+      ends: ['placed', `step ${formatCount(last)}`],
       first: 0,
       at: range.place.value,
-      format: energy,
+      format: ratio,
     }),
-    label: `Energy per particle: ${energies.map(energy).join(', ')}`,
-    words: `Energy per particle: ${energy(energies[0])} before the first step, ${energy(energies[energies.length - 1])} after the last. The scale begins at 0.`,
+    label: told,
+    words: 'Both are 1 in the ideal pattern.',
+    press: range.set,
   });
   return [
     picture.element,
     h('div', { class: 'controls' }, play.element, range.element, words),
     createScale('Distance to the nearest, in 2r', formatFixed(NEAR, 2), formatFixed(FAR, 2)),
-    box,
     chart,
+    box,
   ];
 }

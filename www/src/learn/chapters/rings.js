@@ -1,7 +1,7 @@
 /** The front that grows ring by ring: the opening picture, and the chapter on rings. */
-import { h, reducedMotion } from '../../ui/dom.js';
+import { h, live, reducedMotion } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
-import { ringsOf } from '../measure.js';
+import { RING, ringsOf } from '../measure.js';
 import { createChart, createPlay, createRange } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
 
@@ -98,6 +98,10 @@ export async function rings(context) {
     label: `New particles on each level: ${sizes.slice(0, 8).join(', ')}; at most ${Math.max(...sizes)}`,
     words,
     press: range.set,
+  });
+  // The answer is about this ring.
+  live(chart, () => {
+    if (context.stops.isOpen('predict-ring')) range.set(Math.min(RING, sizes.length - 1));
   });
   return [picture.element, h('div', { class: 'controls' }, play.element, range.element), chart];
 }

@@ -1,5 +1,6 @@
 /** Particles as small as the curvature asks for. */
-import { fill, h } from '../../ui/dom.js';
+import { triple } from '../../engine/vector.js';
+import { fill, h, live } from '../../ui/dom.js';
 import { formatSignificant, plural } from '../../ui/format.js';
 import { adaptiveRun, LAWS } from '../adaptive.js';
 import { PARTICLES } from '../lab.js';
@@ -39,5 +40,11 @@ export async function sizes({ lab, stops }) {
     change: (value) => void show(value),
   });
   await show('max_curvature');
+  // The answer is about the smallest discs.
+  live(words, () => {
+    const { radii, normals } = picture.scene.peek()?.particles ?? {};
+    if (!stops.isOpen('predict-sizes') || !radii || !normals) return;
+    orbit.turnTo(triple(normals, radii.indexOf(Math.min(...radii))));
+  });
   return [picture.element, h('div', { class: 'controls' }, law.element, words), legend];
 }
