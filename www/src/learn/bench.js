@@ -2,15 +2,11 @@
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
-import { BENCH } from './address.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
 import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
 /** @import { Control, Lab, Setup, WhatIf } from './types.js' */
-
-/** Stops of the bench in the address: one for each choice. */
-export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);
 
 /**
  * @param {HTMLElement} host

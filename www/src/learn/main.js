@@ -7,18 +7,16 @@ import { byId, query, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
 import { surfaceWords } from '../ui/surface-link.js';
 import { readAddress, writeAddress } from './address.js';
-import { createBench, mountCards, stopsOfBench } from './bench.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
 import { createHandout } from './handout.js';
 import { Lab, NoSurface, PARTICLES } from './lab.js';
-import { createPair } from './pair.js';
 import { mountPrediction, Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
 import { keepSetup, mountStops } from './stops.js';
 import { subjectOf } from './surface.js';
 import { unpackTask } from './task.js';
-import { FAIL, setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
+import { FAIL, setupOf, sidesOf, stopsOfBench, WHAT_IFS } from './whatifs.js';
 
 const address = readAddress(location.hash);
 const subject = subjectOf(address.parts.surface);
@@ -46,6 +44,7 @@ async function openLab() {
 
 /** The comparison whose picture is to be told from the other: both without a word. @param {Lab} lab */
 async function blindPair(lab) {
+  const { createPair } = await import('./pair.js');
   const pair = createPair(lab, { bare: true });
   const order = WHAT_IFS[0];
   const [queue, stack] = sidesOf(order, ['queue', 'stack']);
@@ -73,7 +72,8 @@ const figures = queryAll(document, '[data-figure]').map((host) => {
 // The numbers of the text are handles of live figures.
 for (const { stage, ready } of figures) void ready.then(async () => (await import('./drag.js')).mountNumbers(stage));
 for (const host of queryAll(document, '.predict')) mountPrediction(host, PREDICTIONS[host.id], context);
-const bench = lab.then((ready) => {
+const bench = lab.then(async (ready) => {
+  const { createBench, mountCards } = await import('./bench.js');
   mountCards(byId('cards'), ready);
   void import('./race.js').then(({ mountRace }) => mountRace(byId('race-box'), ready));
   return createBench(byId('bench'), ready, { onChoice: keepSetup });

@@ -1,5 +1,6 @@
 /** The choices of the method that can be seen side by side. */
 import { adaptiveRun, LAWS } from './adaptive.js';
+import { BENCH } from './address.js';
 
 /**
  * @import { LessonSettings } from '../engine/lesson/types.js'
@@ -247,6 +248,9 @@ export const WHAT_IFS = [
     make: (lab, fit) => adaptiveRun(lab, 'max_curvature', { fit: Number(fit), relax_steps: 0 }),
   },
 ];
+
+/** Stops of the bench in the address: one for each choice. */
+export const stopsOfBench = WHAT_IFS.map(({ id }) => `${BENCH}-${id}`);
 
 /** @param {WhatIf} whatIf @param {readonly [string, string]} chosen @returns {[Side, Side]} */
 export function sidesOf({ values: all, knobs, make }, [left, right]) {

@@ -16,6 +16,7 @@ import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt } from '../../sr
 import { Lab } from '../../src/learn/lab.js';
 import { nearestDistances, openBend, parentDistances, ringsOf, scoresOfRest } from '../../src/learn/measure.js';
 import { roomEvents } from '../../src/learn/room.js';
+import { scoreOf } from '../../src/learn/score.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { blame, isWorse, tryOut } from '../../src/learn/verdict.js';
 import { turned as knobTurned, SEED, USUAL } from '../../src/learn/whatifs.js';
@@ -35,6 +36,27 @@ const says = (words) => expect(page.includes(words) || sources.includes(words), 
 
 /** A section of `docs/paper.md`. @param {string} title */
 const section = (title) => paper.split(/^##+ /m).find((part) => part.startsWith(title)) ?? '';
+
+/**
+ * A run of the first page: its particles, and the figures of its report.
+ * @param {import('../../src/ui/types.js').FormulaSurface} surface @param {Record<string, string | number>} settings
+ */
+function reported({ formula, parameters, bounds }, settings) {
+  const core = new Core();
+  expect(core.set_field({ formula, declare: parameters, bounds }).ok).toBe(true);
+  expect(core.start(settings).ok).toBe(true);
+  while (core.step(10_000).stop_reason === null);
+  let report;
+  do report = core.measure(1000);
+  while (report === undefined);
+  const none = new Uint32Array(0);
+  const particles = {
+    ...{ positions: core.positions(0), normals: core.normals(0), radii: core.radii(0) },
+    ...{ levels: none, parents: none, fronts: none },
+  };
+  core.free();
+  return { particles: /** @type {any} */ (particles), quality: /** @type {any} */ (report.quality) };
+}
 
 /** A worker of the lesson that runs in this thread. @returns {any} */
 function spawn() {
@@ -253,6 +275,25 @@ test.each(['ellipsoid', 'torus'])('the reasons why a sampling fails are so in it
     ['0.4', true],
     ['0', true],
   ]);
+});
+
+test.each([
+  ['of one size', false],
+  ['by curvature', true],
+])('the scorecard of a run of the first page has the figures of its report, %s', async (_name, isAdaptive) => {
+  const settings = { size_mode: 'count', target_count: 1500, ...(isAdaptive ? { sampling: 'adaptive' } : {}) };
+  for (const surface of [subjectOf(undefined).surface, /** @type {any} */ (TORUS)]) {
+    const { particles, quality } = reported(surface, settings);
+    expect(particles.radii.length).toBeGreaterThan(1000);
+    const score = await scoreOf(lab.beside(surface), particles, { evaluations: 0, isAdaptive });
+    const { six, uncovered, cover, cover_local, rho, overlap_min } = quality;
+    expect(six).toBeGreaterThan(0.7);
+    expect(score.six).toBeCloseTo(six, 6);
+    // The places that a page has are rounded.
+    expect(score.hole).toBeCloseTo(isAdaptive ? cover_local : cover, 4);
+    expect(score.pair).toBeCloseTo(isAdaptive ? overlap_min : rho, 4);
+    expect(score.uncovered).toBeCloseTo(uncovered, 4);
+  }
 });
 
 test('what is worse is decided by the share of six, and by the hole where the shares are written alike', () => {
