@@ -3,7 +3,7 @@
 import { signal } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { button } from '../ui/button.js';
-import { draw, footOf, scaleOf } from '../ui/chart.js';
+import { draw, endsOf, footOf, scaleOf } from '../ui/chart.js';
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
 
@@ -95,10 +95,18 @@ export function createChart({ hidden, chart, label, words, press = () => {} }) {
   return h(
     'div',
     { class: 'chart', hidden },
-    h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => [
-      draw(chart()),
-      h('span', { class: 'plot-most', 'aria-hidden': 'true' }, scaleOf(chart())),
-    ]),
+    h(
+      'div',
+      { class: 'plot-axis', 'aria-hidden': 'true' },
+      h('span', null, () => scaleOf(chart())),
+      h('span', null, '0'),
+    ),
+    h('div', { class: 'plot', role: 'img', 'aria-label': label, on: { click } }, () => draw(chart())),
+    h('div', { class: 'plot-ends', 'aria-hidden': 'true' }, () =>
+      endsOf(chart()).map(({ fate, words: value, top }) =>
+        h('span', { class: `end-${fate}`, style: { top: `${100 * top}%` } }, value),
+      ),
+    ),
     h('div', { class: 'plot-foot', 'aria-hidden': 'true' }, () => footOf(chart())),
     h('p', { class: 'figure-count' }, words),
   );

@@ -26,12 +26,33 @@ export function footOf({ rows, first, ends: named }) {
   return [ends[0], h('span', { class: 'chart-key' }, key), ends[ends.length - 1]];
 }
 
+/** The largest value is drawn at this share of the height. */
+const RISE = 0.94;
+/** Labels are at least this share of the height apart. */
+const APART = 0.2;
+
+/** The value at the end of each line, and how far from the top it stands, as a share of the height. @param {Drawn} chart */
+export function endsOf(chart) {
+  if (chart.kind !== 'line') return [];
+  const high = mostOf(chart);
+  const found = chart.rows
+    .filter(({ counts }) => counts.length > 0)
+    .map(({ fate, counts }) => ({ fate, value: counts[counts.length - 1] }))
+    .sort((a, b) => b.value - a.value);
+  let free = 0;
+  return found.map(({ fate, value }) => {
+    const top = Math.max(free, 1 - RISE * (value / high));
+    free = top + APART;
+    return { fate, words: chart.format(value), top };
+  });
+}
+
 /** @param {Drawn} chart */
 export function draw(chart) {
   const { kind, rows, first, at, ideal, guide = [] } = chart;
   const places = rows[0].counts.length;
   const high = mostOf(chart);
-  const y = (/** @type {number} */ value) => +(1 - 0.94 * (value / high)).toFixed(4);
+  const y = (/** @type {number} */ value) => +(1 - RISE * (value / high)).toFixed(4);
   const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
   if (at !== null && at >= first && at < first + places)
     svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));

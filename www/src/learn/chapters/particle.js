@@ -79,7 +79,14 @@ function fateChart(run, hidden) {
   const totals = rows.map(({ counts }) => formatCount(counts.reduce((sum, count) => sum + count, 0)));
   return createChart({
     hidden,
-    chart: () => ({ kind: 'bars', rows, first: 0, at: null, format: formatCount }),
+    chart: () => ({
+      kind: 'bars',
+      rows,
+      first: 0,
+      at: null,
+      format: formatCount,
+      ends: ['level 0', `level ${formatCount(levels.length - 1)}`],
+    }),
     label: `Children of each level: in the whole run ${totals[0]} added and ${totals[1]} matched`,
     words: `Children by level: ${totals[0]} added below, ${totals[1]} matched above. Parents are not counted.`,
   });
