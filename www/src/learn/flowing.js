@@ -4,7 +4,9 @@
  */
 import { LessonClient } from '../engine/lesson/client.js';
 import { FlowingFront } from '../engine/sampling/flowing.js';
+import { along, distance } from '../engine/vector.js';
 import { formatCount, formatFixed } from '../ui/format.js';
+import { PARTICLES } from './lab.js';
 import { scoreOf } from './score.js';
 
 /**
@@ -19,42 +21,69 @@ export const STEPS = 60;
 const ROUNDS = 4;
 const MOST_ROUNDS = 200;
 
+/** @param {string} formula @param {string} name @param {readonly number[]} half  of the box */
+const moved = (formula, name, half) => ({
+  formula,
+  parameters: [{ name, label: name, value: 0, min: 0, max: 0, step: 0 }],
+  bounds: { min: along([0, 0, 0], half, -1), max: along([0, 0, 0], half, 1) },
+});
+
 /** The surfaces that move, each by one parameter. @type {readonly Motion[]} */
 export const MOTIONS = [
   {
     value: 'ellipsoid',
     label: 'An ellipsoid is drawn out',
-    formula: 'x^2/a^2 + y^2/0.49 + z^2/0.25 = 1',
+    surface: moved('x^2/a^2 + y^2/0.49 + z^2/0.25 = 1', 'a', [1.7, 0.8, 0.6]),
     name: 'a',
     range: [0.8, 1.6],
-    half: [1.7, 0.8, 0.6],
     seen: 0.62,
     radius: 0.04,
   },
   {
     value: 'tanglecube',
     label: 'A tanglecube falls into eight',
-    formula: 'x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + c = 0',
+    surface: moved('x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + c = 0', 'c', [2.6, 2.6, 2.6]),
     name: 'c',
     range: [11, 14],
-    half: [2.6, 2.6, 2.6],
     seen: 0.8,
     radius: 0.14,
   },
 ];
 
+/** A slider of the learner's own surface is moved by this share of it, towards its farther end. */
+const OWN_SHARE = 0.25;
+/** Its box has some room around it. */
+const OWN_SEEN = 0.85;
+
+/** The learner's own surface, moved by each of its parameters. @param {Lab} lab @returns {Promise<Motion[]>} */
+export async function ownMotions(lab) {
+  const { surface } = lab;
+  if (surface.parameters.length === 0) return [];
+  const radius = await lab.radiusFor(PARTICLES);
+  return surface.parameters.map(({ name, value, min, max }) => {
+    const way = OWN_SHARE * (max - min) * (max - value >= value - min ? 1 : -1);
+    return {
+      value: `own-${name}`,
+      label: `Yours, by ${name}`,
+      surface,
+      name,
+      range: [value, value + way],
+      seen: OWN_SEEN,
+      radius,
+    };
+  });
+}
+
 /** The value of the parameter at a step. @param {Motion} motion @param {number} step */
-export const valueAt = ({ range: [from, to] }, step) => from + ((to - from) * step) / STEPS;
+export const valueAt = ({ range: [from, to] }, step) => from + ((to - from) * Math.min(step, STEPS)) / STEPS;
 
 /** The surface at a step. @param {Motion} motion @param {number} step @returns {FormulaSurface} */
 export function surfaceAt(motion, step) {
-  const { formula, name, half, range } = motion;
-  const [min, max] = range;
-  return {
-    formula,
-    parameters: [{ name, label: name, value: valueAt(motion, step), min, max, step: (max - min) / STEPS }],
-    bounds: { min: [-half[0], -half[1], -half[2]], max: [half[0], half[1], half[2]] },
-  };
+  const { surface, name, range } = motion;
+  const [min, max] = [Math.min(...range), Math.max(...range)];
+  const of = { value: valueAt(motion, step), min, max, step: (max - min) / STEPS };
+  const parameters = surface.parameters.map((one) => (one.name === name ? { ...one, ...of } : one));
+  return { ...surface, parameters };
 }
 
 /** @param {Lab} lab @param {Motion} motion @param {number} step @param {Flowing} lane */
@@ -105,8 +134,7 @@ export class FrontLane {
   /** @param {number} step @param {boolean} follows */
   async #go(step, follows) {
     const { formula, parameters, bounds } = surfaceAt(this.#motion, step);
-    const { half, radius } = this.#motion;
-    const settings = { size_mode: 'radius', radius_share: radius / (2 * Math.hypot(...half)) };
+    const settings = { size_mode: 'radius', radius_share: this.#motion.radius / distance(bounds.max, bounds.min) };
     const how = { follows, isClosed: this.#how.isClosed };
     const { columns, evaluations } = await this.#front.go({ formula, declare: parameters, bounds }, settings, how);
     const { positions, normals, radii, levels, parents } = columns;
@@ -199,7 +227,7 @@ export async function lossOf(lab, lane = new FrontLane(MOTIONS[0])) {
     const hole = (/** @type {number | null} */ size) => formatFixed(Number(size), 2);
     const words = [
       `There are ${formatCount(count)} particles, and a new front has ${formatCount(fresh)}. The largest hole was ${hole(before.hole)} times that of the ideal pattern and is ${hole(after.hole)}.`,
-      `But of a hundred particles ${percent(before.six)} had six neighbours, and now ${percent(after.six)} have.`,
+      `But of a hundred particles ${percent(before.six)} had six neighbours, and now ${percent(after.six)} have: a child is born where there is room, and not where a lattice would have it.`,
     ];
     return { right, words: words.join(' ') };
   } finally {

@@ -7,7 +7,6 @@ import { NoSurface } from './lab.js';
 import { scoreOf } from './score.js';
 
 /**
- * @import { Lane } from '../engine/lesson/types.js'
  * @import { LessonParticles } from '../engine/types.js'
  * @import { Lab, LabRun, Snapshot } from './types.js'
  */
@@ -107,6 +106,7 @@ export function asFineEverywhere(radii) {
 
 /**
  * The last snapshot that had cost no more than this; the first where each had.
- * @param {readonly Snapshot[]} shots  in their order @param {(lane: Lane) => number} costOf @param {number} cost
+ * @template L
+ * @param {readonly Snapshot<L>[]} shots  in their order @param {(lane: L) => number} costOf @param {number} cost
  */
 export const shotAt = (shots, costOf, cost) => shots.findLast(({ lane }) => costOf(lane) <= cost) ?? shots[0];

@@ -13,6 +13,7 @@ import { nearestDistances } from './measure.js';
 import { createSelect } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 import { createReplay, MOST_SHOTS } from './replay.js';
+import { scoreOf } from './score.js';
 
 /**
  * @import { Lane, LessonSettings } from '../engine/lesson/types.js'
@@ -24,6 +25,28 @@ import { createReplay, MOST_SHOTS } from './replay.js';
 const PARTICLES = 1500;
 /** The pictures are brought up to date this often. */
 const PICTURE_MS = 250;
+/** The axis of the replay has so many places. */
+const PLACES = 200;
+
+/**
+ * What can be counted.
+ * @type {readonly { value: string, label: string, of: (lane: Lane) => number, say: (cost: number) => string }[]}
+ */
+const COSTS = [
+  {
+    value: 'evaluations',
+    label: 'evaluations of f',
+    of: ({ progress }) => progress?.evaluations ?? 0,
+    say: (cost) => formatCount(Math.round(cost)),
+  },
+  {
+    value: 'pushes',
+    label: 'pushes',
+    of: ({ progress }) => progress?.interactions ?? 0,
+    say: (cost) => formatCount(Math.round(cost)),
+  },
+  { value: 'seconds', label: 'seconds', of: ({ workMs }) => workMs / 1000, say: formatSeconds },
+];
 /** Distances over the ideal one span this range of colours. */
 const [NEAR, FAR] = [0.7, 1.15];
 
@@ -169,7 +192,7 @@ class Course {
   async run() {
     const kind = this.kind.peek();
     const { orbit, lanes, names } = this.lay();
-    /** @type {[Snapshot[], Snapshot[]]} */
+    /** @type {[Snapshot<Lane>[], Snapshot<Lane>[]]} */
     const films = [[], []];
     const own = raceOn(lanes, films);
     const isOver = () => this.race.peek() !== own;
@@ -190,10 +213,18 @@ class Course {
       // The last snapshots are answered in their order.
       await Promise.all([own.particles(0), own.particles(1)]);
       if (isOver()) return;
-      const replay = createReplay(this.#lab, {
+      const isAdaptive = kind === 'adaptive';
+      const replay = createReplay({
         films,
         names,
-        isAdaptive: kind === 'adaptive',
+        axes: COSTS,
+        axisName: 'Both at the same',
+        name: 'Spent',
+        places: PLACES,
+        at: PLACES,
+        most: (of) => Math.max(...films.map((shots) => of(shots[shots.length - 1].lane))),
+        score: ({ lane, particles }) =>
+          scoreOf(this.#lab, particles, { evaluations: lane.progress?.evaluations ?? 0, isAdaptive }),
         show: (k, { lane, particles }) => {
           lanes[k].tell(lane);
           lanes[k].show(particles);
@@ -218,7 +249,7 @@ class Course {
 
 /**
  * A race that shows itself on its lanes, and keeps snapshots of both.
- * @param {readonly ReturnType<typeof createLane>[]} lanes @param {[Snapshot[], Snapshot[]]} films
+ * @param {readonly ReturnType<typeof createLane>[]} lanes @param {[Snapshot<Lane>[], Snapshot<Lane>[]]} films
  */
 function raceOn(lanes, films) {
   const lastMs = [-Infinity, -Infinity];

@@ -1,5 +1,5 @@
 // Types of the learn page: its runs, its pictures, its questions and its choices.
-import type { Lane, LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
+import type { LessonChapter, LessonProgress, LessonSettings } from '../engine/lesson/types.js';
 import type { LessonClient, LessonEvent, LessonParticles } from '../engine/types.js';
 import type { Palette } from '../engine/view/types.js';
 import type { Point } from '../figures/types.js';
@@ -131,19 +131,20 @@ export type Work = {
   runs: object[];
 };
 /**
- * A surface that moves by one parameter. `half`: of its box; `seen`: the part of the box to which a picture is fitted;
- * `radius`: of the particles on it.
+ * A surface that moves by one parameter. `seen`: the share of its box to which a picture is fitted; `radius`: of the
+ * particles on it.
  */
 export interface Motion {
   value: string;
   label: string;
-  formula: string;
+  surface: FormulaSurface;
   name: string;
   range: readonly [number, number];
-  half: readonly [number, number, number];
   seen: number;
   radius: number;
 }
+/** A lane at a snapshot. `step`: of the slider. */
+export type AtStep = { step: number; evaluations: number };
 /** Particles that follow a surface that moves. `evaluations`: of f so far. */
 export interface FlowLane extends Flowing {
   /** covers the surface of a step of the slider */
@@ -156,13 +157,23 @@ export interface FlowLane extends Flowing {
 }
 export type Flowing = { particles: LessonParticles; evaluations: number };
 /** A lane of a race at the end of one of its turns. */
-export type Snapshot = { lane: Lane; particles: LessonParticles };
-export interface ReplayOptions {
-  /** the snapshots of each lane in their order, the last at its end */
-  films: readonly Snapshot[][];
+export type Snapshot<L> = { lane: L; particles: LessonParticles };
+/** `L`: what is known of a lane at a snapshot. */
+export interface ReplayOptions<L> {
+  /** the snapshots of each lane in their order, none of them empty; the lanes may still be under way */
+  films: readonly Snapshot<L>[][];
   names: readonly string[];
-  isAdaptive: boolean;
-  show: (side: number, shot: Snapshot) => void;
+  /** what the axis can be */
+  axes: readonly { value: string; label: string; of: (lane: L) => number; say: (cost: number) => string }[];
+  axisName: string;
+  /** of the slider, with so many places, and where it begins */
+  name: string;
+  places: number;
+  at: number;
+  /** the end of an axis */
+  most: (of: (lane: L) => number) => number;
+  score: (shot: Snapshot<L>) => Promise<Score>;
+  show: (side: number, shot: Snapshot<L>) => void;
   /** shows a place of the particles on a side; null: none */
   point: (place: ScorePlace | null, side: number) => void;
 }

@@ -1,24 +1,24 @@
 /** The chapter on a surface that moves: a front that flows, beside a rival, under one camera. */
 import { signal } from '@preact/signals-core';
-import { button } from '../../ui/button.js';
 import { fill, h, live, reducedMotion } from '../../ui/dom.js';
 import { formatFixed, plural } from '../../ui/format.js';
-import { icon } from '../../ui/icons.js';
 import { reasonOf } from '../figure.js';
-import { FrontLane, lossOf, MOTIONS, STEPS, SystemLane, scoreAt, surfaceAt, valueAt } from '../flowing.js';
-import { createChart, createRange, createSelect } from '../parts.js';
+import { FrontLane, lossOf, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, surfaceAt, valueAt } from '../flowing.js';
+import { createChart, createSelect } from '../parts.js';
 import { byLevel, Orbit, Picture } from '../picture.js';
-import { createScorecard } from '../scorecard.js';
+import { createReplay } from '../replay.js';
 
 /**
  * @import { Signal } from '../../engine/types.js'
- * @import { Context, FlowLane, Lab, Motion, Score } from '../types.js'
+ * @import { AtStep, Context, FlowLane, Lab, Motion, Snapshot } from '../types.js'
  */
 
 /** Steps from one measurement to the next. */
 const MEASURED = 4;
 /** Shortest time of a step, so that the eye can follow. */
 const STEP_MS = 33;
+/** After the last step both come to rest. */
+const AT_REST = STEPS + 1;
 
 /**
  * What stands beside the front that flows.
@@ -34,217 +34,209 @@ const RIVALS = [
   { value: 'fresh', label: 'A new front each time', make: (motion) => new FrontLane(motion, { isFresh: true }) },
 ];
 
-/** Two lanes on one moving surface, with their pictures and their figures. */
+/**
+ * Two lanes on one moving surface. They go forward as far as the slider has been, and a snapshot is kept of every step:
+ * back, and forward again, it shows those.
+ */
 class Pursuit {
   #lab;
   motion = MOTIONS[0];
   rival = RIVALS[0];
   place = h('div', { class: 'pair' });
-  /** The shares with six neighbours in both lanes, from the beginning on. @type {Signal<[number, number][]>} */
+  controls = h('div');
+  card = h('div');
+  /** The shares with six neighbours in both lanes, at every measured step. @type {Signal<[number, number][]>} */
   shares = signal([]);
-  isSweeping = signal(false);
-  /** The step of the slider at which the lanes are. */
+  /** The step that the slider shows. */
   at = signal(0);
-  /** The step to which they go. */
-  #target = 0;
-  /** @type {[number, number][]} */
-  #past = [];
   status = signal('');
-  scorecard = createScorecard((spot, side) => {
-    for (const [k, picture] of this.#pictures.entries()) picture.ringed.value = k === side ? spot : null;
-    if (spot) this.#orbit.turnTo(spot.normal);
-  });
-  #orbit = new Orbit(surfaceAt(this.motion, 0).bounds);
-  /** @type {Picture[]} */
-  #pictures = [];
-  /** @type {HTMLElement[]} */
-  #captions = [];
   /** @type {FlowLane[]} */
   #lanes = [];
   /** Counts the beginnings: what an earlier one still does is dropped. */
   #begun = 0;
-  /** What the lane on the left does. */
-  #name = '';
-  #last = Promise.resolve();
-  #measured = Promise.resolve();
+  /** Brings the slider to a step. @type {(step: number) => void} */
+  go = () => {};
 
   /** @param {Lab} lab */
   constructor(lab) {
     this.#lab = lab;
   }
 
-  /** Lays both pictures anew, with a front and its rival on the surface of the first step. */
-  lay() {
+  /** Begins anew, with a front and its rival on the surface of the first step. */
+  async lay() {
     this.#begun += 1;
-    for (const lane of this.#lanes) lane.close();
-    const { motion, rival } = this;
-    const [x, y, z] = motion.half.map((half) => motion.seen * half);
-    this.#orbit = new Orbit({ min: [-x, -y, -z], max: [x, y, z] });
-    this.#lanes = [new FrontLane(motion), rival.make(motion)];
-    this.#pictures = ['A front that flows', rival.label].map((name) => new Picture(this.#orbit, { name }));
-    this.#captions = this.#pictures.map(() => h('figcaption'));
-    fill(
-      this.place,
-      this.#pictures.map((picture, k) => h('figure', null, picture.element, this.#captions[k])),
-    );
-    fill(this.scorecard.element);
-    this.isSweeping.value = false;
-    [this.at.value, this.#target, this.#past] = [0, 0, []];
-    this.#name = 'A front';
-    return this.#act('Covering the surface', (lane) => lane.begin(0));
-  }
-
-  /** Moves the surface to a step of the slider. @param {number} step */
-  go(step) {
-    this.#target = step;
-    return this.#act('', null);
-  }
-
-  /** Moves the surface to the other end of the slider and back; a second call holds it where it is. */
-  async sweep() {
-    this.isSweeping.value = !this.isSweeping.peek();
-    if (!this.isSweeping.peek()) return this.go(this.at.peek());
-    for (const end of this.at.peek() === STEPS ? [0] : [STEPS, 0]) if (this.isSweeping.peek()) await this.go(end);
-    this.isSweeping.value = false;
-  }
-
-  /** Has both come to rest, each in its own way. */
-  rest() {
-    this.isSweeping.value = false;
-    this.#target = this.at.peek();
-    this.#name = 'A new front';
-    return this.#act('Both come to rest', (lane) => lane.rest(this.at.peek()));
-  }
-
-  /**
-   * Has both lanes do something once what is under way is done, or follow the slider; shows and measures them.
-   * @param {string} words @param {((lane: FlowLane) => Promise<void>) | null} job
-   */
-  #act(words, job) {
     const mine = this.#begun;
     const isOver = () => mine !== this.#begun;
-    this.#last = this.#last.then(async () => {
-      if (isOver() || (!job && this.at.peek() === this.#target)) return;
-      this.status.value = words;
+    for (const lane of this.#lanes) lane.close();
+    const { motion, rival } = this;
+    const lanes = [new FrontLane(motion), rival.make(motion)];
+    this.#lanes = lanes;
+    const { orbit, show, point } = this.#pictures();
+    /** @type {[Snapshot<AtStep>[], Snapshot<AtStep>[]]} */
+    const films = [[], []];
+    this.shares.value = [];
+    this.status.value = 'Covering the surface';
+    /** The step as far as which the lanes go. */
+    let target = 0;
+    let isBusy = false;
+    /** Goes forward to the target, step by step. */
+    const record = async () => {
+      if (isBusy) return;
+      isBusy = true;
       try {
-        if (job) await Promise.all(this.#lanes.map(job));
-        else await this.#follow(isOver);
-        if (isOver()) return;
-        this.#show();
-        await this.#measure(true);
-        if (!isOver()) this.status.value = '';
+        while (films[0].length <= target && !isOver()) {
+          const sinceMs = performance.now();
+          const step = films[0].length;
+          if (step === AT_REST) this.status.value = 'Both come to rest';
+          await Promise.all(lanes.map((lane) => doStep(lane, step)));
+          if (isOver()) return;
+          if (step === 0) orbit.faceFront(lanes[0].particles);
+          for (const [k, { particles, evaluations }] of lanes.entries())
+            films[k].push({ lane: { step, evaluations }, particles });
+          if (step % MEASURED === 0 || step === AT_REST) await this.#measure(films, isOver);
+          const isLast = step >= target;
+          if (!isLast && reducedMotion()) continue;
+          if (isLast) {
+            this.status.value = '';
+            await replay.seek();
+          } else if (replay.range.get() >= step) for (const k of [0, 1]) show(k, films[k][step]);
+          if (!isLast) await new Promise((done) => setTimeout(done, STEP_MS - (performance.now() - sinceMs)));
+        }
       } catch (error) {
-        if (isOver()) return;
-        this.isSweeping.value = false;
-        this.status.value = reasonOf(error);
+        if (!isOver()) this.status.value = reasonOf(error);
+      } finally {
+        isBusy = false;
       }
+    };
+    const replay = createReplay({
+      films,
+      names: ['The front', 'Beside it'],
+      axes: [{ value: 'step', label: 'step', of: ({ step }) => step, say: (step) => this.#say(step) }],
+      axisName: '',
+      name: 'Parameter',
+      places: AT_REST,
+      at: 0,
+      most: () => AT_REST,
+      score: ({ lane: { step, evaluations }, particles }) =>
+        scoreAt(this.#lab, motion, Math.min(step, STEPS), { particles, evaluations }),
+      show,
+      point,
     });
-    return this.#last;
+    live(replay.controls, () => {
+      const step = replay.range.place.value;
+      this.at.value = step;
+      if (step <= target) return;
+      target = step;
+      void record();
+    });
+    this.go = replay.range.set;
+    await record();
+    if (isOver() || films[0].length === 0) return;
+    fill(this.controls, replay.controls);
+    fill(this.card, replay.scorecard.element);
   }
 
-  /** Follows the slider step by step to where it is. @param {() => boolean} isOver */
-  async #follow(isOver) {
-    this.#name = 'It flows';
-    while (this.at.peek() !== this.#target && !isOver()) {
-      const sinceMs = performance.now();
-      const at = this.at.peek();
-      const next = at + Math.sign(this.#target - at);
-      await Promise.all(this.#lanes.map((lane) => lane.follow(next)));
-      if (!isOver()) this.at.value = next;
-      if (isOver() || reducedMotion()) continue;
-      this.#show();
-      if (next % MEASURED === 0) {
-        // The surface does not run away from the meter.
-        await this.#measured;
-        this.#measure(false).catch(() => {});
-      }
-      await new Promise((done) => setTimeout(done, STEP_MS - (performance.now() - sinceMs)));
+  /** @param {number} step */
+  #say(step) {
+    const { motion } = this;
+    return `${motion.name} = ${formatFixed(valueAt(motion, step), 2)}${step > STEPS ? ', at rest' : ''}`;
+  }
+
+  /** Lays both pictures anew. */
+  #pictures() {
+    const { motion, rival } = this;
+    const { min, max } = surfaceAt(motion, 0).bounds;
+    const middle = min.map((low, k) => (low + max[k]) / 2);
+    const seen = (/** @type {readonly number[]} */ corner) =>
+      /** @type {[number, number, number]} */ (corner.map((c, k) => middle[k] + motion.seen * (c - middle[k])));
+    const orbit = new Orbit({ min: seen(min), max: seen(max) });
+    const pictures = ['A front that flows', rival.label].map((name) => new Picture(orbit, { name }));
+    const captions = pictures.map(() => h('figcaption'));
+    fill(
+      this.place,
+      pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
+    );
+    return {
+      orbit,
+      /** @param {number} k @param {Snapshot<AtStep>} shot */
+      show(k, { lane: { step }, particles }) {
+        pictures[k].ringed.value = null;
+        pictures[k].show({ particles, colours: byLevel(particles) });
+        const own = step === 0 ? 'A front' : step > STEPS ? 'A new front' : 'It flows';
+        captions[k].textContent = `${k === 0 ? own : rival.label}: ${plural(particles.radii.length, 'particle')}`;
+      },
+      /** @param {import('../types.js').ScorePlace | null} place @param {number} side */
+      point(place, side) {
+        for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
+        if (place) orbit.turnTo(place.normal);
+      },
+    };
+  }
+
+  /** Measures both lanes as they are now. @param {readonly Snapshot<AtStep>[][]} films @param {() => boolean} isOver */
+  async #measure(films, isOver) {
+    const now = films.map((shots) => shots[shots.length - 1]);
+    const sixes = [];
+    for (const { lane, particles } of now) {
+      const { evaluations, step } = lane;
+      const { six } = await scoreAt(this.#lab, this.motion, Math.min(step, STEPS), { particles, evaluations });
+      sixes.push(six ?? 0);
     }
-  }
-
-  #show() {
-    for (const [k, { particles }] of this.#lanes.entries()) {
-      this.#pictures[k].ringed.value = null;
-      this.#pictures[k].show({ particles, colours: byLevel(particles) });
-      const name = k === 0 ? this.#name : this.rival.label;
-      this.#captions[k].textContent = `${name}: ${plural(particles.radii.length, 'particle')}`;
-    }
-  }
-
-  /** Measures both lanes as they are now, one after the other. @param {boolean} isLast  the figures are shown, too */
-  #measure(isLast) {
-    const [mine, step, { motion }] = [this.#begun, this.at.peek(), this];
-    const now = this.#lanes.map(({ particles, evaluations }) => ({ particles, evaluations }));
-    // A measurement that has failed is no reason for the next one to fail.
-    this.#measured = this.#measured
-      .catch(() => {})
-      .then(async () => {
-        /** @type {Score[]} */
-        const scores = [];
-        for (const lane of now) if (mine === this.#begun) scores.push(await scoreAt(this.#lab, motion, step, lane));
-        if (mine !== this.#begun) return;
-        this.#past = [...this.#past, [scores[0].six ?? 0, scores[1].six ?? 0]];
-        this.shares.value = this.#past;
-        if (isLast) this.scorecard.tell([this.#name, 'Beside it'], scores);
-      });
-    return this.#measured;
+    if (!isOver()) this.shares.value = [...this.shares.peek(), [sixes[0], sixes[1]]];
   }
 }
 
+/** @param {FlowLane} lane @param {number} step */
+function doStep(lane, step) {
+  if (step === 0) return lane.begin(0);
+  return step > STEPS ? lane.rest(STEPS) : lane.follow(step);
+}
+
 /** The chart of both lanes. @param {Pursuit} pursuit @param {() => boolean} isOpen */
-function chartOf({ shares }, isOpen) {
+function chartOf(pursuit, isOpen) {
   const percent = (/** @type {number} */ share) => `${formatFixed(100 * share, 0)} %`;
+  const { shares } = pursuit;
+  const measured = (/** @type {number} */ step) => Math.ceil(step / MEASURED);
   const told = () => {
-    const [first, last] = [shares.value[0], shares.value[shares.value.length - 1]];
+    const [first] = shares.value;
+    const now = shares.value[Math.min(measured(pursuit.at.value), shares.value.length - 1)];
     if (!first) return '';
-    return `Six neighbours: of those that flow ${percent(last[0])}, beside them ${percent(last[1])}. At the beginning it was ${percent(first[0])} and ${percent(first[1])}.`;
+    return `Six neighbours: of those that flow ${percent(now[0])}, beside them ${percent(now[1])}. At the beginning it was ${percent(first[0])} and ${percent(first[1])}.`;
   };
+  const row = (/** @type {0 | 1} */ k) => (shares.value.length > 0 ? shares.value.map((both) => both[k]) : [0]);
   return createChart({
     hidden: () => !isOpen(),
     chart: () => ({
       kind: 'line',
       rows: [
-        { fate: 'own', name: 'it flows', counts: shares.value.map(([six]) => six) },
-        { fate: 'other', name: 'beside it', counts: shares.value.map(([, six]) => six) },
+        { fate: 'own', name: 'it flows', counts: row(0) },
+        { fate: 'other', name: 'beside it', counts: row(1) },
       ],
       first: 0,
-      at: null,
+      at: measured(pursuit.at.value),
       format: percent,
-      ends: ['at first', 'now'],
+      ends: ['at first', 'as far as it went'],
       guide: [1],
     }),
     label: told,
     words: told,
+    press: (at) => pursuit.go(Math.min(AT_REST, at * MEASURED)),
   });
 }
 
 /** @param {Context} context */
 export async function moving({ lab, stops }) {
-  const pursuit = new Pursuit(await lab);
+  const own = await lab;
   const isOpen = () => stops.isOpen('predict-moving');
-  const range = createRange({
-    name: 'Parameter',
-    max: STEPS,
-    say: (step) => `${pursuit.motion.name} = ${formatFixed(valueAt(pursuit.motion, step), 2)}`,
-    change: (step) => {
-      pursuit.isSweeping.value = false;
-      void pursuit.go(step);
-    },
-  });
-  live(range.element, () => {
-    if (pursuit.isSweeping.value) range.place.value = pursuit.at.value;
-  });
-  const lay = () => {
-    range.place.value = 0;
-    return pursuit.lay();
-  };
+  const pursuit = new Pursuit(own);
+  const motions = [...MOTIONS, ...(await ownMotions(own))];
   const choices = [
     createSelect({
       name: 'Surface',
-      choices: MOTIONS,
+      choices: motions,
       change: (value) => {
-        pursuit.motion = MOTIONS.find((one) => one.value === value) ?? MOTIONS[0];
-        void lay();
+        pursuit.motion = motions.find((one) => one.value === value) ?? MOTIONS[0];
+        void pursuit.lay();
       },
     }),
     createSelect({
@@ -252,34 +244,30 @@ export async function moving({ lab, stops }) {
       choices: RIVALS,
       change: (value) => {
         pursuit.rival = RIVALS.find((one) => one.value === value) ?? RIVALS[0];
-        void lay();
+        void pursuit.lay();
       },
     }),
   ];
-  const rest = () => {
-    range.place.value = pursuit.at.peek();
-    void pursuit.rest();
-  };
-  await lay();
+  await pursuit.lay();
+  // The answer is about the other end of the slider.
+  live(pursuit.card, () => {
+    if (isOpen()) pursuit.go(STEPS);
+  });
+  const isAlone = motions.length === MOTIONS.length;
   return [
     pursuit.place,
-    h(
-      'div',
-      { class: 'controls' },
-      button({ press: () => void pursuit.sweep() }, () =>
-        pursuit.isSweeping.value ? [icon('pause'), 'Hold'] : [icon('play'), 'There and back'],
-      ),
-      button({ press: rest }, 'Come to rest'),
-      range.element,
-    ),
+    pursuit.controls,
     h(
       'div',
       { class: 'controls' },
       choices.map(({ element }) => element),
     ),
+    isAlone
+      ? h('p', { class: 'quiet' }, 'A surface of the first page moves here, too, if its formula has a parameter.')
+      : null,
     h('p', { class: 'figure-status', role: 'status' }, () => pursuit.status.value),
     chartOf(pursuit, isOpen),
-    h('div', { hidden: () => !isOpen() }, pursuit.scorecard.element),
+    h('div', { hidden: () => !isOpen() }, pursuit.card),
   ];
 }
 
