@@ -1,9 +1,10 @@
 /** What is dragged beside the ranges: a number in a sentence, and a drawing. */
 import { clamp } from '../engine/vector.js';
 import { h, queryAll } from '../ui/dom.js';
-import { formatCount } from '../ui/format.js';
+import { formatCount, formatFixed } from '../ui/format.js';
 import { afterKey, toPlace, toValue } from '../ui/scale.js';
 import { rangePlaces } from './parts.js';
+import { TOLERANCES } from './whatifs.js';
 
 /** @import { Point } from '../figures/types.js' */
 /** @import { NumberOptions } from './types.js' */
@@ -63,6 +64,16 @@ export function createNumber({ name, scale, value, say, change }) {
   );
   return element;
 }
+
+/** The match tolerance as a number in a sentence. @param {() => number} value @param {(to: number) => void} change */
+export const createTolerance = (value, change) =>
+  createNumber({
+    name: 'Match tolerance',
+    scale: TOLERANCES,
+    value,
+    say: (to) => formatFixed(to, 2),
+    change: (to) => change(Number(to.toPrecision(3))),
+  });
 
 /**
  * Makes the numbers of the text that name a figure handles of its first range. A number with `data-times` is so many

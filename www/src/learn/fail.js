@@ -2,10 +2,9 @@
 import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h } from '../ui/dom.js';
-import { formatFixed } from '../ui/format.js';
 import { kept } from '../ui/remembered.js';
 import { packed } from '../ui/surface-link.js';
-import { createNumber } from './drag.js';
+import { createTolerance } from './drag.js';
 import { reasonOf } from './figure.js';
 import { createSelect } from './parts.js';
 import { blame, isWorse, reasonWhy, share, tryOut, widest } from './verdict.js';
@@ -70,7 +69,6 @@ function triesOf(lab) {
 export function createFail(lab, { choose, isLocked }) {
   const tries = triesOf(lab);
   const own = signal(USUAL);
-  const [tolerance] = KNOBS.flatMap(({ scale }) => scale ?? []);
   /** The try on the right, and beside it the best so far; beside the best, the worst. @param {string} right */
   const setTo = (right) => {
     if (right === own.peek() || isLocked) return;
@@ -85,13 +83,10 @@ export function createFail(lab, { choose, isLocked }) {
     made.select.disabled = isLocked;
     return made;
   });
-  const number = createNumber({
-    name: KNOBS[1].name,
-    scale: tolerance,
-    value: () => Number(partsOf(own.value)[1]),
-    say: (value) => formatFixed(value, 2),
-    change: (value) => turn(1, String(Number(value.toPrecision(3)))),
-  });
+  const number = createTolerance(
+    () => Number(partsOf(own.value)[1]),
+    (to) => turn(1, String(to)),
+  );
   if (isLocked) number.setAttribute('aria-disabled', 'true');
   const keptRow = h('div', { class: 'kept', role: 'group', 'aria-label': 'Kept so far' }, () =>
     tries.ends.value.map(({ value, score }, k) =>

@@ -142,6 +142,12 @@ export class Lab {
     return made;
   }
 
+  /** Ends a run that was kept, and forgets it. @param {LabRun} run */
+  drop({ client, settings }) {
+    client.close();
+    this.#runs.delete(JSON.stringify([settings, true]));
+  }
+
   /**
    * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a
    * seed: where the surface ends beside it, it has fewer.

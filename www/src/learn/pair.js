@@ -3,6 +3,7 @@ import { triple } from '../engine/vector.js';
 import { fill, h } from '../ui/dom.js';
 import { formatFixed, formatSignificant } from '../ui/format.js';
 import { reasonOf } from './figure.js';
+import { latest } from './latest.js';
 import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
@@ -86,75 +87,53 @@ export function createPair(lab, { bare = false } = {}) {
     for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
     if (place) orbit.turnTo(place.normal);
   }
-  /** What waits to be shown. @type {[readonly [Side, Side], Colouring] | null} */
-  let wanted = null;
-  let isBusy = false;
   let isFirst = true;
-  return {
+  const shown = {
     element,
-    /** @type {readonly [LabRun, LabRun] | null} */
-    runs: null,
-    /** Fulfilled once what is shown is measured. */
-    settled: Promise.resolve(),
-    /** The scores of the runs, once they are measured. @type {readonly Score[] | null} */
-    scores: null,
-    /** Tells where a particle is pressed; null for no one. @param {((place: number[]) => void) | null} onPick */
-    pickWith(onPick) {
+    runs: /** @type {readonly [LabRun, LabRun] | null} */ (null),
+    /** The scores of the runs, once they are measured. */
+    scores: /** @type {readonly Score[] | null} */ (null),
+    /** Tells where a particle is pressed; null for no one. */
+    pickWith(/** @type {((place: number[]) => void) | null} */ onPick) {
       for (const [k, picture] of pictures.entries())
         picture.pickWith(onPick && ((particle) => onPick(particlePlace(k, particle))));
     },
-    /**
-     * Of several that are asked for one after the other, as a number is dragged, the last is shown.
-     * @param {readonly [Side, Side]} sides @param {Colouring} colouring
-     */
-    show(sides, colouring) {
-      wanted = [sides, colouring];
-      if (!isBusy) this.settled = this.work();
-      return this.settled;
-    },
-    async work() {
-      isBusy = true;
-      while (wanted) {
-        const [sides, colouring] = wanted;
-        wanted = null;
-        await this.compare(sides, colouring);
-      }
-      isBusy = false;
-    },
-    /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
-    async compare(sides, colouring) {
-      status.textContent = 'Running both';
-      try {
-        const left = await sides[0].make(lab);
-        const right = await sides[1].make(lab);
-        if (wanted) return;
-        this.runs = [left, right];
-        this.scores = null;
-        orbit.fitTo(left.end);
-        if (isFirst) orbit.faceFront(left.placed);
-        isFirst = false;
-        const all = [...left.end.radii, ...right.end.radii];
-        /** @type {[number, number]} */
-        const radii = [Math.min(...all), Math.max(...all)];
-        for (const [k, run] of this.runs.entries()) {
-          pictures[k].show(sceneOf(run, colouring, radii));
-          captions[k].textContent = sides[k].label;
-        }
-        if (!bare) fill(legend, legendOf(colouring, radii));
-        pointOut(null, 0);
-        status.textContent = bare ? '' : 'Measuring both';
-        if (bare) return;
-        const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];
-        if (wanted) return;
-        this.scores = scores;
-        scorecard.tell(
-          sides.map(({ label }) => label),
-          scores,
-        );
-        status.textContent = '';
-      } catch (error) {
-        if (!wanted) status.textContent = reasonOf(error);
-      }
-    },
+    show: (/** @type {Pair['sides']} */ sides, /** @type {Colouring} */ colouring) => compare({ sides, colouring }),
   };
+  /** @typedef {{ sides: readonly [Side, Side], colouring: Colouring }} Pair */
+  const compare = latest(async (/** @type {Pair} */ { sides, colouring }, isOld) => {
+    status.textContent = 'Running both';
+    try {
+      const left = await sides[0].make(lab);
+      const right = await sides[1].make(lab);
+      if (isOld()) return;
+      shown.runs = [left, right];
+      shown.scores = null;
+      orbit.fitTo(left.end);
+      if (isFirst) orbit.faceFront(left.placed);
+      isFirst = false;
+      const all = [...left.end.radii, ...right.end.radii];
+      /** @type {[number, number]} */
+      const radii = [Math.min(...all), Math.max(...all)];
+      for (const [k, run] of shown.runs.entries()) {
+        pictures[k].show(sceneOf(run, colouring, radii));
+        captions[k].textContent = sides[k].label;
+      }
+      if (!bare) fill(legend, legendOf(colouring, radii));
+      pointOut(null, 0);
+      status.textContent = bare ? '' : 'Measuring both';
+      if (bare) return;
+      const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];
+      if (isOld()) return;
+      shown.scores = scores;
+      scorecard.tell(
+        sides.map(({ label }) => label),
+        scores,
+      );
+      status.textContent = '';
+    } catch (error) {
+      if (!isOld()) status.textContent = reasonOf(error);
+    }
+  });
+  return shown;
 }

@@ -4,6 +4,7 @@
  */
 import { signal } from '@preact/signals-core';
 import { h } from '../ui/dom.js';
+import { latest } from './latest.js';
 import { shotAt } from './measure.js';
 import { createPlay, createRange, createSelect } from './parts.js';
 import { createScorecard } from './scorecard.js';
@@ -23,32 +24,17 @@ export function createReplay({ films, names, axes, axisName, name, places, at, m
   const axis = signal(axes[0]);
   const costAt = (/** @type {number} */ place) => most(axis.value.of) * (place / places);
   const scorecard = createScorecard(point);
-  /** What waits to be measured. @type {readonly Snapshot<L>[] | null} */
-  let wanted = null;
-  let isBusy = false;
-  /** Measures the newest that is wanted, one after the other. */
-  async function measure() {
-    if (isBusy) return;
-    isBusy = true;
-    try {
-      while (wanted) {
-        const pair = wanted;
-        wanted = null;
-        const scores = [];
-        for (const shot of pair) scores.push(await score(shot));
-        if (!wanted) scorecard.tell(names, scores);
-      }
-    } finally {
-      isBusy = false;
-    }
-  }
+  const measure = latest(async (/** @type {readonly Snapshot<L>[]} */ pair, isOld) => {
+    const scores = [];
+    for (const shot of pair) scores.push(await score(shot));
+    if (!isOld()) scorecard.tell(names, scores);
+  });
   async function seek() {
     // In this order, so that at the end it is no less than the most.
     const cost = costAt(range.get());
     const pair = films.map((shots) => shotAt(shots, axis.peek().of, cost));
     for (const [k, shot] of pair.entries()) show(k, shot);
-    wanted = pair;
-    await measure();
+    await measure(pair);
   }
   const range = createRange({
     name,

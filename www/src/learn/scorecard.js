@@ -61,7 +61,8 @@ export function createScorecard(show) {
       fill(
         element,
         h('table', { class: 'compare' }, h('thead', null, h('tr', null, h('td'), heads)), h('tbody', null, rows)),
-        h('p', { class: 'quiet' }, `Press a hole or a pair to turn to it. ${COUNT_WORDS}`),
+        h('p', { class: 'quiet press' }, 'Press a hole or a pair to turn to it.'),
+        h('p', { class: 'quiet' }, COUNT_WORDS),
       );
     },
   };

@@ -52,6 +52,9 @@ export const partsOf = (value) => value.split(BETWEEN);
 /** The value of knobs in which one is turned. @param {string} value @param {number} k @param {string} part */
 export const turned = (value, k, part) => partsOf(value).with(k, part).join(BETWEEN);
 
+/** The range of the match tolerance, in 2r. */
+export const TOLERANCES = { min: 0.4, max: 0.95, step: 0.05 };
+
 /** The choices that can be made at once. @type {readonly Knob[]} */
 export const KNOBS = [
   {
@@ -65,7 +68,7 @@ export const KNOBS = [
   {
     name: 'Match tolerance',
     values: [],
-    scale: { min: 0.4, max: 0.95, step: 0.05 },
+    scale: TOLERANCES,
     set: (tolerance) => ({ match_tolerance: Number(tolerance) }),
   },
   {

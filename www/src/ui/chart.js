@@ -31,7 +31,7 @@ const RISE = 0.94;
 /** Labels are at least this share of the height apart. */
 const APART = 0.2;
 
-/** The value at the end of each line, and how far from the top it stands, as a share of the height. @param {Drawn} chart */
+/** The value at the end of each line, and the share of the height above it. @param {Drawn} chart */
 export function endsOf(chart) {
   if (chart.kind !== 'line') return [];
   const high = mostOf(chart);

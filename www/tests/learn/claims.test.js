@@ -179,7 +179,7 @@ test('what the text states of rings, tolerance and rest is so in the run', async
   const rings = ringsOf(run.placed);
   expect(rings[12]).toBeLessThan(72);
   expect(rings[rings.length - 1]).toBeLessThan(Math.max(...rings));
-  says('Here it is 0.7 · 2<i>r</i>.');
+  says('Here it is <span data-number="tolerance" title="Match tolerance">0.7</span> · 2<i>r</i>;');
   expect((await lab.run({ match_tolerance: 0.7 })).end.positions).toEqual(run.end.positions);
   says('No two particles are then nearer than the tolerance.');
   expect(Math.min(...nearestDistances(run.placed))).toBeGreaterThanOrEqual(0.7 - 1e-4);

@@ -141,6 +141,30 @@ test('in a comparison one camera turns both pictures, and a press on one sets th
   clean();
 });
 
+test('the match tolerance is dragged in its sentence, and the figure follows', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#first' });
+  const first = await live(page, 'first');
+  const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
+  await expect(number).toHaveText('0.70');
+  const count = async () =>
+    Number(/of ([\d,]+)/.exec(await first.locator('.choices').innerText())?.[1].replace(',', ''));
+  const usual = await count();
+  const box = await number.boundingBox();
+  if (!box) throw new Error('the number has no box');
+  await page.mouse.move(box.x + 5, box.y + 5);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 300, box.y + 5, { steps: 20 });
+  await page.mouse.up();
+  await expect(number).toHaveText('0.40');
+  await expect.poll(count, { timeout: 30_000 }).toBeGreaterThan(1.5 * usual);
+  await expect(first.locator('.told')).toContainText('within 0.80 r');
+  await number.press('End');
+  await expect.poll(count, { timeout: 30_000 }).toBeLessThan(0.9 * usual);
+  for (let k = 0; k < 5; k += 1) await number.press('ArrowLeft');
+  await expect.poll(count, { timeout: 30_000 }).toBe(usual);
+  clean();
+});
+
 test('a stop far down stays at the top while the figures above it come', async ({ page }) => {
   await openLesson(page, { hash: '#race' });
   const race = page.locator('#race');
