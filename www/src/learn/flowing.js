@@ -36,7 +36,7 @@ export const MOTIONS = [
     surface: moved('x^2/a^2 + y^2/0.49 + z^2/0.25 = 1', 'a', [1.7, 0.8, 0.6]),
     name: 'a',
     range: [0.8, 1.6],
-    seen: 0.62,
+    seen: 0.84,
     radius: 0.04,
   },
   {

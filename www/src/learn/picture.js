@@ -61,7 +61,12 @@ export class Orbit {
   change(act) {
     this.camera.rest();
     act(this.camera);
-    this.turned.value += 1;
+    this.#hasTurned();
+  }
+
+  /** An effect that turns the camera does not wait for it to turn. */
+  #hasTurned() {
+    this.turned.value = this.turned.peek() + 1;
   }
 
   /** Turns to a side of the surface. @param {readonly number[]} normal  of that side */
@@ -72,7 +77,7 @@ export class Orbit {
     const frame = (/** @type {number} */ nowMs) => {
       const goesOn = this.camera.step(Math.max(0, nowMs - lastMs) / 1000);
       lastMs = nowMs;
-      this.turned.value += 1;
+      this.#hasTurned();
       this.#frame = goesOn ? requestAnimationFrame(frame) : 0;
     };
     cancelAnimationFrame(this.#frame);
