@@ -161,7 +161,8 @@ function verdictWords(mine, usual) {
 function compared(mine, other) {
   if (share(mine) !== share(other))
     return `${share(mine)} have six neighbours, and ${share(other)} in the sampling of the lesson.`;
-  return `${share(mine)} have six neighbours, as in the lesson; the largest hole is ${widest(mine)}, and ${widest(other)} there.`;
+  const hole = widest(mine) === widest(other) ? 'is as wide' : `is ${widest(mine)}, and ${widest(other)} there`;
+  return `${share(mine)} have six neighbours, as in the lesson; the largest hole ${hole}.`;
 }
 
 /** @param {Score} own @param {Awaited<ReturnType<typeof blame>>[number]} one */

@@ -142,7 +142,7 @@ export const WHAT_IFS = [
   {
     id: FAIL,
     name: 'Make it fail',
-    look: 'A dark particle is too near to another. Where the pale body shows between discs, a hole is open.',
+    look: 'A dark particle is too near to another. Where the body shows between discs, a hole is open.',
     colouring: 'nearest',
     knobs: KNOBS,
     values: [

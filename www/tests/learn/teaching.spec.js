@@ -163,6 +163,7 @@ test('what the browser prints by itself has the answers of the figures that are 
 });
 
 test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
+  test.setTimeout(120_000);
   const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
   await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
   await page.getByRole('button', { name: 'Assignment' }).click();
