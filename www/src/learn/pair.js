@@ -6,11 +6,11 @@ import { reasonOf } from './figure.js';
 import { latest } from './latest.js';
 import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
-import { byLevel, byValue, Orbit, Picture } from './picture.js';
+import { byLevel, byValue, Orbit, sideBySide } from './picture.js';
 import { scoreAtEnd } from './score.js';
 import { createScorecard } from './scorecard.js';
 
-/** @import { Colouring, Lab, LabRun, Score, ScorePlace, Side } from './types.js' */
+/** @import { Colouring, Lab, LabRun, Score, Side } from './types.js' */
 
 /** Distances over the ideal one span this range of colours. */
 const [LOW, HIGH] = [0.7, 1.15];
@@ -55,38 +55,24 @@ function legendOf(colouring, [least, most]) {
  */
 export function createPair(lab, { bare = false } = {}) {
   const orbit = new Orbit(lab.surface.bounds);
-  const pictures = ['left', 'right'].map(
-    (side) => new Picture(orbit, { name: `The picture on the ${side}; both turn together` }),
-  );
+  const names = ['left', 'right'].map((side) => `The picture on the ${side}; both turn together`);
+  const { pictures, captions, figures, point } = sideBySide(orbit, names);
   /** @param {number} k @param {number} particle */
   function particlePlace(k, particle) {
     const { positions = new Float32Array(0) } = pictures[k].scene.peek()?.particles ?? {};
     return triple(positions, particle);
   }
-  const captions = pictures.map(() => h('figcaption', null));
   const legend = h('div');
-  const scorecard = createScorecard(pointOut);
+  const scorecard = createScorecard(point);
   const status = h('p', { class: 'figure-status', role: 'status' });
   const element = h(
     'div',
     { class: 'pair-box' },
-    h(
-      'div',
-      { class: 'pair' },
-      pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
-    ),
+    h('div', { class: 'pair' }, figures),
     status,
     legend,
     bare ? null : scorecard.element,
   );
-  /**
-   * Turns both to a place, and rings it in the picture that has it.
-   * @param {ScorePlace | null} place @param {number} side
-   */
-  function pointOut(place, side) {
-    for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
-    if (place) orbit.turnTo(place.normal);
-  }
   let isFirst = true;
   const shown = {
     element,
@@ -120,7 +106,7 @@ export function createPair(lab, { bare = false } = {}) {
         captions[k].textContent = sides[k].label;
       }
       if (!bare) fill(legend, legendOf(colouring, radii));
-      pointOut(null, 0);
+      point(null, 0);
       status.textContent = bare ? '' : 'Measuring both';
       if (bare) return;
       const scores = [await scoreAtEnd(lab, left), await scoreAtEnd(lab, right)];

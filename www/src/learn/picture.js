@@ -326,6 +326,28 @@ export class Picture {
   }
 }
 
+/**
+ * Pictures beside each other, under one camera.
+ * @param {Orbit} orbit @param {readonly string[]} names
+ */
+export function sideBySide(orbit, names) {
+  const pictures = names.map((name) => new Picture(orbit, { name }));
+  const captions = pictures.map(() => h('figcaption'));
+  return {
+    pictures,
+    captions,
+    figures: pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
+    /**
+     * Turns all to a place, and rings it in the picture that has it.
+     * @param {ScorePlace | null} place @param {number} side
+     */
+    point(place, side) {
+      for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
+      if (place) orbit.turnTo(place.normal);
+    },
+  };
+}
+
 /** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */
 const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye[k] - place[k]) * normal[k], 0) > 0;
 

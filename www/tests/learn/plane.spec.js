@@ -57,6 +57,7 @@ test('a slot, its line and its place are pointed at together', async ({ page }) 
   await figure.locator('.algorithm li', { hasText: 'otherwise add it' }).hover();
   await expect(figure.locator('[data-slot="0"].hot').first()).toBeAttached();
   await expect(figure.locator('[data-slot="1"].hot')).toHaveCount(0);
+  await expect(figure.locator('.picture')).toHaveAttribute('data-rings', '1');
 });
 
 test('in a plane the front never meets itself out of step, and on the cap it does', async ({ page }) => {

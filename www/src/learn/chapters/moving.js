@@ -5,7 +5,7 @@ import { formatFixed, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
 import { FrontLane, lossOf, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, surfaceAt, valueAt } from '../flowing.js';
 import { createChart, createSelect } from '../parts.js';
-import { byLevel, Orbit, Picture } from '../picture.js';
+import { byLevel, Orbit, sideBySide } from '../picture.js';
 import { createReplay } from '../replay.js';
 
 /**
@@ -150,25 +150,17 @@ class Pursuit {
     const seen = (/** @type {readonly number[]} */ corner) =>
       /** @type {[number, number, number]} */ (corner.map((c, k) => middle[k] + motion.seen * (c - middle[k])));
     const orbit = new Orbit({ min: seen(min), max: seen(max) });
-    const pictures = ['A front that flows', rival.label].map((name) => new Picture(orbit, { name }));
-    const captions = pictures.map(() => h('figcaption'));
-    fill(
-      this.place,
-      pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
-    );
+    const { pictures, captions, figures, point } = sideBySide(orbit, ['A front that flows', rival.label]);
+    fill(this.place, figures);
     return {
       orbit,
+      point,
       /** @param {number} k @param {Snapshot<AtStep>} shot */
       show(k, { lane: { step }, particles }) {
         pictures[k].ringed.value = null;
         pictures[k].show({ particles, colours: byLevel(particles) });
         const own = step === 0 ? 'A front' : step > STEPS ? 'A new front' : 'It flows';
         captions[k].textContent = `${k === 0 ? own : rival.label}: ${plural(particles.radii.length, 'particle')}`;
-      },
-      /** @param {import('../types.js').ScorePlace | null} place @param {number} side */
-      point(place, side) {
-        for (const [k, picture] of pictures.entries()) picture.ringed.value = k === side ? place : null;
-        if (place) orbit.turnTo(place.normal);
       },
     };
   }
