@@ -7,6 +7,7 @@ import { signal } from '@preact/signals-core';
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
+import { HEAD_PX } from './stops.js';
 
 /**
  * @import { Signal } from '../engine/types.js'
@@ -128,7 +129,11 @@ function showFigure(host) {
   const isBelow = (/** @type {Element} */ one) =>
     (host.compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING) !== 0;
   const stage = stages.find(isBelow) ?? stages[0];
-  stage?.querySelector('.picture, .drawing, .cost')?.scrollIntoView({ block: 'nearest' });
+  const [seen, chart] = ['.picture, .drawing, .cost', '.chart:not([hidden])'].map((name) => stage?.querySelector(name));
+  if (!seen) return;
+  const height = (chart ?? seen).getBoundingClientRect().bottom - seen.getBoundingClientRect().top;
+  const target = chart && height < innerHeight - HEAD_PX ? chart : seen;
+  target.scrollIntoView({ block: 'nearest' });
 }
 
 /** @param {string | number} guess @param {string | number} right */

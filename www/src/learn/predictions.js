@@ -95,7 +95,7 @@ export const PREDICTIONS = {
       const mean = added / count;
       const words = [
         `${formatCount(added)} children were added by ${plural(count, 'particle')}: ${formatFixed(mean, 2)} each.`,
-        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other. In the picture, each of the rest is matched.',
+        'It cannot be otherwise, since every particle but a seed is the new child of exactly one other. The bars below the drawing show how few are added on each level, and how many are matched.',
       ];
       return { right: String(Math.round(mean)), words: words.join(' ') };
     },

@@ -8,7 +8,7 @@ const PRESENT = 'present';
 /** The part of the page where work is collected. */
 const COLLECT = 'collect';
 /** Height of what stays at the top of the window, in pixels. */
-const HEAD_PX = 60;
+export const HEAD_PX = 60;
 
 /** @param {StopsOptions} about */
 export function mountStops({ stops, others, questions, onBench, onCollect, say }) {

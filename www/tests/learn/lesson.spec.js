@@ -218,7 +218,7 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
   const [, holes] = /the ideal pattern ([\d., ]+);/.exec((await chart.getAttribute('aria-label')) ?? '') ?? [];
   expect(holes.split(', ').map(Number)).toHaveLength(11);
   expect(holes).toMatch(new RegExp(`^${before.toFixed(2)}, .*, ${after.toFixed(2)}$`));
-  // The figure of a question comes into view with its answer.
+  // The figure of a question comes into view with its answer, and its chart where there is room.
   await expect(rest.locator('.picture')).toBeInViewport({ ratio: 0.9 });
   clean();
 });
