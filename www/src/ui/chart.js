@@ -29,7 +29,7 @@ export function footOf({ rows, first, ends: named }) {
 /** The largest value is drawn at this share of the height. */
 const RISE = 0.94;
 /** Labels are at least this share of the height apart. */
-const APART = 0.2;
+const APART = 0.3;
 
 /** The value at the end of each line, and the share of the height above it. @param {Drawn} chart */
 export function endsOf(chart) {
