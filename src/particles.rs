@@ -315,8 +315,9 @@ impl Particles {
         }
     }
 
-    /// Keeps some of the particles, in their order. One whose parent is removed has none then.
-    pub(crate) fn keep(&mut self, is_kept: impl Fn(usize) -> bool) {
+    /// Keeps some of the particles, in their order. One whose parent is removed has none then. Returns the new row of each particle,
+    /// [`Self::NO_PARENT`] for one that is removed.
+    pub(crate) fn keep(&mut self, is_kept: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut place = vec![Self::NO_PARENT; self.len()];
         let mut kept = 0;
         for i in (0..self.len()).filter(|&i| is_kept(i)) {
@@ -337,6 +338,7 @@ impl Particles {
             kept += 1;
         }
         self.truncate(kept);
+        place
     }
 
     /// Takes the first `len` particles of others in place of its own.

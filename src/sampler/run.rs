@@ -562,7 +562,7 @@ impl Sampler {
         }
         let (particles, corners) = (&self.output.particles, &self.output.corners);
         let (target, spacing) = (self.attempt.moving_target(&self.settings), self.attempt.spacing());
-        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, self.tools.flow.is_due()) {
+        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, self.tools.flow.is_last()) {
             Some(mesh) => PhaseState::Flow(FlowStage::Mesh(Box::new(mesh))),
             None => self.begin_transport(),
         }
@@ -570,7 +570,7 @@ impl Sampler {
 
     fn begin_transport(&mut self) -> PhaseState {
         self.output.corners = Vec::new();
-        let are_listed = core::mem::take(&mut self.tools.flow.is_whole);
+        let are_listed = self.tools.flow.begin_frame();
         let limits = MoveLimits { bounds: self.bounds, largest_lift: f32::INFINITY };
         let (law, particles) = (self.law(), &self.output.particles);
         self.tools.relaxation.begin_transport(law, limits, particles, &mut self.tools.neighbours, are_listed);
@@ -589,7 +589,7 @@ impl Sampler {
         let Tools { relaxation, flow, neighbours, front, .. } = &mut self.tools;
         let particles = &mut self.output.particles;
         let settled = match stage {
-            FlowStage::Step(steps) => Settled { has_changed: false, steps: steps - 1 },
+            FlowStage::Step(steps) => Settled { rows: None, steps: steps - 1 },
             _ => {
                 let surface = FlowSurface {
                     bounds: self.bounds,
@@ -600,7 +600,7 @@ impl Sampler {
                     count: (self.settings.size_mode == SizeMode::Count).then_some(self.settings.count),
                     max_particles: self.settings.max_particles as usize,
                 };
-                flow.settle(probe, &surface, relaxation.lost(), particles)
+                flow.settle(probe, &surface, relaxation.lost(), neighbours, particles)
             }
         };
         if particles.is_empty() {
@@ -608,12 +608,15 @@ impl Sampler {
         }
         if settled.steps == 0 {
             flow.is_whole = true;
-            if flow.is_due() && flow.is_balanced {
+            if flow.is_last() && flow.is_seeded {
                 self.join_again(probe);
             }
             return PhaseState::Done(StopReason::Complete);
         }
-        relaxation.begin_following(particles, neighbours, !settled.has_changed);
+        if let Some(rows) = settled.rows {
+            relaxation.keep(&rows, particles, neighbours);
+        }
+        relaxation.begin_following();
         PhaseState::Flow(FlowStage::Step(settled.steps))
     }
 

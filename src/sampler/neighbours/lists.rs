@@ -71,6 +71,16 @@ impl NeighbourLists {
         self.farthest = 0.0;
     }
 
+    /// Keeps the state of those particles that have a new row. Those that came after them have stale lists.
+    pub(crate) fn keep(&mut self, rows: &[u32], none: u32) {
+        let known = self.travel.len();
+        self.has_stale |= rows.len() > known;
+        self.travel.resize(rows.len(), Travel::STALE);
+        let mut rows = rows.iter();
+        self.travel.retain(|_| rows.next() != Some(&none));
+        self.grid_travel = f32::INFINITY;
+    }
+
     /// Marks all lists as stale.
     pub(crate) fn make_all_stale(&mut self) {
         self.has_stale = true;

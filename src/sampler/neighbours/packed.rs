@@ -72,6 +72,29 @@ impl PackedNeighbours {
         self.far.retain(|pair| (pair[0] as usize) < len);
     }
 
+    /// Keeps the lists of those particles that have a new row, and in them the particles that have one. The rows ascend; `none` marks a
+    /// particle without.
+    pub(crate) fn keep(&mut self, rows: &[u32], none: u32) {
+        let weighted = core::mem::take(&mut self.is_weighted);
+        let mut kept = 0;
+        for i in (0..self.near.len()).filter(|&i| rows[i] != none) {
+            let mut list = [0; ROOM];
+            let others = self.near(i).map(|j| rows[j]).filter(|&row| row != none);
+            for (entry, row) in list.iter_mut().zip(others) {
+                // Rows only come nearer to each other.
+                *entry = (rows[i] - row) as u16;
+            }
+            if weighted.get(i / BLOCK) == Some(&true) {
+                self.note_weighted(kept);
+            }
+            self.near[kept] = list;
+            kept += 1;
+        }
+        self.near.truncate(kept);
+        self.far.iter_mut().for_each(|pair| *pair = pair.map(|i| rows[i as usize]));
+        self.far.retain(|pair| !pair.contains(&none));
+    }
+
     /// Appends empty lists until there are `len`.
     pub(crate) fn extend_to(&mut self, len: usize) {
         self.near.resize(len.max(self.near.len()), [0; ROOM]);

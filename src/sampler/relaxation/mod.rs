@@ -75,8 +75,6 @@ enum Purpose {
     Step,
     /// The judgement of the step just made, and then the next step.
     Judge,
-    /// The neighbours of particles on a surface that moves.
-    Neighbours,
     /// The one step of particles on a surface that moves: it stands, whatever it does to the energy.
     Follow,
     /// The end of the relaxation.
@@ -194,8 +192,8 @@ impl Relaxation {
         };
     }
 
-    /// Brings the particles to the surface of a field that has changed, and renews the lists. `are_listed` says whether the lists were those
-    /// of these particles before.
+    /// Brings the particles to the surface of a field that has changed. `are_listed` says whether the lists were those of these particles
+    /// before.
     pub(crate) fn begin_transport(
         &mut self,
         law: RepulsionLaw,
@@ -205,7 +203,7 @@ impl Relaxation {
         are_listed: bool,
     ) {
         self.law = law;
-        self.purpose = Purpose::Neighbours;
+        self.purpose = Purpose::Follow;
         self.stepper.follow(limits, law.first_step());
         if !are_listed {
             self.list_anew(particles, pairs);
@@ -215,17 +213,17 @@ impl Relaxation {
         self.stage = RelaxationStage::Transport;
     }
 
-    /// Makes a step on the surface to which the particles were transported. `are_listed` says whether the lists are those of these rows.
-    pub(crate) fn begin_following(
-        &mut self,
-        particles: &Particles,
-        pairs: &mut PackedNeighbours,
-        are_listed: bool,
-    ) {
-        self.purpose = Purpose::Follow;
-        if !are_listed {
-            self.list_anew(particles, pairs);
-        }
+    /// Keeps the lists of those particles that have a new row, [`Particles::NO_PARENT`] for one that is gone. Those that came after the listed
+    /// ones are listed in the next step.
+    pub(crate) fn keep(&mut self, rows: &[u32], particles: &Particles, pairs: &mut PackedNeighbours) {
+        pairs.extend_to(rows.len());
+        pairs.keep(rows, Particles::NO_PARENT);
+        self.lists.keep(rows, Particles::NO_PARENT);
+        self.stepper.resize(particles.len(), self.law.resizes());
+    }
+
+    /// Makes a step on the surface to which the particles were transported.
+    pub(crate) fn begin_following(&mut self) {
         (self.next, self.debt) = (0, 0);
         self.stage = if self.lists.has_stale() { RelaxationStage::FillGrid } else { self.after_lists() };
     }
@@ -459,12 +457,11 @@ impl Relaxation {
                 }
                 self.after_forces::<L>(energy / particles.len() as f64)
             }
-            RelaxationStage::Transport => self.after_moving(law, particles),
-            RelaxationStage::Move if self.purpose == Purpose::Follow => {
+            RelaxationStage::Move if self.purpose != Purpose::Follow => self.after_moving(law, particles),
+            RelaxationStage::Transport | RelaxationStage::Move => {
                 self.lists.end_move(L::SLACK * law.radius(particles, 0));
                 RelaxationStage::Done
             }
-            RelaxationStage::Move => self.after_moving(law, particles),
             RelaxationStage::TakeBack => {
                 self.purpose = Purpose::Step;
                 self.after_moving(law, particles)
@@ -483,7 +480,6 @@ impl Relaxation {
     /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
     fn after_lists(&self) -> RelaxationStage {
         let is_uneven = match self.purpose {
-            Purpose::Neighbours => return RelaxationStage::Done,
             Purpose::End | Purpose::Follow => true,
             Purpose::Step | Purpose::Judge => self.is_steep || !self.stepper.has_begun(),
         };
