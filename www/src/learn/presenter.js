@@ -193,8 +193,8 @@ function createWalk(id, questions) {
     if (!(range instanceof HTMLInputElement)) return false;
     const [value, most] = [range.valueAsNumber, Number(range.max)];
     const stride = most > LONG ? Math.ceil(most / FEW) : 1;
-    // A figure that stands at its end begins anew.
-    const next = value === most && by > 0 && !isBegun ? 0 : Math.min(most, value + by * stride);
+    // A figure that stands at its end, or a step before it, begins anew.
+    const next = value + stride >= most && by > 0 && !isBegun ? 0 : Math.min(most, value + by * stride);
     if (next === value || next < 0) return false;
     isBegun = true;
     range.valueAsNumber = next;
