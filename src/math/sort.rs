@@ -34,6 +34,14 @@ pub(crate) fn sort_by_key<T: Copy>(items: &mut [T], key: impl Fn(&T) -> u64) {
     }
 }
 
+/// Sorts pairs by their first number, and those with the same one by their second.
+pub(crate) fn sort_pairs<P: Copy + Into<[u32; 2]>>(pairs: &mut [P]) {
+    sort_by_key(pairs, |&pair| {
+        let [first, second] = pair.into();
+        u64::from(first) << 32 | u64::from(second)
+    });
+}
+
 /// Sorts numbers in their total order.
 pub(crate) fn sort_numbers<T: Copy + Into<f64>>(numbers: &mut [T]) {
     sort_by_key(numbers, |&number| key_of(number.into()));
@@ -68,6 +76,15 @@ mod tests {
         theirs = numbers.map(f32::abs);
         theirs.sort_by(f32::total_cmp);
         assert_eq!(keys.map(unkey).map(|(x, i)| (x.to_bits(), i)), bits(theirs).map(|bits| (bits, 7)));
+    }
+
+    #[test]
+    fn pairs_are_sorted_as_the_standard_library_sorts_them() {
+        let pairs = [(2, 0), (0, u32::MAX), (2, 0), (0, 3), (u32::MAX, 1), (1, 7), (0, 0)];
+        let (mut ours, mut theirs) = (pairs, pairs);
+        sort_pairs(&mut ours);
+        theirs.sort_unstable();
+        assert_eq!(ours, theirs);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
 use crate::field::Field;
-use crate::math::unkey;
+use crate::math::{sort_pairs, unkey};
 use crate::mesh::build::{MeshOptions, particles_in_slices};
 use crate::particles::Particles;
 use crate::spatial::tree::Tree;
@@ -38,7 +38,7 @@ impl CreaseRows {
         };
         let mut on_creases: Vec<(u32, u32)> =
             rows.twins.iter().copied().zip(rows.patch.iter().copied()).collect();
-        on_creases.sort_unstable();
+        sort_pairs(&mut on_creases);
         let tips = rows.tips();
         Self {
             is_tip: tree.origin.iter().map(|row| tips.binary_search(row).is_ok()).collect(),

@@ -1,6 +1,6 @@
 //! Particles on a surface with creases: each patch is a sheet of its own, which ends at its creases.
 
-use crate::math::{sort_by_key, sort_few};
+use crate::math::{sort_by_key, sort_few, sort_pairs};
 use crate::particles::{OppositeFaces, Particles};
 use glam::Vec3;
 
@@ -17,7 +17,7 @@ impl Sheet {
     /// The sheets of all patches, in the order of their numbers.
     pub(super) fn all(particles: &Particles) -> Vec<Self> {
         let mut rows: Vec<(u32, u32)> = particles.patch.iter().copied().zip(0..).collect();
-        rows.sort_unstable();
+        sort_pairs(&mut rows);
         let mut sheets: Vec<Self> = Vec::new();
         // Number of the sheet of each row, and the row's place in it.
         let mut place = vec![(0, 0); rows.len()];
@@ -32,7 +32,7 @@ impl Sheet {
         }
         // The rows of each particle on a crease, one particle after the other.
         let mut of_first: Vec<(u32, u32)> = particles.twins.iter().copied().zip(0..).collect();
-        of_first.sort_unstable();
+        sort_pairs(&mut of_first);
         let rows_of = |first: u32| {
             let start = of_first.partition_point(|&(other, _)| other < first);
             of_first[start..].iter().take_while(move |&&(other, _)| other == first).map(|&(_, row)| row)
@@ -59,7 +59,7 @@ pub(super) fn repeat(
     patch: &[u32],
 ) {
     let mut rows = faces.rows.clone();
-    rows.sort_unstable();
+    sort_pairs(&mut rows);
     let image = |row: u32| rows[rows.partition_point(|pair| pair[0] < row)][1];
     let is_lower = |row: u32| patch[row as usize] == faces.patches[0];
     let lower: Vec<[u32; 3]> = triangles.iter().copied().filter(|triangle| is_lower(triangle[0])).collect();

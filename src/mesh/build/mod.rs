@@ -25,7 +25,7 @@ mod rim;
 mod settle;
 mod stars;
 
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
 use crate::slices::{self, pause, ranges};
 use crate::spatial::tree::Tree;
@@ -156,7 +156,7 @@ impl Joined {
         for hole in &unfilled {
             edges.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first)));
         }
-        edges.sort_unstable();
+        sort_pairs(&mut edges);
         let is_open = |border: &&Vec<u32>| {
             let mut sides = (0..border.len()).map(|k| [border[k], border[(k + 1) % border.len()]]);
             sides.any(|side| edges.binary_search(&side).is_ok())
@@ -275,7 +275,7 @@ impl JoinablePoints {
             return Rim::default();
         }
         let mut place: Vec<(u32, u32)> = self.tree.origin.iter().copied().zip(0..).collect();
-        place.sort_unstable();
+        sort_pairs(&mut place);
         let in_tree = |i: u32| place.binary_search_by_key(&i, |&(i, _)| i).ok().map(|k| place[k].1);
         let edges = edges.iter().filter_map(|&[a, b]| Some([in_tree(a)?, in_tree(b)?]));
         Rim::new(edges.collect(), &self.tree.position, &self.normal)

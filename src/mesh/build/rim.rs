@@ -3,7 +3,7 @@
 
 use super::SLICE;
 use super::patch::{Gap, NONE, Patch, quarter_turns};
-use crate::math::{sort_by_key, tangent_frame};
+use crate::math::{sort_by_key, sort_pairs, tangent_frame};
 use crate::slices::pause;
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ pub(super) struct Rim {
 impl Rim {
     /// The rim of points with normals.
     pub(super) fn new(mut edges: Vec<[u32; 2]>, position: &[Vec3], normal: &[Vec3]) -> Self {
-        edges.sort_unstable();
+        sort_pairs(&mut edges);
         edges.dedup();
         // The ends of the edges at each vertex: those that lead to it, and those that lead from it.
         let mut ends: Vec<[u32; 3]> = edges.iter().flat_map(|&[a, b]| [[a, NONE, b], [b, a, NONE]]).collect();

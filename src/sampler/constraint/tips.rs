@@ -5,7 +5,7 @@
 //! particle of a tip has a row for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of particles
 //! from which the front grows.
 
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_pairs};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
 use glam::{DMat3, DVec3, Vec3};
@@ -306,7 +306,7 @@ fn link(probe: &mut Probe, centre: DVec3, radius: f64) -> Option<Vec<Loop>> {
             ways.extend([[one, other], [other, one]]);
         }
     }
-    ways.sort_unstable();
+    sort_pairs(&mut ways);
     let mut is_open = vec![true; ways.len()];
     let mut curves = Vec::new();
     // Two ways lead from each side.

@@ -267,22 +267,25 @@ pub(crate) trait LevelFront {
             }
         }
     }
+}
 
+/// What needs no code of its own in either front.
+impl dyn LevelFront + '_ {
     /// Ends the front where it is: what is not final is dropped.
-    fn stop(&mut self, particles: &mut Particles) {
+    pub(crate) fn stop(&mut self, particles: &mut Particles) {
         particles.truncate(self.level().settled);
         self.clear_level();
     }
 
     /// Whether the last seed stayed alone beside another particle: it is the far side of something too small for the radius.
-    fn has_lone_seed(&mut self, particles: &Particles) -> bool {
+    pub(crate) fn has_lone_seed(&mut self, particles: &Particles) -> bool {
         let is_seed = particles.parent.last() == Some(&Particles::NO_PARENT);
         let is_lone = is_seed && particles.len() > particles.twins.len();
         is_lone && self.is_seed_crowded(particles)
     }
 
     /// Takes the last seed back, which stayed alone.
-    fn drop_last_seed(&mut self, context: &mut FrontContext) {
+    pub(crate) fn drop_last_seed(&mut self, context: &mut FrontContext) {
         let last = context.particles.len() - 1;
         self.forget_seed(last);
         let level = self.level_mut();
@@ -295,7 +298,7 @@ pub(crate) trait LevelFront {
     }
 
     /// Whether a particle of the sheet of a `point` is so near that no front need start there. `patch` is that of the point.
-    fn is_covered(
+    pub(crate) fn is_covered(
         &mut self,
         probe: &mut Probe,
         particles: &Particles,
@@ -308,8 +311,13 @@ pub(crate) trait LevelFront {
         rule.is_near_own(probe, particles, point, found, spacing)
     }
 
-    /// The particles that [`Self::gather_cover`] finds around a `point`, the nearest first.
-    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint, patch: Option<u32>) -> Vec<u32> {
+    /// The particles that [`LevelFront::gather_cover`] finds around a `point`, the nearest first.
+    pub(crate) fn list_cover(
+        &mut self,
+        particles: &Particles,
+        point: OrientedPoint,
+        patch: Option<u32>,
+    ) -> Vec<u32> {
         let found = self.gather_cover(particles, point, patch);
         sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
         found.iter().map(|found| found.index).collect()
