@@ -114,7 +114,8 @@ impl Attempt {
         attempt
     }
 
-    /// Takes the area and the radius field of a surface that has moved, or the `growth` of the radius on it where the number of particles is given.
+    /// Takes the area and the radius field of a surface that has moved, and the `growth` of the radius since the survey before where the number of
+    /// particles is given.
     pub(super) fn follow(
         &mut self,
         settings: &Settings,
@@ -207,12 +208,6 @@ impl Attempt {
     /// Spacing of the hexagonal lattice with as many particles of one radius as are expected.
     pub(super) fn spacing(&self) -> f32 {
         (2.0 * self.radius / self.packing.sqrt()) as f32
-    }
-
-    /// Factor by which the radius has to grow on a surface of this area, where the number of particles is given.
-    pub(super) fn growth(&self, settings: &Settings, area: f64) -> f64 {
-        let radius = (area * self.packing / (CELL_AREA * f64::from(settings.count))).sqrt();
-        if settings.size_mode == SizeMode::Count { radius / self.radius } else { 1.0 }
     }
 
     /// The first attempt at the front that stands because this one's was refused.

@@ -182,17 +182,12 @@ impl Flow {
         self.growth
     }
 
-    /// Ends a frame of particles that have moved with a mesh, in which their radius should have grown by a factor if it is given. Returns
-    /// whether they cover the surface, as far as a survey has shown; if not, the next frame balances them.
-    pub(crate) fn end_with_mesh(
-        &mut self,
-        particles: &mut Particles,
-        survey: &Survey,
-        growth: Option<f64>,
-    ) -> bool {
+    /// Ends a frame of particles that have moved with a mesh. Returns whether they cover the surface, as far as a survey has shown; if not,
+    /// the next frame balances them.
+    pub(crate) fn end_with_mesh(&mut self, particles: &mut Particles, survey: &Survey) -> bool {
         let is_surveyed = self.is_due();
         self.frames = (self.frames + 1) % BALANCE_EVERY;
-        self.growth = growth.unwrap_or(self.growth);
+        self.growth = 1.0;
         self.is_seeded = false;
         self.number(particles);
         if !is_surveyed {

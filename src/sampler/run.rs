@@ -635,11 +635,13 @@ impl Sampler {
         if !mesh.is_done() {
             return PhaseState::Flow(FlowStage::Mesh(mesh));
         }
-        let growth = mesh.is_due().then(|| self.attempt.growth(&self.settings, mesh.area()));
+        if self.settings.size_mode == SizeMode::Count {
+            self.attempt.radius *= mesh.growth();
+        }
         let Output { particles, corners, moved, .. } = &mut self.output;
         mesh.hand_on(self.attempt.radius as f32, particles, corners);
         *moved = true;
-        if !self.tools.flow.end_with_mesh(particles, &self.survey, growth) {
+        if !self.tools.flow.end_with_mesh(particles, &self.survey) {
             *corners = Vec::new();
         }
         PhaseState::Done(StopReason::Complete)

@@ -190,6 +190,9 @@ fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
         assert!(figures.order.six > 0.8, "{formula}: {} have six neighbours", figures.order.six);
         assert!(figures.coverage.cover < 1.4, "{formula}: a hole of {}", figures.coverage.cover);
         assert!(run.count().abs_diff(2_000) <= 60, "{formula}: {} particles", run.count());
+        let radius = |run: &Run<Formula>| run.particles().radius[0];
+        let grown = radius(&run) / radius(&started(formula, way[1], half, &settings));
+        assert!((0.97..1.03).contains(&grown), "{formula}: radii {grown} times those of a fresh run");
         let identity = &run.particles().identity;
         assert!(identity.is_sorted_by(|a, b| a < b), "{formula}");
         let first = identity.iter().filter(|&&number| number < 2_000).count();

@@ -21,8 +21,8 @@ use glam::Vec3;
 #[derive(Clone, Debug)]
 pub(crate) struct MovingMesh {
     refinement: Refinement,
-    /// Whether particles are born and die in this frame.
-    is_due: bool,
+    /// Area of the surface at the beginning of the frame.
+    area: f64,
 }
 
 impl MovingMesh {
@@ -54,7 +54,8 @@ impl MovingMesh {
         refinement.level =
             Goals { is_first: false, is_moving: true, to_come: 0, recipe, spacing, faces: 0.0 };
         refinement.task = refinement.begin_pass(0);
-        Some(Self { refinement, is_due })
+        let area = refinement.area();
+        Some(Self { refinement, area })
     }
 
     /// Joins particles that have followed the surface without a mesh to one.
@@ -69,7 +70,8 @@ impl MovingMesh {
         target: Target,
     ) -> Result<Self, Refusal> {
         let refinement = Refinement::of_component(probe, &facts(bounds), particles, target)?;
-        Ok(Self { refinement, is_due: false })
+        let area = refinement.area();
+        Ok(Self { refinement, area })
     }
 
     /// Whether the frame has come to its end.
@@ -77,14 +79,9 @@ impl MovingMesh {
         self.refinement.is_done()
     }
 
-    /// Whether particles are born and die in this frame.
-    pub(crate) fn is_due(&self) -> bool {
-        self.is_due
-    }
-
-    /// Area of the surface.
-    pub(crate) fn area(&self) -> f64 {
-        self.refinement.area()
+    /// Factor by which lengths on the surface have grown in this frame.
+    pub(crate) fn growth(&self) -> f64 {
+        (self.refinement.area() / self.area).sqrt()
     }
 
     /// Does `budget` units of work, or as many more as end a block, and returns how many.

@@ -99,8 +99,9 @@ test('the learner’s own surface moves by its parameter', async ({ page }) => {
   await slider.fill('60');
   await expect(slider).toHaveAttribute('aria-valuetext', 'R = 0.45');
   await expect(figure.locator('.pair figcaption').first()).toContainText('It flows', { timeout: 40_000 });
-  // The area of a torus goes with R.
-  await expect.poll(async () => Math.abs((await counts(figure))[0] / before / (0.45 / 0.7) - 1)).toBeLessThan(0.1);
+  // The area of a torus goes with R. On surfaces that shrink up to an eighth more particles are left (docs/flow.md).
+  await expect.poll(async () => (await counts(figure))[0] / before / (0.45 / 0.7)).toBeLessThan(1.125);
+  expect((await counts(figure))[0] / before / (0.45 / 0.7)).toBeGreaterThan(0.95);
   clean();
 });
 
