@@ -19,7 +19,7 @@ use crate::extent::Reach;
 use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
-use crate::field::model::ModelInfo;
+use crate::field::model::{ModelInfo, SolvedModel};
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::run::{Report, Run, Start, Warning};
@@ -365,17 +365,16 @@ impl Session {
         }
     }
 
-    /// Changes the field to one from points, as `pointcloud::fit` makes it. [`Session::set_field`] with a surface or a formula
+    /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls on its surface. [`Session::set_field`] with a surface or a formula
     /// changes it back. Both end a run on another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
-    /// If the data makes no field or the box is not one; nothing is changed then.
+    /// If the data makes no field, a pull tears the surface or the box is not one; nothing is changed then.
     pub fn set_points(
         &mut self,
         data: impl Into<Arc<RbfData>>,
-        info: ModelInfo,
-        bounds: Bounds,
+        SolvedModel { info, bounds, pulls }: SolvedModel,
     ) -> Result<FieldAnswer, FieldError> {
         if !bounds.is_valid() {
             return Err(FieldError::Box);
@@ -385,8 +384,9 @@ impl Session {
             Source::Points { field, .. } if *field.data() == data => Some(field.clone()),
             _ => None,
         };
-        let is_same = known.is_some();
-        let field = known.map_or_else(|| RbfField::new(data), Ok)?;
+        let is_same = known.as_ref().is_some_and(|field| field.pulls() == pulls);
+        let mut field = known.map_or_else(|| RbfField::new(data), Ok)?;
+        field.pull(&pulls)?;
         self.run.set_field(Source::Points { field, info }, is_same);
         self.run.set_bounds(bounds, None);
         self.surface = None;
@@ -433,7 +433,9 @@ impl Session {
         if has_own_box || self.source().formula().is_none_or(Formula::is_constant) {
             report.cut = None;
         }
-        if let Source::Points { info, .. } = self.source() {
+        if let Source::Points { info, field } = self.source()
+            && field.pulls().is_empty()
+        {
             let differs = Warning::of_file(info, &report);
             report.warnings.extend(differs);
         }

@@ -2,6 +2,7 @@
 
 use super::{BoxFaces, Session, SolidSettings, Source};
 use crate::export::{self, MeshFormat, Placement};
+use crate::field::rbf::Pull;
 use crate::math::Bounds;
 use crate::run::FileWish;
 use crate::sampler::{Method, Settings};
@@ -25,6 +26,9 @@ pub struct FileRecord {
     /// Model from points, in place of a formula.
     #[serde(default)]
     pub model: Option<String>,
+    /// Pulls on the surface of the model.
+    #[serde(default)]
+    pub pulls: Vec<Pull>,
     /// Text of the formula; empty for a model.
     pub formula: String,
     /// Values of its parameters.
@@ -74,9 +78,11 @@ impl Session {
 
     /// The record of a run that starts now.
     pub(super) fn beginning(&self, settings: &Settings) -> FileRecord {
-        let (formula, parameters, model) = match self.source() {
-            Source::Formula(field) => (field.text().to_owned(), field.parameters(), None),
-            Source::Points { info, .. } => (String::new(), [].as_slice(), Some(info.name.clone())),
+        let (formula, parameters, model, pulls) = match self.source() {
+            Source::Formula(field) => (field.text().to_owned(), field.parameters(), None, Vec::new()),
+            Source::Points { info, field } => {
+                (String::new(), [].as_slice(), Some(info.name.clone()), field.pulls().to_vec())
+            }
         };
         // A map that is collected at once is sorted, which brings a stable sort of 3 kB.
         let mut values = BTreeMap::new();
@@ -87,6 +93,7 @@ impl Session {
             link: None,
             surface: self.surface.map(|surface| surface.id.to_owned()),
             model,
+            pulls,
             formula,
             parameters: values,
             bounds: self.run.bounds(),

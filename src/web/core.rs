@@ -82,9 +82,9 @@ impl Core {
         system: &[u8],
         #[wasm_bindgen(unchecked_param_type = "SolvedModel")] about: JsValue,
     ) -> JsValue {
-        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
+        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|model| {
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
-            self.session.set_points(data, info, bounds).map_err(|error| Fault::in_field(error, ""))
+            self.session.set_points(data, model).map_err(|error| Fault::in_field(error, ""))
         }))
     }
 

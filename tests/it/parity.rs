@@ -5,7 +5,7 @@
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
 use crate::golden;
-use marching_particles::field::model;
+use marching_particles::field::model::{self, SolvedModel};
 use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
@@ -52,7 +52,7 @@ fn run(case: &Run) -> (usize, String) {
         let model = model::find(model).unwrap_or_else(|| panic!("{}: no such model", case.name));
         let fit = models::fit(model);
         session
-            .set_points(fit.data, fit.info, fit.bounds)
+            .set_points(fit.data, SolvedModel::new(fit.info, fit.bounds))
             .unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
     let settings: Settings = serde_json::from_value(case.settings.clone())

@@ -3,14 +3,15 @@
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::Field;
-use marching_particles::field::model::{self, MODELS};
-use marching_particles::field::rbf::{DataError, RbfData, RbfField};
+use marching_particles::field::model::{self, MODELS, SolvedModel};
+use marching_particles::field::rbf::{DataError, Pull, RbfData, RbfField};
 use marching_particles::math::Sym3;
 use marching_particles::pointcloud::fit::{Fit, FitError, approximate};
 use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::sampler::{Settings, StopReason};
 use marching_particles::session::Session;
+use marching_particles::Bounds;
 use marching_particles::slices::complete;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -42,7 +43,7 @@ fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
 
 fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
     let mut session = Session::new();
-    session.set_points(fit.data, fit.info, fit.bounds).expect("a field");
+    session.set_points(fit.data, SolvedModel::new(fit.info, fit.bounds)).expect("a field");
     session.start(settings).expect("valid settings");
     while session.run.step(10_000).stop_reason.is_none() {}
     let report = session.report();
@@ -365,4 +366,111 @@ fn bytes_hold_a_field_and_other_bytes_are_refused() {
     assert_eq!(RbfData::from_bytes(&wrong), Err(DataError::NotFinite { index: 3 }));
     let short = RbfData { alpha: vec![0.0; 19], ..data };
     assert_eq!(RbfField::new(short).err(), Some(DataError::Lengths { centres: 20, alpha: 19, beta: 20 }));
+}
+
+/// The bunny, and two pulls on it that meet: the second one moves what the first one has moved.
+fn pulled_bunny() -> (Fit, [Pull; 2]) {
+    let fit = models::fit(model::find("bunny").expect("a model"));
+    let size = fit.bounds.diagonal();
+    let at = DVec3::from(fit.data.centres[7]);
+    let out = DVec3::new(0.03, 0.05, -0.02) * size;
+    let first = Pull { at: at.into(), by: out.into(), reach: 0.2 * size };
+    let second =
+        Pull { at: (at + out).into(), by: [-0.04 * size, 0.0, 0.03 * size], reach: 0.15 * size };
+    (fit, [first, second])
+}
+
+#[test]
+fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
+    let (fit, pulls) = pulled_bunny();
+    let mut own = RbfField::new(fit.data).expect("a field");
+    let mut pulled = own.clone();
+    pulled.pull(&pulls).expect("pulls");
+    let [first, second] = pulls;
+    let end = DVec3::from(second.at) + DVec3::from(second.by);
+    let (there, before) = (pulled.jet(end).value, own.jet(first.at.into()).value);
+    assert!((there - before).abs() < 1e-12, "{there} in the place of {before}");
+    let far = DVec3::from(first.at) + DVec3::splat(2.0 * first.reach);
+    assert_eq!(pulled.jet(far), own.jet(far));
+    // The second derivatives of the model itself have no limit at its centres; the points are beside them.
+    let step = 1e-5 * first.reach;
+    let mut random = Random::new(5);
+    for _ in 0..40 {
+        let p = end + random.vector() * 0.7 * second.reach;
+        let jet = pulled.jet(p);
+        for axis in 0..3 {
+            let along = DVec3::AXES[axis] * step;
+            let [(less, less_slope), (more, more_slope)] =
+                [p - along, p + along].map(|q| pulled.value_and_gradient(q));
+            let slope = (more - less) / (2.0 * step);
+            assert!((slope - jet.gradient[axis]).abs() < 1e-6 * jet.gradient.length(), "{slope} at {p}");
+            let bend = (more_slope - less_slope) / (2.0 * step);
+            let known = DVec3::from_array([0, 1, 2].map(|k| jet.hessian.at(axis, k)));
+            let size: f64 = jet.hessian.entries().iter().map(|entry| entry.abs()).sum();
+            assert!((bend - known).length() < 1e-4 * size, "{bend} in the place of {known} at {p}");
+        }
+        let q = [p.as_vec3()];
+        let exact = pulled.jet(q[0].as_dvec3());
+        let (mut value, mut gradient, mut hessian) = ([0.0], [Vec3::ZERO], [Sym3::splat(0.0)]);
+        pulled.hessians(&q, &mut value, &mut gradient, &mut hessian);
+        let size = exact.gradient.length().max(1.0);
+        // As accurate as the model itself is in batches.
+        assert!((f64::from(value[0]) - exact.value).abs() < 2e-4 * (1.0 + exact.value.abs()) * size);
+        assert!(gradient[0].as_dvec3().distance(exact.gradient) < 2e-3 * size);
+        let (found, bend) = (hessian[0].apply(Vec3::ONE).as_dvec3(), exact.hessian.apply(DVec3::ONE));
+        assert!(found.distance(bend) < 0.02 * (1.0 + bend.length()), "{found} for {bend} at {p}");
+        let (mut slope, mut number) = ([Vec3::ZERO], [0.0]);
+        pulled.gradients(&q, &mut number, &mut slope);
+        assert!(slope[0].as_dvec3().distance(exact.gradient) < 2e-3 * size);
+    }
+}
+
+#[test]
+fn a_pull_that_would_tear_the_surface_is_refused_and_changes_nothing() {
+    let (fit, [first, _]) = pulled_bunny();
+    let mut field = RbfField::new(fit.data).expect("a field");
+    field.pull(&[first]).expect("a pull");
+    let too_short = Pull { reach: 1.9 * DVec3::from(first.by).length(), ..first };
+    let endless = Pull { at: [f64::NAN, 0.0, 0.0], ..first };
+    for wrong in [too_short, endless, Pull { reach: -first.reach, ..first }] {
+        assert_eq!(field.pull(&[first, wrong]), Err(DataError::Pull { index: 1 }), "{wrong:?}");
+        assert_eq!(field.pulls(), [first]);
+    }
+}
+
+#[test]
+fn the_particles_of_a_model_follow_a_pull_and_come_back() {
+    let (fit, pulls) = pulled_bunny();
+    let size = fit.bounds.size() * 0.1;
+    let bounds = Bounds::new(fit.bounds.lo() - size, fit.bounds.hi() + size);
+    let settings = Settings::with_count(3_000);
+    let mut session = Session::new();
+    let set = |session: &mut Session, pulls: &[Pull]| {
+        let solved = SolvedModel { pulls: pulls.to_vec(), ..SolvedModel::new(fit.info.clone(), bounds) };
+        session.set_points(fit.data.clone(), solved).expect("a field");
+    };
+    let finish = |session: &mut Session| while session.run.step(100_000).stop_reason.is_none() {};
+    set(&mut session, &[]);
+    session.start(&settings).expect("valid settings");
+    finish(&mut session);
+    let before = session.report();
+    for step in (0..=10).chain((0..10).rev()) {
+        let part = pulls.map(|pull| Pull { by: pull.by.map(|x| x * f64::from(step) / 10.0), ..pull });
+        set(&mut session, &part[..1]);
+        while session.fit(&settings, true, 100_000).is_none() {}
+        assert!(session.follow(&settings, false), "step {step}");
+        finish(&mut session);
+        if step == 10 {
+            let end = (DVec3::from(pulls[0].at) + DVec3::from(pulls[0].by)).as_vec3();
+            let radius = session.run.particles().radius[0];
+            let near = session.run.particles().position.iter().map(|p| p.distance(end));
+            assert!(near.fold(f32::INFINITY, f32::min) < 1.5 * radius, "nothing has come along");
+        }
+    }
+    let after = session.report();
+    let off = after.count as f64 / before.count as f64;
+    assert!((0.95..1.1).contains(&off), "{off} times as many");
+    let figures = after.measures.quality.expect("figures");
+    assert!(figures.coverage.cover < 1.5, "a hole of {}", figures.coverage.cover);
+    assert!(figures.accuracy.err_max < 1e-3, "off by {}", figures.accuracy.err_max);
 }

@@ -126,6 +126,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         link: None,
         surface: name.clone(),
         model: model.as_ref().map(|model| model.name.clone()),
+        pulls: Vec::new(),
         formula: formula.clone(),
         parameters: parameters.clone(),
         bounds: sample.bounds(),

@@ -47,6 +47,12 @@ pub enum DataError {
         /// Index of the centre.
         index: usize,
     },
+    /// A pull tears the surface, or a number of it is not finite.
+    #[error("pull {index} is not finite or longer than half its reach")]
+    Pull {
+        /// Index of the pull.
+        index: usize,
+    },
     /// The bytes are of another kind, version or length.
     #[error("these bytes are not the centres and coefficients of a field")]
     Bytes,

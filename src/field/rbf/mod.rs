@@ -8,15 +8,18 @@ mod coefficients;
 mod data;
 mod frame;
 mod kernel;
+mod pulls;
 mod taylor;
 mod tree;
 
 pub use data::{DataError, RbfData};
 pub use frame::CentredFrame;
+pub use pulls::{LONGEST_PULL, Pull};
 
 use super::{Field, Jet};
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
+use pulls::Pulls;
 use std::sync::Arc;
 
 /// A field given by centres and coefficients, defined everywhere.
@@ -30,6 +33,7 @@ use std::sync::Arc;
 pub struct RbfField {
     data: Arc<RbfData>,
     tree: tree::CellTree,
+    pulls: Pulls,
 }
 
 impl RbfField {
@@ -42,7 +46,23 @@ impl RbfField {
         let data = data.into();
         data.check()?;
         let tree = tree::CellTree::new(&data);
-        Ok(Self { data, tree })
+        Ok(Self { data, tree, pulls: Pulls::default() })
+    }
+
+    /// Makes these pulls on the surface of the centres, in the place of those before.
+    ///
+    /// # Errors
+    ///
+    /// [`DataError::Pull`] if one is not finite, or longer than [`LONGEST_PULL`] of its reach; nothing is changed then.
+    pub fn pull(&mut self, pulls: &[Pull]) -> Result<(), DataError> {
+        self.pulls = Pulls::new(pulls)?;
+        Ok(())
+    }
+
+    /// The pulls on the surface.
+    #[must_use]
+    pub fn pulls(&self) -> &[Pull] {
+        self.pulls.list()
     }
 
     /// Centres and coefficients of the field, which its copies share.
@@ -54,11 +74,17 @@ impl RbfField {
 
 impl Field for RbfField {
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        self.tree.values(&self.data, points, &mut value[..points.len()]);
+        self.tree.values(&self.data, self.pulls.places(points), &mut value[..points.len()]);
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        self.tree.gradients(&self.data, points, &mut value[..points.len()], &mut gradient[..points.len()]);
+        let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
+        self.tree.gradients(&self.data, self.pulls.places(points), value, gradient);
+        for (p, gradient) in points.iter().zip(gradient) {
+            let mut jet = Jet { gradient: gradient.as_dvec3(), ..Jet::default() };
+            self.pulls.pull_back(p.as_dvec3(), &mut jet);
+            *gradient = jet.gradient.as_vec3();
+        }
     }
 
     fn hessians(
@@ -69,19 +95,32 @@ impl Field for RbfField {
         hessian: &mut [Sym3<f32>],
     ) {
         let n = points.len();
-        self.tree.hessians(&self.data, points, &mut value[..n], &mut gradient[..n], &mut hessian[..n]);
+        let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
+        self.tree.hessians(&self.data, self.pulls.places(points), value, gradient, hessian);
+        for ((p, gradient), hessian) in points.iter().zip(gradient).zip(hessian) {
+            let mut jet = Jet { value: 0.0, gradient: gradient.as_dvec3(), hessian: hessian.map(f64::from) };
+            self.pulls.pull_back(p.as_dvec3(), &mut jet);
+            (*gradient, *hessian) = (jet.gradient.as_vec3(), jet.hessian.map(|entry| entry as f32));
+        }
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let jet = self.data.jet(p);
+        let jet = self.jet(p);
         (jet.value, jet.gradient)
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        self.data.jet(p)
+        let mut jet = self.data.jet(self.pulls.back(p));
+        self.pulls.pull_back(p, &mut jet);
+        jet
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
-        self.data.gradients(points, value, gradient);
+        if self.pulls().is_empty() {
+            return self.data.gradients(points, value, gradient);
+        }
+        for (k, p) in points.iter().enumerate() {
+            (value[k], gradient[k]) = self.value_and_gradient(p.as_dvec3());
+        }
     }
 }

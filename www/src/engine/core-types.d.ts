@@ -295,6 +295,8 @@ export type FileRecord = {
   surface: string | null,
   /** Model from points, in place of a formula. */
   model: string | null,
+  /** Pulls on the surface of the model. */
+  pulls: Array<Pull>,
   /** Text of the formula; empty for a model. */
   formula: string,
   /** Values of its parameters. */
@@ -1033,6 +1035,16 @@ export type Progress = {
   moved: boolean,
 };
 
+/** A pull on a surface. */
+export type Pull = {
+  /** The place that is pulled, on the surface as the pulls before have left it. */
+  at: [number, number, number],
+  /** The vector by which it is pulled. */
+  by: [number, number, number],
+  /** Distance from where the place comes to, from which on nothing moves. It is at least twice the length of `by`. */
+  reach: number,
+};
+
 /** Whether a surface is bounded. */
 export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 
@@ -1202,6 +1214,8 @@ export type SolvedModel = {
   info: ModelInfo,
   /** Box to sample in. */
   bounds: Bounds,
+  /** Pulls on its surface; none as it is solved. */
+  pulls: Array<Pull>,
 };
 
 /** Report on the start of a run: the radius, estimates and warnings. */

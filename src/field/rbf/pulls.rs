@@ -1,0 +1,125 @@
+//! Pulls, by which a surface is drawn out or pushed in around a place while the rest of it stays.
+//!
+//! A pull by the vector b takes the surface {f = 0} to {f ∘ w = 0}, where w(x) = x − g b moves points back. The weight g = (1 − q)³ with
+//! q = |x − c|²/R² is 1 at the place c to which the surface is pulled, and 0 from the distance R on. It has two continuous derivatives, and
+//! where |b| ≤ R/2 the map w is one to one: the slope of g is at most 1.72/R, so the surface neither tears nor meets itself. Several pulls
+//! are made one after the other.
+
+use super::DataError;
+use crate::field::Jet;
+use crate::math::Sym3;
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Largest way of a pull, over its reach.
+pub const LONGEST_PULL: f64 = 0.5;
+
+/// A pull on a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Pull {
+    /// The place that is pulled, on the surface as the pulls before have left it.
+    pub at: [f64; 3],
+    /// The vector by which it is pulled.
+    pub by: [f64; 3],
+    /// Distance from where the place comes to, from which on nothing moves. It is at least twice the length of `by`.
+    pub reach: f64,
+}
+
+impl Pull {
+    fn is_valid(&self) -> bool {
+        let by = DVec3::from(self.by).length();
+        self.at.iter().all(|x| x.is_finite())
+            && self.reach.is_finite()
+            && self.reach > 0.0
+            && by <= LONGEST_PULL * self.reach
+    }
+
+    /// The offset of a point from where the place comes to, over the reach, and 1 less its square; none beyond the reach.
+    fn offset(&self, p: DVec3) -> Option<(DVec3, f64)> {
+        let offset = (p - DVec3::from(self.at) - DVec3::from(self.by)) / self.reach;
+        let rest = 1.0 - offset.length_squared();
+        (rest > 0.0).then_some((offset, rest))
+    }
+
+    /// The point that comes to `p`.
+    fn back(&self, p: DVec3) -> DVec3 {
+        self.offset(p).map_or(p, |(_, rest)| p - DVec3::from(self.by) * (rest * rest * rest))
+    }
+
+    /// Derivatives at `p` of the function whose derivatives at [`Pull::back`] are those of `jet`.
+    fn pull_back(&self, p: DVec3, jet: &mut Jet) {
+        let Some((offset, rest)) = self.offset(p) else { return };
+        let by = DVec3::from(self.by);
+        // ∇g, and with b · ∇f the second derivatives of g.
+        let slope = offset * (-6.0 * rest * rest / self.reach);
+        let along = by.dot(jet.gradient);
+        let bend = along * 6.0 * rest / (self.reach * self.reach);
+        let curved = jet.hessian.apply(by);
+        let twice = by.dot(curved);
+        let entry = |i: usize, j: usize| {
+            let own = if i == j { rest } else { 0.0 };
+            jet.hessian.at(i, j) - slope[i] * curved[j] - curved[i] * slope[j]
+                + twice * slope[i] * slope[j]
+                + bend * (own - 4.0 * offset[i] * offset[j])
+        };
+        jet.hessian = Sym3 {
+            xx: entry(0, 0),
+            xy: entry(0, 1),
+            xz: entry(0, 2),
+            yy: entry(1, 1),
+            yz: entry(1, 2),
+            zz: entry(2, 2),
+        };
+        jet.gradient -= slope * along;
+    }
+}
+
+/// Pulls that are made one after the other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pulls {
+    list: Vec<Pull>,
+    /// The points that come to those of a batch.
+    places: Vec<Vec3>,
+}
+
+impl Pulls {
+    pub(super) fn new(list: &[Pull]) -> Result<Self, DataError> {
+        match list.iter().position(|pull| !pull.is_valid()) {
+            Some(index) => Err(DataError::Pull { index }),
+            None => Ok(Self { list: list.to_vec(), ..Self::default() }),
+        }
+    }
+
+    pub(super) fn list(&self) -> &[Pull] {
+        &self.list
+    }
+
+    /// The point that comes to `p`.
+    pub(super) fn back(&self, p: DVec3) -> DVec3 {
+        back(&self.list, p)
+    }
+
+    /// The points that come to those of a batch.
+    pub(super) fn places(&mut self, points: &[Vec3]) -> &[Vec3] {
+        let Self { list, places } = self;
+        places.clear();
+        places.extend(points.iter().map(|p| back(list, p.as_dvec3()).as_vec3()));
+        places
+    }
+
+    /// Derivatives at `p` of the function whose derivatives at [`Pulls::back`] are those of `jet`.
+    pub(super) fn pull_back(&self, p: DVec3, jet: &mut Jet) {
+        pull_back(&self.list, p, jet);
+    }
+}
+
+fn back(pulls: &[Pull], p: DVec3) -> DVec3 {
+    pulls.iter().rev().fold(p, |p, pull| pull.back(p))
+}
+
+fn pull_back(pulls: &[Pull], p: DVec3, jet: &mut Jet) {
+    let Some((last, before)) = pulls.split_last() else { return };
+    pull_back(before, last.back(p), jet);
+    last.pull_back(p, jet);
+}
