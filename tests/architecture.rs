@@ -172,7 +172,7 @@ const ROOMS: [Room; 4] = [
             ("descent", &[]),
             ("function", &[]),
             ("gallery", &["formula"]),
-            ("model", &["rbf"]),
+            ("model", &[]),
             ("rbf", &[]),
             ("scaled", &[]),
         ],

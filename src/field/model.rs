@@ -2,7 +2,6 @@
 //!
 //! The points themselves and the fitting are in the module `pointcloud`, which the core of the page is built without.
 
-use super::rbf::Pull;
 use crate::math::Bounds;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
@@ -92,17 +91,6 @@ pub struct SolvedModel {
     pub info: ModelInfo,
     /// Box to sample in.
     pub bounds: Bounds,
-    /// Pulls on its surface; none as it is solved.
-    #[serde(default)]
-    pub pulls: Vec<Pull>,
-}
-
-impl SolvedModel {
-    /// A model as it is solved.
-    #[must_use]
-    pub fn new(info: ModelInfo, bounds: Bounds) -> Self {
-        Self { info, bounds, pulls: Vec::new() }
-    }
 }
 
 /// A built-in model.

@@ -19,8 +19,8 @@ use crate::extent::Reach;
 use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
-use crate::field::model::{ModelInfo, SolvedModel};
-use crate::field::rbf::{DataError, RbfData, RbfField};
+use crate::field::model::ModelInfo;
+use crate::field::rbf::{DataError, Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
 use crate::run::{Report, Run, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
@@ -48,6 +48,8 @@ pub struct FieldRequest {
     pub bounds: Option<Bounds>,
     /// Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]).
     pub pins: Vec<[f64; 3]>,
+    /// Pulls on the surface of a model from points, one after the other.
+    pub pulls: Vec<Pull>,
 }
 
 /// Kind of a field, by its source.
@@ -365,7 +367,8 @@ impl Session {
         }
     }
 
-    /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls on its surface. [`Session::set_field`] with a surface or a formula
+    /// Changes the field to one from points, as `pointcloud::fit` makes it, with the pulls of a request on its surface, in the
+    /// box of the request or in that of the model with room for the pulls. [`Session::set_field`] with a surface or a formula
     /// changes it back. Both end a run on another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
@@ -374,8 +377,12 @@ impl Session {
     pub fn set_points(
         &mut self,
         data: impl Into<Arc<RbfData>>,
-        SolvedModel { info, bounds, pulls }: SolvedModel,
+        info: ModelInfo,
+        bounds: Bounds,
+        request: &FieldRequest,
     ) -> Result<FieldAnswer, FieldError> {
+        let pulls = request.pulls.as_slice();
+        let bounds = request.bounds.unwrap_or_else(|| pulled_box(&bounds, pulls));
         if !bounds.is_valid() {
             return Err(FieldError::Box);
         }
@@ -386,7 +393,7 @@ impl Session {
         };
         let is_same = known.as_ref().is_some_and(|field| field.pulls() == pulls);
         let mut field = known.map_or_else(|| RbfField::new(data), Ok)?;
-        field.pull(&pulls)?;
+        field.pull(pulls)?;
         self.run.set_field(Source::Points { field, info }, is_same);
         self.run.set_bounds(bounds, None);
         self.surface = None;

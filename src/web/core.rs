@@ -74,17 +74,19 @@ impl Core {
         self.session.run.limit_memory(megabytes << 20);
     }
 
-    /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
-    /// of it, `SolvedModel`; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    /// Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
+    /// `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_points(
         &mut self,
         system: &[u8],
         #[wasm_bindgen(unchecked_param_type = "SolvedModel")] about: JsValue,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
     ) -> JsValue {
-        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|model| {
+        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
+            let request = read::<FieldRequest>(request, FaultKind::Request)?;
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
-            self.session.set_points(data, model).map_err(|error| Fault::in_field(error, ""))
+            self.session.set_points(data, info, bounds, &request).map_err(|error| Fault::in_field(error, ""))
         }))
     }
 

@@ -63,7 +63,7 @@ impl Points {
     #[wasm_bindgen(unchecked_return_type = "Answer<SolvedModel, PointsFault>")]
     pub fn info(&self) -> JsValue {
         let fit = self.job.as_ref().and_then(Job::fit).ok_or_else(|| nothing("there is no field yet"));
-        answer(fit.map(|fit| SolvedModel::new(fit.info.clone(), fit.bounds)))
+        answer(fit.map(|fit| SolvedModel { info: fit.info.clone(), bounds: fit.bounds }))
     }
 
     /// Positions of the centres, three floats each; none before they are chosen.

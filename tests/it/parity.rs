@@ -5,7 +5,8 @@
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
 use crate::golden;
-use marching_particles::field::model::{self, SolvedModel};
+use marching_particles::field::model;
+use marching_particles::field::rbf::Pull;
 use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
@@ -30,6 +31,9 @@ struct Run {
     field: Option<serde_json::Value>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     model: Option<String>,
+    /// Pulls on the surface of the model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pulls: Vec<Pull>,
     settings: serde_json::Value,
     /// Parameters of the surfaces that the particles of the run follow, one after the other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -52,7 +56,12 @@ fn run(case: &Run) -> (usize, String) {
         let model = model::find(model).unwrap_or_else(|| panic!("{}: no such model", case.name));
         let fit = models::fit(model);
         session
-            .set_points(fit.data, SolvedModel::new(fit.info, fit.bounds))
+            .set_points(
+                fit.data,
+                fit.info,
+                fit.bounds,
+                &FieldRequest { pulls: case.pulls.clone(), ..FieldRequest::default() },
+            )
             .unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
     let settings: Settings = serde_json::from_value(case.settings.clone())

@@ -9,13 +9,13 @@ use crate::golden;
 use glam::DVec3;
 use marching_particles::Report;
 use marching_particles::field::Field;
-use marching_particles::field::model::{MODELS, NormalSource, SolvedModel};
+use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, JobStage};
 use marching_particles::pointcloud::thin::KEPT;
 use marching_particles::sampler::Settings;
-use marching_particles::session::Session;
+use marching_particles::session::{FieldRequest, Session};
 use proptest::prelude::*;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -420,7 +420,7 @@ fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut 
 /// A session that has sampled the surface of a fit, and its report.
 fn sampled(fit: Fit, count: u32) -> (Session, Report) {
     let mut session = Session::new();
-    session.set_points(fit.data, SolvedModel::new(fit.info, fit.bounds)).expect("a field");
+    session.set_points(fit.data, fit.info, fit.bounds, &FieldRequest::default()).expect("a field");
     session.start(&Settings::with_count(count)).expect("valid settings");
     while session.run.step(10_000).stop_reason.is_none() {}
     let report = session.report();

@@ -3,15 +3,14 @@
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::Field;
-use marching_particles::field::model::{self, MODELS, SolvedModel};
+use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, Pull, RbfData, RbfField};
 use marching_particles::math::Sym3;
 use marching_particles::pointcloud::fit::{Fit, FitError, approximate};
 use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
 use marching_particles::sampler::{Settings, StopReason};
-use marching_particles::session::Session;
-use marching_particles::Bounds;
+use marching_particles::session::{FieldRequest, Session};
 use marching_particles::slices::complete;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -43,7 +42,7 @@ fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
 
 fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
     let mut session = Session::new();
-    session.set_points(fit.data, SolvedModel::new(fit.info, fit.bounds)).expect("a field");
+    session.set_points(fit.data, fit.info, fit.bounds, &FieldRequest::default()).expect("a field");
     session.start(settings).expect("valid settings");
     while session.run.step(10_000).stop_reason.is_none() {}
     let report = session.report();
@@ -375,8 +374,7 @@ fn pulled_bunny() -> (Fit, [Pull; 2]) {
     let at = DVec3::from(fit.data.centres[7]);
     let out = DVec3::new(0.03, 0.05, -0.02) * size;
     let first = Pull { at: at.into(), by: out.into(), reach: 0.2 * size };
-    let second =
-        Pull { at: (at + out).into(), by: [-0.04 * size, 0.0, 0.03 * size], reach: 0.15 * size };
+    let second = Pull { at: (at + out).into(), by: [-0.04 * size, 0.0, 0.03 * size], reach: 0.15 * size };
     (fit, [first, second])
 }
 
@@ -441,13 +439,11 @@ fn a_pull_that_would_tear_the_surface_is_refused_and_changes_nothing() {
 #[test]
 fn the_particles_of_a_model_follow_a_pull_and_come_back() {
     let (fit, pulls) = pulled_bunny();
-    let size = fit.bounds.size() * 0.1;
-    let bounds = Bounds::new(fit.bounds.lo() - size, fit.bounds.hi() + size);
     let settings = Settings::with_count(3_000);
     let mut session = Session::new();
     let set = |session: &mut Session, pulls: &[Pull]| {
-        let solved = SolvedModel { pulls: pulls.to_vec(), ..SolvedModel::new(fit.info.clone(), bounds) };
-        session.set_points(fit.data.clone(), solved).expect("a field");
+        let request = FieldRequest { pulls: pulls.to_vec(), ..FieldRequest::default() };
+        session.set_points(fit.data.clone(), fit.info.clone(), fit.bounds, &request).expect("a field");
     };
     let finish = |session: &mut Session| while session.run.step(100_000).stop_reason.is_none() {};
     set(&mut session, &[]);

@@ -454,7 +454,7 @@ fn every_row_of_the_report_is_in_the_report() {
 
 #[test]
 fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
-    use marching_particles::field::model::{ModelInfo, SolvedModel};
+    use marching_particles::field::model::ModelInfo;
     use marching_particles::field::rbf::RbfData;
     use marching_particles::session::FieldKind;
 
@@ -467,9 +467,10 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     };
     let info = ModelInfo { name: "ball".into(), points: 2, centres: 2, ..ModelInfo::default() };
     let mut session = Session::new();
+    let own = FieldRequest::default();
     let before = session.answer();
     assert_eq!((before.kind, before.model), (FieldKind::Formula, None));
-    let answer = session.set_points(data.clone(), SolvedModel::new(info.clone(), Bounds::cube(1.5))).expect("a field");
+    let answer = session.set_points(data.clone(), info.clone(), Bounds::cube(1.5), &own).expect("a field");
     assert_eq!((answer.kind, answer.model.as_ref()), (FieldKind::Points, Some(&info)));
     assert_eq!((answer.surface, answer.formula.as_str()), (None, ""));
 
@@ -484,8 +485,8 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     let smaller = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
     let answer = session.set_field(&smaller).expect("a box");
     assert_eq!((answer.kind, answer.bounds), (FieldKind::Points, Bounds::cube(1.2)));
-    assert!(session.set_points(RbfData::default(), SolvedModel::new(info.clone(), Bounds::cube(1.0))).is_err());
-    assert!(session.set_points(data, SolvedModel::new(info, Bounds { min: [1.0; 3], max: [0.0; 3] })).is_err());
+    assert!(session.set_points(RbfData::default(), info.clone(), Bounds::cube(1.0), &own).is_err());
+    assert!(session.set_points(data, info, Bounds { min: [1.0; 3], max: [0.0; 3] }, &own).is_err());
     assert_eq!(session.answer(), answer);
 
     let formula = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 1".into()), ..FieldRequest::default() };

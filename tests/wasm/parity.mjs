@@ -24,20 +24,24 @@ function accepted(answer, name) {
   if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
 }
 
-/** @param {Core} core @param {string} model @param {string} name */
-function solve(core, model, name) {
+/** @param {Core} core @param {string} model @param {object} request @param {string} name */
+function solve(core, model, request, name) {
   const points = new Points();
   accepted(points.model(model), name);
   for (let done = false; !done; { done } = points.step(BUDGET));
-  accepted(core.set_points(points.field(), points.info()), `${name}: set_points`);
+  accepted(core.set_points(points.field(), points.info(), request), `${name}: set_points`);
   points.free();
 }
 
-/** @param {{ name: string, field?: object, model?: string, settings: object, moves?: Record<string, number>[] }} run */
-function sample({ name, field, model, settings, moves = [] }) {
+/**
+ * @param {{
+ *   name: string, field?: object, model?: string, pulls?: object[], settings: object, moves?: Record<string, number>[],
+ * }} run
+ */
+function sample({ name, field, model, pulls, settings, moves = [] }) {
   const core = new Core();
   if (field) accepted(core.set_field(field), `${name}: set_field`);
-  if (model) solve(core, model, name);
+  if (model) solve(core, model, pulls ? { pulls } : {}, name);
   accepted(core.start(settings), `${name}: start`);
   let progress;
   do progress = core.step(BUDGET);

@@ -11,6 +11,7 @@ const ENGINE_FACE = [
   'engine/types',
   'engine/constants',
   'engine/vector',
+  'engine/pulls',
   'engine/columns',
   'engine/core-numbers',
   'engine/share/base64url',
@@ -29,6 +30,7 @@ const MAY_USE = {
   'engine/core-numbers': [],
   'engine/constants': [],
   'engine/vector': ['engine/types'],
+  'engine/pulls': ['engine/types', 'engine/vector'],
   'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson', 'engine/share/view'],
   'engine/columns': ['engine/types', 'engine/core-numbers', 'engine/vector'],
   'engine/store': ['engine/types', 'engine/share'],
@@ -47,6 +49,7 @@ const MAY_USE = {
     'engine/columns',
     'engine/core-numbers',
     'engine/vector',
+    'engine/pulls',
     'engine/view',
   ],
   // How a bundle is brought in, and how a worker keeps its pace.

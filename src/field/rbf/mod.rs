@@ -14,6 +14,7 @@ mod tree;
 
 pub use data::{DataError, RbfData};
 pub use frame::CentredFrame;
+pub(crate) use pulls::pulled_box;
 pub use pulls::{LONGEST_PULL, Pull};
 
 use super::{Field, Jet};

@@ -7,7 +7,7 @@
 
 use super::DataError;
 use crate::field::Jet;
-use crate::math::Sym3;
+use crate::math::{Bounds, Sym3};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +73,14 @@ impl Pull {
         };
         jet.gradient -= slope * along;
     }
+}
+
+/// A box with room for the places that are pulled out of it.
+pub(crate) fn pulled_box(bounds: &Bounds, pulls: &[Pull]) -> Bounds {
+    pulls.iter().fold(*bounds, |bounds, pull| {
+        let by = DVec3::from(pull.by);
+        bounds.joined(&Bounds::new(bounds.lo() + by, bounds.hi() + by))
+    })
 }
 
 /// Pulls that are made one after the other.

@@ -17,5 +17,7 @@ export const MOST_STEPPED = 20_000;
 export const TYPING_MS = 600;
 /** Largest number of parameters in a state or a link. */
 export const MOST_PARAMETERS = 64;
+/** Largest number of pulls on a surface. */
+export const MOST_PULLS = 32;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
 export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.csv,.txt';

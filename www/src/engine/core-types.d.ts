@@ -187,6 +187,8 @@ export type FieldRequest = {
   bounds: Bounds | null,
   /** Points that the surface is to pass through: the parameters change for it ([`Formula::pass_through`]). */
   pins: Array<[number, number, number]>,
+  /** Pulls on the surface of a model from points, one after the other. */
+  pulls: Array<Pull>,
 };
 
 /** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
@@ -1214,8 +1216,6 @@ export type SolvedModel = {
   info: ModelInfo,
   /** Box to sample in. */
   bounds: Bounds,
-  /** Pulls on its surface; none as it is solved. */
-  pulls: Array<Pull>,
 };
 
 /** Report on the start of a run: the radius, estimates and warnings. */

@@ -32,7 +32,9 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
 
   /** Returns the points of the model on the page, or null if they are not drawn. */
   function points() {
-    if (!store.state.value.view.points || store.field.value?.kind !== 'points') return null;
+    const { view, pulls } = store.state.value;
+    // They are those of the surface before it is pulled.
+    if (!view.points || store.field.value?.kind !== 'points' || pulls.length > 0) return null;
     return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
   }
 

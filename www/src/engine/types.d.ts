@@ -28,6 +28,7 @@ export type ModelInfo = import('./core-types.js').ModelInfo;
 /** The description that the core reads together with a solved system. */
 export type SolvedModel = import('./core-types.js').SolvedModel;
 export type Grip = import('./core-types.js').Grip;
+export type Pull = import('./core-types.js').Pull;
 export type MathNode = import('./core-types.js').MathNode;
 export type FieldFault = import('./core-types.js').Fault;
 /** The answer of the core to one step. */
@@ -84,7 +85,7 @@ export interface ColumnRange {
   progress?: CoreProgress | null;
 }
 
-/** `points` names a solved model; with it only the clip box counts. */
+/** `points` names a solved model; with it only the clip box and the pulls count. */
 export type FieldRequest = Partial<import('./core-types.js').FieldRequest> & { points?: string };
 /** By the settings' names; a missing one has its default. */
 export type Settings = Record<string, number | string>;
@@ -132,6 +133,8 @@ export interface State {
   /** null: the surface's own box, or one that fits the formula */
   bounds: Bounds | null;
   plane: CuttingPlane | null;
+  /** on the surface of a model or a file, one after the other; none on a surface from a formula */
+  pulls: Pull[];
   settings: Settings;
   view: ViewState;
 }
@@ -321,6 +324,8 @@ export interface EngineCommands {
    * once more without it at the end
    */
   pull: (parameters: Record<string, number>, pins: readonly Vec3[], options?: { live?: boolean }) => void;
+  /** makes these pulls on the surface of a model, in the place of those before; `live` during a drag */
+  setPulls: (pulls: readonly Pull[], options?: { live?: boolean }) => void;
   /** has a press on the picture take hold of something in place of the camera */
   takeWith: (take: Take) => void;
   /** declares unknown names of the formula as parameters */

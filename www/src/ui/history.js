@@ -15,17 +15,7 @@ export const MOST_ENTRIES = 100;
 const PAUSE_MS = 800;
 
 /** @param {State} state @returns {Moment} */
-export const momentOf = ({ surface, formula, parameters, declared, centres, bounds, plane, settings, view }) => ({
-  surface,
-  formula,
-  parameters,
-  declared,
-  centres,
-  bounds,
-  plane,
-  settings,
-  camera: view.camera,
-});
+export const momentOf = ({ v: _, view, ...shape }) => ({ ...shape, camera: view.camera });
 
 /**
  * Returns whether somebody has moved the camera. Where it follows the surface, its target and distance come from that.
@@ -44,7 +34,7 @@ function isLookedAround({ camera: a }, { camera: b }) {
  */
 export function differences(before, after) {
   const found = isLookedAround(before, after) ? ['camera'] : [];
-  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'centres', 'bounds', 'plane'])) {
+  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'centres', 'bounds', 'plane', 'pulls'])) {
     if (JSON.stringify(before[key]) !== JSON.stringify(after[key])) found.push(key);
   }
   for (const key of /** @type {const} */ (['parameters', 'settings'])) {

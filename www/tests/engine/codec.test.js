@@ -15,6 +15,7 @@ const elaborate = () => ({
   declared: [{ name: 'k', label: 'k', value: 1, min: -3, max: 3, step: 0.01 }],
   centres: null,
   bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
+  pulls: [],
   plane: { normal: [0, 0.6, -0.8], offset: 0.25 },
   settings: { radius_share: 0.012, relax_steps: 20 },
   view: {
@@ -77,6 +78,23 @@ describe('a link', () => {
     expect(of({ surface: FILE_SURFACE, centres: 500 })).toEqual([500, []]);
     expect(of({ surface: 'torus', centres: 120 })).toEqual([null, ['number of centres']]);
     expect(of({ surface: 'bunny', centres: 'many' })).toEqual([null, ['number of centres']]);
+  });
+
+  test('holds the pulls on a model, and none that would tear it', async () => {
+    const pull = { at: [0.1, 0.2, 0.3], by: [0, 0.25, 0], reach: 0.5 };
+    const bunny = { ...defaultState(description), surface: 'bunny', formula: '', pulls: [pull, pull] };
+    const { state, reset } = await decode(await encode(/** @type {State} */ (bunny), description), description);
+    expect([state, reset]).toEqual([bunny, []]);
+    const of = (/** @type {object} */ raw) => {
+      const { state, reset } = sanitize(raw, description, true);
+      return [state.pulls, reset];
+    };
+    expect(of({ surface: 'bunny', pulls: [pull, { ...pull, reach: 0.4 }] })).toEqual([[], ['pulls']]);
+    expect(of({ surface: 'torus', pulls: [pull] })).toEqual([[], ['pulls']]);
+    expect(of({ surface: 'bunny', pulls: 'many' })).toEqual([[], ['pulls']]);
+    const many = (/** @type {number} */ n) => Array.from({ length: n }, () => pull);
+    expect(of({ surface: FILE_SURFACE, pulls: many(32) })).toEqual([many(32), []]);
+    expect(of({ surface: FILE_SURFACE, pulls: many(33) })).toEqual([[], ['pulls']]);
   });
 
   test('of the default state is empty', async () => {

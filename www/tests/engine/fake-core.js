@@ -107,8 +107,8 @@ export function fakeCore({
         };
       return field(formula ?? '', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
-    /** @param {Uint8Array} bytes @param {SolvedModel} about @returns {FieldAnswer} */
-    set_points(bytes, { info, bounds }) {
+    /** @param {Uint8Array} bytes @param {SolvedModel} about @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
+    set_points(bytes, { info, bounds: own }, { bounds }) {
       calls.push(`set_points ${bytes.length}`);
       return {
         ok: true,
@@ -118,7 +118,7 @@ export function fakeCore({
         formula: '',
         parameters: [],
         auto: [],
-        bounds,
+        bounds: bounds ?? own,
         reach: null,
         mathml: null,
         grip: null,

@@ -74,8 +74,8 @@ test('the page samples and draws', async () => {
 test('the particles have the same bits as natively', async () => {
   const golden = new URL('../../../tests/golden/digests.json', import.meta.url);
   const { runs, models } = JSON.parse(await readFile(golden, 'utf8'));
-  for (const { name, field, model, settings, count, digest } of [...runs, ...models]) {
-    const report = await open(link({ surface: model, ...field, settings }));
+  for (const { name, field, model, pulls, settings, count, digest } of [...runs, ...models]) {
+    const report = await open(link({ surface: model, ...field, pulls, settings }));
     assert.deepEqual({ count: report.count, digest: report.digest }, { count, digest }, name);
   }
 });

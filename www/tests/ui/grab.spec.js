@@ -120,6 +120,92 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
   await clean();
 });
 
+test('a model is pulled around a place, and what is pinned stays', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.evaluate(async () => {
+    const bunny = { surface: 'bunny', settings: { size_mode: 'count', count: 1500 } };
+    await /** @type {any} */ (window).marchingParticles.set(bunny);
+  });
+  await settled(page);
+  await expect(page.getByText('The surface can be pulled by hand.')).toBeVisible();
+  const pulls = async () => (await state(page)).pulls;
+  const top = await outermost(page, [0, -1]);
+  const above = { x: top.x + 10, y: top.y - 30 };
+  /** How near the nearest particle is drawn to a place of the window. */
+  const nearest = (/** @type {{x: number, y: number}} */ at) =>
+    page.evaluate(({ x, y }) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const host = document.querySelector('#canvas-host')?.getBoundingClientRect() ?? new DOMRect();
+      let least = Infinity;
+      for (let i = 0; i < engine.columns.count; i += 1) {
+        const p = engine.project(engine.columns.shown.subarray(3 * i, 3 * i + 3));
+        least = Math.min(least, Math.hypot(host.left + p.x - x, host.top + p.y - y));
+      }
+      return least;
+    }, at);
+
+  await test.step('with Shift, once; the points of the model are those before', async () => {
+    expect(await nearest(above)).toBeGreaterThan(15);
+    await page.keyboard.down('Shift');
+    await drag(page, top, above);
+    await page.keyboard.up('Shift');
+    expect(await pulls()).toHaveLength(1);
+    expect(await nearest(above)).toBeLessThan(10);
+    await expect(page.getByText('1 pull on the surface.')).toBeVisible();
+    await expect(page.getByRole('button', { name: 'Show points' })).toBeHidden();
+    await settled(page);
+    expect((await report(page)).components).toBe(1);
+  });
+
+  await test.step('a link brings it back', async () => {
+    const { digest } = await report(page);
+    const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
+    await page.goto('about:blank');
+    await page.goto(link);
+    await settled(page);
+    expect((await report(page)).digest).toBe(digest);
+  });
+
+  await test.step('the same pin is pulled on by the same pull, by keyboard too; undo takes each back', async () => {
+    await page.getByRole('button', { name: 'Grab' }).click();
+    const spot = await outermost(page, [0, -1]);
+    await drag(page, spot, { x: spot.x, y: spot.y - 12 });
+    expect(await pulls()).toHaveLength(2);
+    const [, { by }] = await pulls();
+    await page.getByRole('slider', { name: 'Pin 1' }).focus();
+    await page.keyboard.press('ArrowUp');
+    await settled(page);
+    expect(await pulls()).toHaveLength(2);
+    expect((await pulls())[1].by).not.toEqual(by);
+    await page.keyboard.press('Control+z');
+    await settled(page);
+    await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(0);
+    expect((await pulls()).length).toBeLessThanOrEqual(2);
+  });
+
+  await test.step('a pinned place stays where it is', async () => {
+    await page.getByRole('button', { name: 'Reset' }).first().click();
+    await settled(page);
+    expect(await pulls()).toEqual([]);
+    const spot = await outermost(page, [0, -1]);
+    await page.mouse.click(spot.x, spot.y);
+    const below = await outermost(page, [0, 1]);
+    await drag(page, below, { x: below.x, y: below.y + 40 });
+    const [{ at, by, reach }] = await pulls();
+    const pin = await page.evaluate((spot) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const host = document.querySelector('#canvas-host')?.getBoundingClientRect() ?? new DOMRect();
+      const index = engine.pick(spot.x - host.left, spot.y - host.top);
+      return index === null ? null : [...engine.columns.positions.subarray(3 * index, 3 * index + 3)];
+    }, spot);
+    if (!pin) throw new Error('nothing lies under the pin');
+    const away = Math.hypot(...pin.map((x, k) => x - at[k] - by[k]));
+    expect(away).toBeGreaterThan(0.9 * reach);
+    await scan(page);
+  });
+  await clean();
+});
+
 test('what cannot be pulled says so, and the picture turns instead', async ({ page }) => {
   const { clean } = await open(page);
   const set = (/** @type {object} */ patch) =>

@@ -28,13 +28,13 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'declareParameters' | 'setBounds' |
- *   'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameters' |
+ *   'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
-const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, settings }) =>
-  JSON.stringify([surface, formula, parameters, declared, centres, bounds, settings]);
+const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pulls, settings }) =>
+  JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, settings]);
 
 /** @param {Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
@@ -120,6 +120,10 @@ export function inputCommands({ store, runs }) {
       runs.resample();
     },
     pull: (parameters, pins, { live = false } = {}) => resample(live, { parameters, pins: [...pins] }),
+    setPulls(pulls, { live = false } = {}) {
+      change(store, { pulls: [...pulls] });
+      resample(live);
+    },
     declareParameters(names) {
       const { declared } = state.value;
       const fresh = names.filter((name) => !declared.some((p) => p.name === name));

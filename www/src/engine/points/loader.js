@@ -17,7 +17,7 @@ import { PointsClient } from './client.js';
 
 /**
  * The part of the state that determines the surface.
- * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'centres' | 'bounds' | 'plane'>} Shape
+ * @typedef {Omit<State, 'v' | 'view' | 'settings'>} Shape
  */
 
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
@@ -32,6 +32,7 @@ export const freshShape = (surface, formula = '') => ({
   centres: null,
   bounds: null,
   plane: null,
+  pulls: [],
 });
 
 export class ModelLoader {
@@ -86,8 +87,8 @@ export class ModelLoader {
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
-    const { surface, formula, parameters, declared, centres, bounds, plane } = this.#store.state.value;
-    this.#last = { surface, formula, parameters, declared, centres, bounds, plane };
+    const { v: _, view: __, settings: ___, ...shape } = this.#store.state.value;
+    this.#last = shape;
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */

@@ -22,8 +22,7 @@
  */
 function setField(core, { field, points }) {
   if (!points) return core.set_field(field);
-  const { info, bounds } = points.info;
-  return core.set_points(points.field, { info, bounds: field.bounds ?? bounds });
+  return core.set_points(points.field, points.info, field);
 }
 
 /**

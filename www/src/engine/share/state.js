@@ -4,14 +4,15 @@
  * @module
  */
 
-import { FILE_SURFACE, MOST_PARAMETERS } from '../constants.js';
-import { vec } from '../vector.js';
+import { FILE_SURFACE, MOST_PARAMETERS, MOST_PULLS } from '../constants.js';
+import { LONGEST_PULL } from '../pulls.js';
+import { size, vec } from '../vector.js';
 import { finite, isRecord, vec3, within } from './valid.js';
 import { homeView, validView } from './view.js';
 
 /**
  * @import {
- *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Settings, State, SurfaceInfo,
+ *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, SurfaceInfo,
  * } from '../types.js'
  */
 
@@ -28,6 +29,7 @@ export const emptyState = () => ({
   centres: null,
   bounds: null,
   plane: null,
+  pulls: [],
   settings: {},
   view: homeView(),
 });
@@ -83,8 +85,10 @@ export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(de
  * @returns {FieldRequest}
  */
 export function fieldRequest(state, description, points) {
-  if (points !== undefined)
-    return { points, surface: state.surface, ...(state.bounds ? { bounds: state.bounds } : {}) };
+  if (points !== undefined) {
+    const { surface, pulls, bounds } = state;
+    return { points, surface, ...(pulls.length ? { pulls } : {}), ...(bounds ? { bounds } : {}) };
+  }
   const surface = surfaceOf(description, state.surface);
   /** @type {FieldRequest} */
   const request = { surface: state.surface, parameters: { ...state.parameters } };
@@ -113,6 +117,19 @@ export function validPlane(v) {
   if (!normal || offset === undefined || !(length > 0 && length < Infinity)) return undefined;
   // Adding 0 turns −0 into 0, as a link does.
   return { normal: vec((k) => normal[k] / length + 0), offset: offset / length + 0 };
+}
+
+/** A pull that tears nothing. @param {unknown} v @returns {Pull | undefined} */
+export function validPull(v) {
+  if (!isRecord(v)) return undefined;
+  const [at, by, reach] = [vec3(v.at), vec3(v.by), within(v.reach, 0, Number.MAX_VALUE)];
+  return at && by && reach && size(by) <= LONGEST_PULL * reach ? { at, by, reach } : undefined;
+}
+
+/** Up to so many pulls, each of which begins where those before it end. @param {unknown} v @param {number} most */
+function validPulls(v, most) {
+  const pulls = Array.isArray(v) && v.length <= most ? v.map(validPull) : [undefined];
+  return pulls.every((pull) => pull !== undefined) ? pulls : undefined;
 }
 
 /**
@@ -238,6 +255,7 @@ export function sanitize(raw, description, hasFile = false) {
   state.centres = optional(raw.centres, (v) => validCentres(v, description, state.surface), 'number of centres');
   state.bounds = optional(raw.bounds, (v) => validBounds(v, description.limits), 'clip box');
   state.plane = optional(raw.plane, validPlane, 'cutting plane');
+  state.pulls = optional(raw.pulls, (v) => validPulls(v, points ? MOST_PULLS : 0), 'pulls') ?? [];
   if (raw.settings !== undefined) {
     if (isRecord(raw.settings)) {
       for (const [name, value] of Object.entries(raw.settings)) {

@@ -1,9 +1,10 @@
 /** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
 import { computed } from '@preact/signals-core';
+import { canGrab } from '../../engine/pulls.js';
 import { button } from '../button.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
-import { formatStep } from '../format.js';
+import { formatStep, plural } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSelect } from '../select.js';
 import { createSlider } from '../slider.js';
@@ -16,8 +17,12 @@ import { createSlider } from '../slider.js';
 /** Speeds at which a parameter is played, as multiples of the usual one. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
+/** @param {number} n */
+const pullsOf = (n) => (n === 0 ? 'The surface can be pulled by hand.' : `${plural(n, 'pull')} on the surface.`);
+
 /** @param {Engine} engine @param {{ motion: Motion, pins: Pins }} shared */
 export function createParameters(engine, { motion, pins }) {
+  const isModel = computed(() => engine.field.value?.kind === 'points');
   // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
     JSON.stringify(
@@ -27,8 +32,14 @@ export function createParameters(engine, { motion, pins }) {
   const values = computed(() => engine.state.value.parameters);
   return h(
     'div',
-    { class: 'section parameters', hidden: () => !engine.field.value?.parameters.length },
-    h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), h('span', null, resetAll(engine), grabbing(pins))),
+    { class: 'section parameters', hidden: () => !canGrab(engine.field.value) },
+    h(
+      'div',
+      { class: 'section-head' },
+      h('h2', null, () => (isModel.value ? 'Pulls' : 'Parameters')),
+      h('span', null, resetAll(engine), grabbing(engine, pins)),
+    ),
+    h('p', { class: 'quiet', hidden: () => !isModel.value }, () => pullsOf(engine.state.value.pulls.length)),
     h('div', { class: 'rows' }, () => {
       void shape.value;
       return engine.field.peek()?.parameters.map((parameter) => createRow(engine, parameter, { values, motion }));
@@ -37,21 +48,25 @@ export function createParameters(engine, { motion, pins }) {
   );
 }
 
-/** Creates the switch by which the surface itself is dragged. @param {Pins} pins */
-function grabbing(pins) {
+/** Creates the switch by which the surface itself is dragged. @param {Engine} engine @param {Pins} pins */
+function grabbing(engine, pins) {
   const isOn = computed(() => pins.value !== null);
   const press = () => {
     pins.value = isOn.peek() ? null : [];
   };
   return explain(button({ class: 'plain small', 'aria-pressed': () => String(isOn.value), press }, 'Grab'), () => ({
-    text: 'Drag the surface: the parameters follow. Shift and drag does it once.',
+    text: `Drag the surface${engine.field.value?.kind === 'points' ? '' : ': the parameters follow'}. Shift and drag does it once.`,
   }));
 }
 
 /** @param {Engine} engine */
 function resetAll(engine) {
-  const changed = computed(() => Object.keys(engine.state.value.parameters).length > 0);
+  const changed = computed(() => {
+    const { parameters, pulls } = engine.state.value;
+    return Object.keys(parameters).length > 0 || pulls.length > 0;
+  });
   const press = () => {
+    if (engine.state.peek().pulls.length > 0) engine.setPulls([]);
     for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
   };
   return button({ class: () => (changed.value ? 'plain small' : 'plain small invisible'), press }, 'Reset');

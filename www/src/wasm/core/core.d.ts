@@ -149,10 +149,10 @@ export class Core {
      */
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
-     * Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
-     * of it, `SolvedModel`; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     * Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
+     * `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
      */
-    set_points(system: Uint8Array | number[], about: SolvedModel): Answer<FieldAnswer, Fault>;
+    set_points(system: Uint8Array | number[], about: SolvedModel, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
      * singular point nearby.

@@ -1,7 +1,10 @@
 /**
  * Pins: points of the surface that are dragged, or stay where they are while others are. The parameters follow
- * (Witkin and Heckbert 1994, §3).
+ * (Witkin and Heckbert 1994, §3); the surface of a model, which has none, is pulled around them.
  */
+import { batch } from '@preact/signals-core';
+import { MOST_PULLS } from '../../../engine/constants.js';
+import { canGrab, endOf, pullBetween } from '../../../engine/pulls.js';
 import { along, distance, dot, triple } from '../../../engine/vector.js';
 import { button } from '../../button.js';
 import { h, live } from '../../dom.js';
@@ -9,7 +12,7 @@ import { towardEye } from '../../space.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { Columns, Engine, Grip, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Columns, Engine, Grip, Pull, Ray, Vec3 } from '../../../engine/types.js'
  * @import { Pins } from '../../types.js'
  * @import { Mark } from '../types.js'
  */
@@ -19,6 +22,10 @@ const MOST_PINS = 6;
 /** Way of a pin by an arrow key, in radii of a particle, and its share with Shift. */
 const KEY_RADII = 1;
 const FINE = 0.1;
+/** Usual reach of a pull on a model, over the diagonal of its box. */
+const REACH = 0.15;
+/** Distance over that diagonal, within which a pin is where a pull has ended, and is pulled on by the same. */
+const SAME = 1e-4;
 
 /** @param {Engine} engine @param {HTMLElement} stage @param {Pins} pins @returns {Mark} */
 export function pinMark(engine, stage, pins) {
@@ -57,6 +64,13 @@ export function pinMark(engine, stage, pins) {
   };
 }
 
+/**
+ * What a drag starts from; `diagonal`: of the box.
+ * @typedef {{
+ *   parameters: Record<string, number>, pulls: readonly Pull[], diagonal: number, pins: readonly Vec3[],
+ * }} Start
+ */
+
 /** Pulls one pin at a time. */
 class Hand {
   #engine;
@@ -66,10 +80,8 @@ class Hand {
   #isFleeting = false;
   /** Whether it was taken hold of in the picture. */
   #isTaken = false;
-  /** The parameters and the pins when the drag began. @type {Record<string, number>} */
-  #parameters = {};
-  /** @type {readonly Vec3[]} */
-  #before = [];
+  /** What there was when the drag began. @type {Start} */
+  #start = { parameters: {}, pulls: [], diagonal: 0, pins: [] };
   /** Where the pins are to be; null until the first motion. @type {readonly Vec3[] | null} */
   #wanted = null;
   /** The field to which the pins belong, and what became of it at the last pull. */
@@ -90,7 +102,7 @@ class Hand {
   take(at, shift) {
     const [engine, pins] = [this.#engine, this.#pins.peek() ?? []];
     const isOn = this.#pins.peek() !== null;
-    if (!(isOn || shift) || !engine.field.peek()?.parameters.length || pins.length === MOST_PINS) return null;
+    if (!(isOn || shift) || !canGrab(engine.field.peek()) || pins.length === MOST_PINS) return null;
     const index = engine.pick(at.x, at.y);
     if (index === null) return null;
     this.#pins.value = [...pins, triple(engine.columns.shown, index)];
@@ -122,14 +134,16 @@ class Hand {
   grab(k) {
     this.#held = k;
     this.#isFleeting = false;
-    this.#parameters = this.#engine.state.peek().parameters;
-    this.#before = this.#pins.peek() ?? [];
+    const { parameters, pulls } = this.#engine.state.peek();
+    const box = this.#engine.field.peek()?.bounds;
+    const diagonal = box ? distance(box.min, box.max) : 0;
+    this.#start = { parameters, pulls, diagonal, pins: this.#pins.peek() ?? [] };
     this.#wanted = null;
   }
 
   /** Moves the pin in the plane through its place that faces the camera. @param {Ray} ray */
   drag({ eye, direction }) {
-    const place = this.#before[this.#held];
+    const place = this.#start.pins[this.#held];
     const facing = towardEye(this.#engine.state.peek().view.camera);
     const t = dot(along(place, eye, -1), facing) / dot(direction, facing);
     if (Number.isFinite(t) && t > 0) this.#pull(along(eye, direction, t), true);
@@ -137,30 +151,42 @@ class Hand {
 
   /** @param {Vec3} to @param {boolean} live */
   #pull(to, live) {
-    this.#wanted = this.#before.map((pin, k) => (k === this.#held ? to : pin));
-    this.#engine.pull(this.#parameters, this.#wanted, { live });
+    this.#wanted = this.#start.pins.map((pin, k) => (k === this.#held ? to : pin));
+    this.#go(this.#wanted, live);
+  }
+
+  /** Takes the surface along to where the pins are to be. @param {readonly Vec3[]} wanted @param {boolean} live */
+  #go(wanted, live) {
+    const [engine, { parameters }] = [this.#engine, this.#start];
+    if (engine.field.peek()?.kind !== 'points') return engine.pull(parameters, wanted, { live });
+    const { pulls, pins } = pulled(this.#start, this.#held, wanted[this.#held]);
+    batch(() => {
+      engine.setPulls(pulls, { live });
+      this.#pins.value = pins;
+      this.#of = fieldOf(engine);
+    });
   }
 
   /** @returns whether the pin was moved */
   drop() {
     const wanted = this.#wanted;
     this.#wanted = null;
-    if (wanted) this.#engine.pull(this.#parameters, wanted);
+    if (wanted) this.#go(wanted, false);
     if (this.#isFleeting) this.#pins.value = null;
     return wanted !== null;
   }
 
   cancel() {
     this.#wanted = null;
-    this.#engine.pull(this.#parameters, this.#before);
+    this.#go(this.#start.pins, false);
   }
 
   /** Moves a pin by so many radii of a particle along the normal. @param {number} k @param {number} radii */
   push(k, radii) {
     this.grab(k);
     const { columns } = this.#engine;
-    const near = nearest(columns, this.#before[k]);
-    this.#pull(along(this.#before[k], triple(columns.normals, near), radii * columns.radii[near]), false);
+    const near = nearest(columns, this.#start.pins[k]);
+    this.#pull(along(this.#start.pins[k], triple(columns.normals, near), radii * columns.radii[near]), false);
     this.#wanted = null;
   }
 
@@ -186,8 +212,29 @@ class Hand {
   }
 }
 
+/**
+ * Pulls the surface of a model so that a pin comes as near to a place as the others allow. Where it is the pin that was
+ * pulled last, it is pulled on.
+ * @param {Start} start @param {number} k  of the pin @param {Vec3} to
+ */
+function pulled({ pulls, diagonal, pins }, k, to) {
+  if (distance(pins[k], to) === 0) return { pulls, pins };
+  const last = pulls.at(-1);
+  const isSame = last !== undefined && distance(endOf(last), pins[k]) < SAME * diagonal;
+  const before = isSame ? pulls.slice(0, -1) : pulls;
+  if (before.length === MOST_PULLS) return { pulls, pins };
+  const held = pins.filter((_, other) => other !== k);
+  const pull = pullBetween(isSame ? last.at : pins[k], to, { reach: REACH * diagonal, held });
+  return { pulls: [...before, pull], pins: pins.map((pin, other) => (other === k ? endOf(pull) : pin)) };
+}
+
 /** Returns a text by which fields are compared. @param {Engine} engine */
-const fieldOf = ({ field: { value } }) => JSON.stringify(value && [value.kind, value.formula, value.parameters]);
+function fieldOf({ field: { value: field }, state }) {
+  const { surface, centres, pulls } = state.value;
+  return JSON.stringify(
+    field?.kind === 'points' ? [surface, centres, pulls] : field && [field.formula, field.parameters],
+  );
+}
 
 /** Returns the particle nearest to a place. @param {Columns} columns @param {Vec3} place */
 function nearest({ positions, count }, place) {
@@ -204,6 +251,7 @@ function nearest({ positions, count }, place) {
 export function createPinCard(engine, pins) {
   const text = h('span', { role: 'status' }, () => {
     if (pins.value === null) return '';
+    if (engine.state.value.pulls.length === MOST_PULLS) return `${MOST_PULLS} pulls are the most`;
     const grip = engine.grip.value;
     if (grip && pins.value.length > 0) {
       const names = grip.idle.join(', ');
