@@ -204,6 +204,21 @@ fn a_file_says_how_to_make_it_again() {
         assert_eq!(sample(&["--like", &path])["digest"], made["digest"], "{name}");
     }
 
+    // A model, whose points no file holds, with a pull on it.
+    let bunny = |more: &[&str]| sample(&[&["--surface", "bunny", "--radius", "2%"], more].concat());
+    let [own, changed, pulled] = ["own.csv", "changed.csv", "pulled.csv"].map(path);
+    let made = bunny(&["--out", &own]);
+    let pull = r#""pulls":[{"at":[0.0,0.0,1.0],"by":[0.0,0.1,0.2],"reach":0.6}]"#;
+    let text = std::fs::read_to_string(&own).expect("a text");
+    assert!(text.contains(r#""pulls":[]"#), "{text}");
+    std::fs::write(&changed, text.replace(r#""pulls":[]"#, pull)).expect("a file");
+    assert_eq!(bunny(&["--like", &own])["digest"], made["digest"]);
+    let other = bunny(&["--like", &changed, "--out", &pulled]);
+    assert_ne!(other["digest"], made["digest"]);
+    assert_eq!(bunny(&["--like", &pulled])["digest"], other["digest"]);
+    let message = fails(2, &["sample", "--like", &own]);
+    assert!(message.contains("--surface or --points"), "{message}");
+
     let plain = path("plain.stl");
     sample(&["--surface", "sphere", "--mesh", &plain]);
     let message = fails(2, &["sample", "--like", &plain]);

@@ -4,6 +4,7 @@ use crate::options::SamplingOptions;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use marching_particles::export::{Placement, Unit, UpAxis};
+use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
@@ -229,6 +230,10 @@ pub(crate) struct SurfaceArguments {
     #[arg(skip)]
     pub(crate) faces: Option<Bounds>,
 
+    /// Pulls on the surface of a model, read from a file.
+    #[arg(skip)]
+    pub(crate) pulls: Vec<Pull>,
+
     /// Sheet of this thickness around the surface, |f| ≤ T/2 |∇f|, in place of the surface. For formulas
     #[arg(long, value_name = "T", conflicts_with = "points", value_parser = thickness, help_heading = "Surface")]
     pub(crate) thickness: Option<f64>,
@@ -248,6 +253,12 @@ impl SampleArguments {
     /// Takes from the record of a file what is not given.
     pub(crate) fn complete(&mut self, record: FileRecord) {
         let surface = &mut self.surface;
+        let is_model = surface.points.is_some()
+            || surface.surface.as_deref().is_some_and(|id| model::find(id).is_some());
+        if record.model.is_some() && is_model {
+            surface.bounds = surface.bounds.or(Some(BoxChoice::Given(record.bounds)));
+            surface.pulls = record.pulls;
+        }
         if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {

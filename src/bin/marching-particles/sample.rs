@@ -49,7 +49,7 @@ pub(crate) struct Chosen {
 }
 
 /// The record of what a file was made from.
-fn read_record(path: &Path) -> Result<FileRecord, Failure> {
+fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let no_record = || {
@@ -63,17 +63,17 @@ fn read_record(path: &Path) -> Result<FileRecord, Failure> {
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
     match &record.model {
-        Some(model) => Err(Failure::Usage(format!(
+        Some(model) if surface.surface.is_none() && surface.points.is_none() => Err(Failure::Usage(format!(
             "{} was made from points, {model}: name them with --surface or --points, beside --like",
             path.display()
         ))),
-        None => Ok(record),
+        _ => Ok(record),
     }
 }
 
 pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.like {
-        let record = read_record(path)?;
+        let record = read_record(path, &arguments.surface)?;
         arguments.complete(record);
     }
     let arguments = &arguments;
@@ -126,7 +126,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         link: None,
         surface: name.clone(),
         model: model.as_ref().map(|model| model.name.clone()),
-        pulls: Vec::new(),
+        pulls: arguments.surface.pulls.clone(),
         formula: formula.clone(),
         parameters: parameters.clone(),
         bounds: sample.bounds(),
@@ -255,8 +255,10 @@ pub(crate) fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));
         }
+        let mut field = fit.field();
+        field.pull(&arguments.pulls).map_err(|error| Failure::Usage(error.to_string()))?;
         return Ok(Chosen {
-            field: Box::new(fit.field()),
+            field: Box::new(field),
             name: arguments.surface.clone(),
             formula: String::new(),
             parameters: BTreeMap::new(),
