@@ -2,8 +2,9 @@
  * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
  *
  * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
- * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges)
- * and readme/levels-{light,dark}.webp (generation levels growing).
+ * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges),
+ * readme/moved-{light,dark}.webp (particles that follow a surface) and readme/levels-{light,dark}.webp (generation levels
+ * growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -82,6 +83,27 @@ const SOLIDS = [
   },
 }));
 
+/** What the strip of moving surfaces shows: a parameter that grows from its first value, and a pull. */
+const MOVED = [
+  ...[11, 12.4, 13.5].map((c) => ({
+    surface: 'tanglecube',
+    parameters: { c: 11 },
+    settings: { size_mode: 'count', count: 2500 },
+    view: { colour: 'level', flow: true },
+    moves: { c },
+    zoom: 1,
+  })),
+  ...[[], [{ at: [0.031634, -0.233082, 1.01128], by: [-0.08, 0.17, 0.31], reach: 0.8 }]].map((pulls) => ({
+    surface: 'bunny',
+    pulls,
+    settings: { size_mode: 'count', count: 2500 },
+    view: { colour: 'level', points: false },
+    zoom: 0.9,
+  })),
+];
+/** Frames of a motion. */
+const FRAMES = 40;
+
 /** A frame of the strip, and device pixels per pixel of it. */
 const LEVEL_PX = { width: 300, height: 240 };
 const LEVEL_SCALE = 1.5;
@@ -153,7 +175,10 @@ const onlyThePicture = (page) =>
 /**
  * Draws surfaces side by side in both themes.
  * @param {string} name of the files
- * @param {{ zoom: number, surface?: string, formula?: string, settings: object, view: { colour: string, camera?: object } }[]} states
+ * @param {{
+ *   zoom: number, surface?: string, formula?: string, parameters?: Record<string, number>, pulls?: object[],
+ *   settings: object, view: { colour: string, camera?: object }, moves?: Record<string, number>,
+ * }[]} states  `moves`: the values to which the parameters move, with the particles
  * @param {number} [columns]  surfaces in a row
  */
 async function strip(name, states, columns) {
@@ -163,17 +188,25 @@ async function strip(name, states, columns) {
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
     await onlyThePicture(page);
     const frames = [];
-    for (const { zoom, ...state } of states) {
+    for (const { zoom, moves, ...state } of states) {
       await page.evaluate(
-        async ({ wanted, zoom }) => {
+        async ({ wanted, zoom, moves, frames }) => {
           const mp = /** @type {any} */ (window).marchingParticles;
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
           const camera = { ...mp.state.view.camera, fit: true, ...wanted.view.camera };
           await mp.set({ ...wanted, view: { ...wanted.view, camera } });
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
           mp.engine.zoom(zoom);
+          for (let k = 1; moves && k <= frames; k += 1) {
+            for (const [name, to] of Object.entries(moves)) {
+              const from = wanted.parameters?.[name] ?? 0;
+              mp.engine.setParameter(name, from + ((to - from) * k) / frames);
+            }
+            do await new Promise((go) => setTimeout(go, 10));
+            while (mp.engine.busy.value);
+          }
         },
-        { wanted: state, zoom },
+        { wanted: state, zoom, moves, frames: FRAMES },
       );
       await page.waitForTimeout(1500);
       frames.push(await page.screenshot());
@@ -186,6 +219,7 @@ async function strip(name, states, columns) {
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
+await strip('moved', MOVED);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({
   zoom: 1.15,
