@@ -66,6 +66,16 @@ pub struct Start {
     pub warnings: Vec<Warning>,
 }
 
+/// What the sampler knows of the present field and box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Known {
+    Nothing,
+    /// The particles, which have followed the surface.
+    Particles,
+    /// The survey of the last start, too.
+    Survey,
+}
+
 /// The sampling of one surface, in steps.
 ///
 /// A run owns its field, or borrows it where `F` is a mutable reference, so that every step and every measurement is made of the
@@ -92,8 +102,7 @@ pub struct Run<F> {
     /// Whether the surface is bounded, if its box was fitted; none if the box was given.
     reach: Option<Reach>,
     sampler: Sampler,
-    /// Whether field and box are those of the last start.
-    is_surveyed: bool,
+    known: Known,
     /// The creases of the surface in the box, if they were found before the start.
     creases: Option<Creases>,
     /// Limit on the number of particles: a run that expects more is refused.
@@ -150,7 +159,7 @@ impl<F: Field> Run<F> {
             bounds,
             reach: None,
             sampler: Sampler::new(),
-            is_surveyed: false,
+            known: Known::Nothing,
             creases: None,
             most_particles: usize::MAX,
             start: Start::default(),
@@ -167,7 +176,7 @@ impl<F: Field> Run<F> {
             return Err(SettingsError::Box);
         }
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
-        let start = if self.is_surveyed {
+        let start = if self.known == Known::Survey {
             self.sampler.start_again(&mut self.field, settings)?
         } else {
             self.field.set_origin(self.bounds.local_origin());
@@ -177,7 +186,7 @@ impl<F: Field> Run<F> {
                 None => self.sampler.start(&mut self.field, &bounds, settings)?,
             }
         };
-        self.is_surveyed = true;
+        self.known = Known::Survey;
         self.last = None;
         self.measuring = Measuring::default();
         self.meshing = Meshing::default();
@@ -245,7 +254,7 @@ impl<F: Field> Run<F> {
         let bounds = self.bounds.relative_to(self.field.origin());
         let can_follow = self.sampler.follow(&mut self.field, &bounds, is_closed);
         if can_follow {
-            self.is_surveyed = false;
+            self.known = Known::Particles;
             self.creases = None;
             self.forget_results();
         }
@@ -254,7 +263,7 @@ impl<F: Field> Run<F> {
 
     /// Asks for more relaxation steps on the particles of a finished run; [`Run::step`] does them.
     pub fn relax(&mut self, steps: u32) {
-        if self.is_surveyed {
+        if self.known != Known::Nothing {
             self.sampler.relax(steps);
             let progress = self.sampler.progress();
             self.remember(progress);
@@ -438,7 +447,7 @@ impl<F: Field> Run<F> {
 
     /// Whether the next start has nothing to find out about the creases of the surface.
     pub(crate) fn knows_creases(&self) -> bool {
-        self.is_surveyed || self.creases.is_some()
+        self.known == Known::Survey || self.creases.is_some()
     }
 
     /// Finds the creases of the surface in the box, in slices, on a copy of the field, which [`Run::know_creases`] takes.
@@ -463,8 +472,8 @@ impl<F: Field> Run<F> {
 
     /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.
     fn end(&mut self) {
-        if self.is_surveyed || self.sampler.progress().phase == Phase::Flow {
-            self.is_surveyed = false;
+        if self.known != Known::Nothing {
+            self.known = Known::Nothing;
             self.cancel();
         }
     }
