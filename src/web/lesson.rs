@@ -2,7 +2,7 @@
 
 use super::values::{answer, to_js};
 use crate::field::formula::Formula;
-use crate::field::rbf::{RbfData, RbfField};
+use crate::field::rbf::{Pull, RbfData, RbfField};
 use crate::field::{Field, Jet};
 use crate::lesson::{self, LessonError, LessonField, LessonSettings};
 use crate::math::Bounds;
@@ -27,6 +27,7 @@ const TYPES: &str = r"import type {
   LessonProgress,
   LessonPush,
   LessonSettings,
+  Pull,
 } from '../../engine/core-types.js';";
 
 /// The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
@@ -59,9 +60,11 @@ fn formula(field: &LessonField) -> Result<Box<dyn Field>, Fault> {
     Ok(Box::new(Pointwise(parsed.without_powers())))
 }
 
-fn points(system: &[u8]) -> Result<Box<dyn Field>, Fault> {
-    let field = RbfData::from_bytes(system).and_then(RbfField::new);
-    Ok(Box::new(Pointwise(field.map_err(|error| Fault::new(FaultKind::Points, &error))?)))
+fn points(system: &[u8], pulls: &[Pull]) -> Result<Box<dyn Field>, Fault> {
+    let refused = |error| Fault::new(FaultKind::Points, &error);
+    let mut field = RbfData::from_bytes(system).and_then(RbfField::new).map_err(refused)?;
+    field.pull(pulls).map_err(refused)?;
+    Ok(Box::new(Pointwise(field)))
 }
 
 #[wasm_bindgen]
@@ -85,17 +88,19 @@ impl Lesson {
         self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
     }
 
-    /// Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `bounds` its `Bounds`; to an
-    /// `Answer` with `LessonProgress`.
+    /// Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `pulls` are those on its surface, and
+    /// `bounds` is its `Bounds`; to an `Answer` with `LessonProgress`.
     #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
     pub fn start_points(
         &mut self,
         system: &[u8],
+        #[wasm_bindgen(unchecked_param_type = "readonly Pull[]")] pulls: JsValue,
         #[wasm_bindgen(unchecked_param_type = "Bounds")] bounds: JsValue,
         #[wasm_bindgen(unchecked_param_type = "Partial<LessonSettings>")] settings: JsValue,
     ) -> JsValue {
+        let pulled = read::<Vec<Pull>>(pulls, FaultKind::Request).and_then(|pulls| points(system, &pulls));
         let bounds = read::<Bounds>(bounds, FaultKind::Request);
-        self.begin(bounds.and_then(|bounds| Ok((points(system)?, bounds))), settings)
+        self.begin(pulled.and_then(|field| Ok((field, bounds?))), settings)
     }
 
     /// Has the particles of a particle system follow their surface to that of a formula, `LessonField`, whose box does not count; to an

@@ -83,7 +83,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       const { kind, formula, parameters, bounds } = field;
       if (kind === 'formula') return { formula, parameters, bounds };
       const solved = runs.loader.client.get(runs.loader.key());
-      return solved ? { system: solved.field, bounds } : null;
+      return solved ? { system: solved.field, pulls: store.state.value.pulls, bounds } : null;
     },
     debug: createDebug(parts),
     destroy() {

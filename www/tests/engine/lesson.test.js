@@ -105,7 +105,7 @@ describe('a lesson', () => {
   test('gives the run before up for the next one', async () => {
     const client = new LessonClient({ spawn: () => fakeWorker(8) });
     const first = errorOf(client.start(surface, { radius: 0.1 }));
-    const second = client.start({ system: Uint8Array.of(1), bounds }, { radius: 0.2 });
+    const second = client.start({ system: Uint8Array.of(1), pulls: [], bounds }, { radius: 0.2 });
     expect(await first).toMatchObject({ kind: 'given_up' });
     expect(await second).toEqual(progressOf(8, true));
   });

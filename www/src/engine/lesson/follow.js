@@ -32,7 +32,7 @@ export function follow(lesson, env) {
     stops = false;
     const answer =
       'system' in surface
-        ? lesson.start_points(surface.system, surface.bounds, settings)
+        ? lesson.start_points(surface.system, surface.pulls, surface.bounds, settings)
         : lesson.start(surface, settings);
     if (!answer.ok) return env.post({ type: 'refused', id, error: answer.error });
     if (holds) return env.post({ type: 'ended', id, progress: answer });

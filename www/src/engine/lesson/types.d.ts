@@ -1,6 +1,15 @@
 // Messages between the page and the worker of the lesson, and what its clients are given. The worker follows one run at
 // a time; every question is answered under its number.
-import type { Answer, Bounds, LessonEvent, LessonField, LessonIterate, LessonLife, LessonPush } from '../core-types.js';
+import type {
+  Answer,
+  Bounds,
+  LessonEvent,
+  LessonField,
+  LessonIterate,
+  LessonLife,
+  LessonPush,
+  Pull,
+} from '../core-types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<ToLesson, FromLesson>;
 export type LessonSettings = import('../core-types.js').LessonSettings;
@@ -9,7 +18,7 @@ export type LessonChapter = import('../core-types.js').LessonChapter;
 export type Fault = import('../core-types.js').Fault;
 export type Vec3 = [number, number, number];
 /** The surface to sample: a formula, or the solved system of a model from points. */
-export type Surface = LessonField | { system: Uint8Array; bounds: Bounds };
+export type Surface = LessonField | { system: Uint8Array; pulls: readonly Pull[]; bounds: Bounds };
 /**
  * The particles at the moment that was sought. Vectors have three floats each; `parents` has 0xffffffff for a seed,
  * `done` 1 for a particle whose children are placed.

@@ -71,7 +71,7 @@ export function surfaceKey(engine) {
   const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
   const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
   const solid = ['box_faces', 'box_cell', 'thickness'].map((name) => settingOf(engine, name));
-  return JSON.stringify([kind, formula, values, bounds, surface, model, sizes, solid]);
+  return JSON.stringify([kind, formula, values, bounds, surface, model, engine.state.value.pulls, sizes, solid]);
 }
 
 /** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */

@@ -12,6 +12,7 @@ import type {
     LessonProgress,
     LessonPush,
     LessonSettings,
+    Pull,
 } from '../../engine/core-types.js';
 
 
@@ -101,10 +102,10 @@ export class Lesson {
      */
     start(field: LessonField, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**
-     * Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `bounds` its `Bounds`; to an
-     * `Answer` with `LessonProgress`.
+     * Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `pulls` are those on its surface, and
+     * `bounds` is its `Bounds`; to an `Answer` with `LessonProgress`.
      */
-    start_points(system: Uint8Array | number[], bounds: Bounds, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
+    start_points(system: Uint8Array | number[], pulls: readonly Pull[], bounds: Bounds, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
     /**
      * Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
      */
