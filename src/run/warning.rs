@@ -265,7 +265,8 @@ impl<F: Field> Run<F> {
         if not_converged > 0 || undefined > 0 {
             warnings.push(Warning::Children { not_converged, undefined });
         }
-        if !self.particles().identity.is_empty() {
+        let has_moved = !self.particles().identity.is_empty();
+        if has_moved {
             warnings.push(Warning::Moved);
         }
         let meets = [self.places_of_meeting(), self.crossing()];
@@ -292,10 +293,11 @@ impl<F: Field> Run<F> {
             warnings.push(Warning::Open { edges, points, position, length });
         }
         // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already. No model from
-        // points has bounds, which the row of the report says.
+        // points has bounds, which the row of the report says. How components of a moved surface were looked for is told already, too.
         let is_told = |doubt: &Doubt| match doubt {
             Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
+            Doubt::Unfinished => !has_moved,
             _ => true,
         };
         let moved = doubts.into_iter().filter(is_told).map(|doubt| doubt.moved(|place| self.place(place)));

@@ -223,6 +223,9 @@ fn particles_that_have_followed_can_be_relaxed() {
     assert_eq!(before.0, after.0);
     assert!(after.1 < before.1, "{after:?} from {before:?}");
     assert_eq!(run.particles().identity.len(), after.0);
+    // How components were looked for is told once.
+    let warnings = run.report().warnings;
+    assert!(matches!(warnings.as_slice(), [Warning::Count { .. }, Warning::Moved]), "{warnings:?}");
 }
 
 /// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without births and deaths, too.
