@@ -102,8 +102,6 @@
 //! a promise to stay; ARCHITECTURE.md says what each is for and who may use whom.
 
 #[doc(hidden)]
-pub mod answer;
-#[doc(hidden)]
 pub mod differential;
 #[doc(hidden)]
 pub mod export;

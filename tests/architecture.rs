@@ -16,8 +16,6 @@ const ROOMS: [Room; 4] = [
             ("math", &[]),
             // Long work in slices: of any kind.
             ("slices", &[]),
-            // The form of an answer, whatever is answered.
-            ("answer", &[]),
             ("field", &["math", "slices"]),
             ("differential", &["math", "field"]),
             // A box is found before anything is sampled.
@@ -77,7 +75,7 @@ const ROOMS: [Room; 4] = [
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
-            ("web/values", &["answer"]),
+            ("web/values", &[]),
             ("web/core", &["field", "particles", "export", "sampler", "session"]),
             ("web/points", &["field", "pointcloud"]),
             ("web/lesson", &["math", "field", "paper", "lesson", "session"]),

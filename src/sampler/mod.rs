@@ -58,7 +58,6 @@ use refine::CoarseFronts;
 use relaxation::Relaxation;
 use run::RunInput;
 use sizing::Sizing;
-use std::collections::BTreeMap;
 
 /// Bytes per particle that have to be free before a run: the columns, neighbour lists and grid of a front, and most of what its
 /// relaxation adds; of a refined run the columns and the last two levels of its mesh, with the wanted sizes where these differ.
@@ -404,12 +403,16 @@ impl Sampler {
     /// Finds the singular points near those of the survey, on each patch by itself.
     fn find_singular_points(&mut self, probe: &mut Probe) {
         let spacing = spacing(&self.bounds);
-        let mut patches: BTreeMap<Option<u32>, Vec<Vec3>> = BTreeMap::new();
+        // Those of no patch come first.
+        let mut patches: Vec<Vec<Vec3>> = Vec::new();
         for &p in &self.survey.position {
             let patch = self.creases.are_there().then(|| probe.field.branch_at(p.as_dvec3()));
-            patches.entry(patch).or_default().push(p);
+            let place = patch.map_or(0, |patch| patch as usize + 1);
+            patches.resize_with(patches.len().max(place + 1), Vec::new);
+            patches[place].push(p);
         }
-        for (patch, points) in patches {
+        for (place, points) in (0_u32..).zip(patches).filter(|(_, points)| !points.is_empty()) {
+            let patch = place.checked_sub(1);
             probe.select(patch);
             let mut near = singular::near_survey(probe.field, &points, spacing, &self.bounds);
             self.find_tips(probe, patch, &near, spacing);

@@ -3,7 +3,7 @@
 //! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be code and tables for decimal
 //! digits.
 
-use crate::answer::Answer;
+use js_sys::Reflect;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::JsValue;
@@ -14,7 +14,14 @@ pub(super) fn to_js(value: &impl Serialize) -> JsValue {
     value.serialize(&Serializer::json_compatible()).expect("every value of the core has a form in JavaScript")
 }
 
-/// An [`Answer`] as an object.
+/// The answer to a command that can be refused: `{ok: true, …}` with the fields of the value, a structure, or `{ok: false, error: …}`.
 pub(super) fn answer<T: Serialize, E: Serialize>(result: Result<T, E>) -> JsValue {
-    to_js(&Answer::from(result))
+    #[derive(Serialize)]
+    struct Refused<E> {
+        error: E,
+    }
+    let is_accepted = result.is_ok();
+    let answer = result.map_or_else(|error| to_js(&Refused { error }), |value| to_js(&value));
+    Reflect::set(&answer, &"ok".into(), &is_accepted.into()).expect("an object takes any property");
+    answer
 }

@@ -15,7 +15,6 @@ use super::operations::{Binary, Unary};
 use crate::field::Enclosure;
 use crate::math::Bounds;
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 /// Maximum number of branches that are listed for a box: four choices beyond those at a corner of three faces that meet in |x|, |y|
 /// and |z|. A smaller box has fewer.
@@ -96,8 +95,8 @@ pub(super) struct BranchPart {
     pub(super) nodes: Vec<Id>,
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
-    /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`].
-    taken: BTreeMap<Vec<bool>, usize>,
+    /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`]; sorted.
+    taken: Vec<(Vec<bool>, usize)>,
     /// The branch compiled, once it has been selected.
     compiled: Option<Box<Compiled>>,
 }
@@ -292,8 +291,6 @@ pub(super) struct Branches {
     pub(super) base: Base,
     /// f, then what has become of it.
     pub(super) parts: Vec<BranchPart>,
-    /// The part of each root.
-    by_root: BTreeMap<Id, usize>,
     /// The part of each branch, by its number.
     numbered: Vec<usize>,
     /// The part that is evaluated in the place of f.
@@ -364,14 +361,14 @@ impl Branches {
 
     /// Index of the part with this root.
     fn part(&mut self, root: Id) -> usize {
-        if let Some(&known) = self.by_root.get(&root) {
+        if let Some(known) = self.parts.iter().position(|part| part.root == root) {
             return known;
         }
         let part = BranchPart {
             root,
             nodes: self.base.graph.needed_by(&[root]),
             number: None,
-            taken: BTreeMap::new(),
+            taken: Vec::new(),
             compiled: None,
         };
         let index = self.parts.len();
@@ -383,7 +380,6 @@ impl Branches {
         self.walk.begin(&part, &self.base.graph);
         self.walk.run(&part.nodes, &self.base, look, |_, _| {}, &mut Vec::new());
         self.parts.push(part);
-        self.by_root.insert(root, index);
         if !has_choice {
             self.parts[index].number = Some(self.numbered.len() as u32);
             self.numbered.push(index);
@@ -393,12 +389,14 @@ impl Branches {
 
     /// Index of the part that part `of` becomes where its conditions hold or do not.
     fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> usize {
-        if let Some(&known) = self.parts[of].taken.get(holds) {
-            return known;
-        }
+        let known = &self.parts[of].taken;
+        let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
+            Ok(place) => return known[place].1,
+            Err(place) => place,
+        };
         let root = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
         let part = self.part(root);
-        self.parts[of].taken.insert(holds.to_vec(), part);
+        self.parts[of].taken.insert(place, (holds.to_vec(), part));
         part
     }
 

@@ -15,7 +15,6 @@ use super::{interval, scalar};
 use crate::math::Bounds;
 use crate::slices::pause;
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 /// Number of halvings of the box after which a place is looked for: 32 cells on every axis.
 const DEPTH: u32 = 15;
@@ -88,19 +87,19 @@ impl Branches {
         let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return Vec::new() };
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
-        let ties = Ties::new(&mut self.base, part, &choices, values);
+        let ties = ties_of(&mut self.base, part, &choices, values);
         let search = TieSearch { base: &self.base, products: &self.products, part, ties, values, bounds };
         let mut kinds = search.kinds(&choices).await;
         // The choices of products stand and fall together.
-        if self.products.iter().any(|id| kinds.get(id) == Some(&TieKind::Crease)) {
-            kinds.extend(self.products.iter().map(|&id| (id, TieKind::Crease)));
+        if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
+            self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
         } else if !self.products.is_empty() {
             return Vec::new();
         }
         let creasing: Vec<Id> =
-            kinds.iter().filter(|(_, kind)| **kind == TieKind::Crease).map(|(&id, _)| id).collect();
+            (0..).zip(&kinds).filter(|(_, kind)| **kind == Some(TieKind::Crease)).map(|(id, _)| id).collect();
         let cells = search.cells(&creasing, width).await;
-        let smooth = |id: &Id| creasing.is_empty() || kinds.get(id) == Some(&TieKind::Seam);
+        let smooth = |id: &Id| creasing.is_empty() || kinds[*id as usize] == Some(TieKind::Seam);
         let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
         self.begin_again(values, &smooth);
         if !creasing.is_empty() {
@@ -110,41 +109,36 @@ impl Branches {
     }
 }
 
-/// f where choices are tied: functions that are f where a choice is taken and its operands are equal. Their bounds are closer than those of
+/// f where a choice is tied: functions that are f where the choice is taken and its operands are equal. Their bounds are closer than those of
 /// f, and all must hold zero where the choice is tied on the surface.
 ///
 /// |f| − t/2 |∇f| is the greater of f − t/2 |∇f| and −f − t/2 |∇f|. Where both are equal it is −t/2 |∇f|, which has no zero.
-struct Ties {
-    of_choice: BTreeMap<Id, Tie>,
-}
-
-/// The tie functions of one choice, see [`Ties`].
 struct Tie {
+    choice: Id,
     /// f with the first operand in the place of the choice, with the second one, and with what is half of their sum.
     roots: Vec<Id>,
     /// The nodes that these need and f does not, in the order of the graph.
     nodes: Vec<Id>,
 }
 
-impl Ties {
-    fn new(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -> Self {
-        let mut of_choice: BTreeMap<Id, Tie> = BTreeMap::new();
-        for &id in choices {
-            let tied = match base.graph.node(id) {
-                Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
-                Node::Binary(_, a, b) | Node::Smin(a, b, _) => vec![a, b, middle(&mut base.graph, a, b)],
-                _ => Vec::new(),
-            };
-            let roots = tied.into_iter().map(|tied| base.root_with(part, id, tied)).collect();
-            of_choice.insert(id, Tie { roots, nodes: Vec::new() });
-        }
-        base.extend(values);
-        for tie in of_choice.values_mut() {
-            tie.nodes = base.graph.needed_by(&tie.roots);
-            tie.nodes.retain(|id| part.nodes.binary_search(id).is_err());
-        }
-        Self { of_choice }
+/// The ties of these choices, in their order.
+fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -> Vec<Tie> {
+    let mut ties = Vec::with_capacity(choices.len());
+    for &choice in choices {
+        let tied = match base.graph.node(choice) {
+            Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
+            Node::Binary(_, a, b) | Node::Smin(a, b, _) => vec![a, b, middle(&mut base.graph, a, b)],
+            _ => Vec::new(),
+        };
+        let roots = tied.into_iter().map(|tied| base.root_with(part, choice, tied)).collect();
+        ties.push(Tie { choice, roots, nodes: Vec::new() });
     }
+    base.extend(values);
+    for tie in &mut ties {
+        tie.nodes = base.graph.needed_by(&tie.roots);
+        tie.nodes.retain(|id| part.nodes.binary_search(id).is_err());
+    }
+    ties
 }
 
 impl Base {
@@ -176,18 +170,18 @@ impl Base {
 
 /// The node of half of a sum, in which what both share or what cancels stands once.
 fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
-    let mut terms: BTreeMap<Id, f64> = BTreeMap::new();
+    let mut shares = vec![0.0; graph.len()];
     let mut open = vec![(a, 0.5), (b, 0.5)];
     while let Some((id, share)) = open.pop() {
         match graph.node(id) {
             Node::Binary(Binary::Add, u, v) => open.extend([(u, share), (v, share)]),
             Node::Binary(Binary::Sub, u, v) => open.extend([(u, share), (v, -share)]),
             Node::Unary(Unary::Neg, u) => open.push((u, -share)),
-            _ => *terms.entry(id).or_default() += share,
+            _ => shares[id as usize] += share,
         }
     }
     let mut sum = graph.constant(0.0);
-    for (id, share) in terms.into_iter().filter(|&(_, share)| share != 0.0) {
+    for (id, share) in (0..).zip(shares).filter(|&(_, share)| share != 0.0) {
         let share = graph.constant(share);
         let term = graph.mul(id, share);
         sum = graph.add(sum, term);
@@ -208,24 +202,24 @@ struct TieSearch<'a> {
     /// The choices that stand for products.
     products: &'a [Id],
     part: &'a BranchPart,
-    ties: Ties,
+    ties: Vec<Tie>,
     values: &'a [f64],
     bounds: &'a Bounds,
 }
 
 impl TieSearch<'_> {
-    /// The kind of each of the `choices` that is tied somewhere on the surface: it makes a seam or a crease there.
-    async fn kinds(&self, choices: &[Id]) -> BTreeMap<Id, TieKind> {
-        let mut kinds = BTreeMap::new();
+    /// For each node its kind, if it is one of the `choices` and tied somewhere on the surface: it makes a seam or a crease there.
+    async fn kinds(&self, choices: &[Id]) -> Vec<Option<TieKind>> {
+        let mut kinds = vec![None; self.part.root as usize + 1];
         let mut open = vec![TieCell { bounds: *self.bounds, depth: 0, choices: choices.to_vec() }];
         let (mut scratch, mut jets, mut left) = (TieScratch::default(), Vec::new(), MAX_CELLS);
         while let Some(mut cell) = open.pop() {
-            cell.choices.retain(|id| kinds.get(id) != Some(&TieKind::Crease));
+            cell.choices.retain(|&id| kinds[id as usize] != Some(TieKind::Crease));
             if cell.choices.is_empty() {
                 continue;
             }
             if left == 0 {
-                kinds.extend(cell.choices.into_iter().map(|id| (id, self.kind_in_doubt(id))));
+                cell.choices.iter().for_each(|&id| kinds[id as usize] = Some(self.kind_in_doubt(id)));
                 continue;
             }
             left -= 1;
@@ -243,8 +237,8 @@ impl TieSearch<'_> {
                 if kind.is_none() && cell.depth < DEEPEST {
                     return true;
                 }
-                let known = kinds.entry(*id).or_insert(TieKind::Seam);
-                *known = (*known).max(kind.unwrap_or_else(|| self.kind_in_doubt(*id)));
+                let known = &mut kinds[*id as usize];
+                *known = (*known).max(kind.or_else(|| Some(self.kind_in_doubt(*id))));
                 false
             });
             if !cell.choices.is_empty() {
@@ -298,7 +292,7 @@ impl TieSearch<'_> {
 
     /// Whether f may be zero in the cell where a choice is tied, which the cell is [open to](Self::open_to).
     fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Range>) -> bool {
-        let Tie { roots, nodes } = &self.ties.of_choice[&id];
+        let Tie { roots, nodes, .. } = &self.ties[self.ties.partition_point(|tie| tie.choice < id)];
         interval::bounds(&self.base.graph, nodes, self.values, cell, ranges);
         !roots.iter().any(|&root| ranges[root as usize].is_nonzero())
     }

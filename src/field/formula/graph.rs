@@ -5,7 +5,6 @@
 
 use super::operations::{Binary, Unary};
 use glam::DVec3;
-use std::collections::BTreeMap;
 
 /// Index of a node. Operands have smaller indices than their uses.
 pub(super) type Id = u32;
@@ -109,7 +108,8 @@ pub(super) struct Graph {
     nodes: Vec<Node>,
     /// Coordinates that each node depends on: bit k stands for coordinate k.
     axes: Vec<u8>,
-    index: BTreeMap<Node, Id>,
+    /// The nodes in the order of `Node`, among which each is found.
+    sorted: Vec<Id>,
     /// Whether a product with the constant 0 folds to 0. It does in derivatives, where 0 means independence of the
     /// coordinate. It does not in the formula itself: `0*ln(x)` is undefined for negative x.
     zero_annihilates: bool,
@@ -177,20 +177,26 @@ impl Graph {
 
     /// Index of the node, if it exists.
     pub(super) fn find(&self, node: Node) -> Option<Id> {
-        self.index.get(&node).copied()
+        self.place(node).ok().map(|at| self.sorted[at])
+    }
+
+    /// Place of the node among the sorted ones, or that where it belongs.
+    fn place(&self, node: Node) -> Result<usize, usize> {
+        self.sorted.binary_search_by(|&id| self.node(id).cmp(&node))
     }
 
     /// Index of the node, which is added without simplification if it does not exist.
     pub(super) fn intern(&mut self, node: Node) -> Id {
-        if let Some(&id) = self.index.get(&node) {
-            return id;
-        }
+        let at = match self.place(node) {
+            Ok(at) => return self.sorted[at],
+            Err(at) => at,
+        };
         let mut axes = if let Node::Coordinate(axis) = node { 1 << axis } else { 0 };
         node.operands(|operand| axes |= self.axes[operand as usize]);
         let id = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
         self.nodes.push(node);
         self.axes.push(axes);
-        self.index.insert(node, id);
+        self.sorted.insert(at, id);
         id
     }
 

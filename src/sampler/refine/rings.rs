@@ -3,7 +3,6 @@
 use super::net::Net;
 use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
-use std::collections::BTreeMap;
 
 /// Particles handed on in one slice of work.
 const SLICE: usize = 256;
@@ -40,11 +39,16 @@ impl Rings {
             is_walked: false,
             ready,
         };
-        let mut met = BTreeMap::new();
+        let last = net.on_crease.iter().filter(|&&number| number != NONE).max();
+        let mut met = vec![NONE; last.map_or(0, |&last| last as usize + 1)];
         for (v, &number) in (0..).zip(&net.on_crease).filter(|(_, number)| **number != NONE) {
             // Where a patch touches itself, a particle has a vertex for each of its fans. The nappes at a tip keep rows of their own.
             let new = rings.order.len() as u32;
-            let place = if net.is_tip(v) { new } else { *met.entry(number).or_insert(new) };
+            let first = &mut met[number as usize];
+            if !net.is_tip(v) {
+                *first = new.min(*first);
+            }
+            let place = if net.is_tip(v) { new } else { *first };
             if place as usize == rings.order.len() {
                 rings.meet(v, Particles::NO_PARENT, 0);
                 rings.ready.twins.push(number);
