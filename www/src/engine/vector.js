@@ -20,6 +20,18 @@ export const along = (p, q, t) => [p[0] + t * q[0], p[1] + t * q[1], p[2] + t * 
 export const size = (v) => Math.hypot(v[0], v[1], v[2]);
 /** @param {ArrayLike<number>} p @param {ArrayLike<number>} q */
 export const distance = (p, q) => size(along(p, q, -1));
+/**
+ * Returns the vector of a column that is nearest to a place, and its distance; null if there is none.
+ * @param {ArrayLike<number>} column @param {number} count @param {ArrayLike<number>} place
+ */
+export function nearest(column, count, place) {
+  let best = { index: -1, distance: Infinity };
+  for (let i = 0; i < count; i += 1) {
+    const away = Math.hypot(column[3 * i] - place[0], column[3 * i + 1] - place[1], column[3 * i + 2] - place[2]);
+    if (away < best.distance) best = { index: i, distance: away };
+  }
+  return best.index < 0 ? null : best;
+}
 /** Returns the vector with length 1; 0 stays 0. @param {ArrayLike<number>} v @returns {Vec3} */
 export function unit(v) {
   const length = size(v) || 1;

@@ -1,15 +1,12 @@
 /** A relaxation step of one particle (paper §4.5): the pushes and their sum, the move, and the landing. */
-import { size } from '../engine/vector.js';
+import { size, triple } from '../engine/vector.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 import { inRadii } from './words.js';
 
 /**
- * @import { LessonChapter, LessonClient, Vec3 } from '../engine/types.js'
+ * @import { LessonChapter, LessonClient } from '../engine/types.js'
  * @import { Rest } from './types.js'
  */
-
-/** @param {Float32Array} column @param {number} i @returns {Vec3} */
-const triple = (column, i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]];
 
 /**
  * Fetches a relaxation step of a particle; null if the run has no such step.

@@ -129,9 +129,9 @@ export interface FollowPanel {
 
 export interface TableContent {
   /** an empty first word leaves the place over the names of the rows empty */
-  head: readonly string[];
+  head: readonly Child[];
   /** the first cell of a row is its name */
-  rows: readonly (readonly [string, ...string[]])[] | readonly string[][];
+  rows: readonly (readonly Child[])[];
   caption?: string;
   class?: string;
 }

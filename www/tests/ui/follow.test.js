@@ -1,9 +1,10 @@
 import { beforeAll, describe, expect, test } from 'vitest';
+import { nearest } from '../../src/engine/vector.js';
 import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from '../../src/figures/geometry.js';
 import { isAdaptive, momentAt } from '../../src/figures/moment.js';
 import { numbersOfRest, pushersOf, restOf, tellRest } from '../../src/figures/rest.js';
 import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
-import { nearest, placedBefore, standIn } from '../../src/ui/follow/find.js';
+import { placedBefore, standIn } from '../../src/ui/follow/find.js';
 import { circleAround } from '../../src/ui/follow/mark.js';
 import { alikeIn } from '../../src/ui/follow/run.js';
 import { heightsOf, stretchesOf } from '../../src/ui/follow/tracks.js';
@@ -188,17 +189,17 @@ describe('the particle that stands for another', () => {
   const positions = Float32Array.of(0, 0, 0, 1, 0, 0, 2, 0, 0);
 
   test('is the one with its number, if it is at the place', () => {
-    expect(standIn(positions, { index: 1, place: [1.1, 0, 0] }, 0.5)?.particle).toBe(1);
+    expect(standIn(positions, { index: 1, place: [1.1, 0, 0] }, 0.5)?.index).toBe(1);
   });
 
   test('is the nearest otherwise', () => {
-    expect(standIn(positions, { index: 0, place: [1.9, 0, 0] }, 0.5)?.particle).toBe(2);
-    expect(standIn(positions, { index: 99, place: [0.1, 0, 0] }, 0.5)).toMatchObject({ particle: 0 });
+    expect(standIn(positions, { index: 0, place: [1.9, 0, 0] }, 0.5)?.index).toBe(2);
+    expect(standIn(positions, { index: 99, place: [0.1, 0, 0] }, 0.5)).toMatchObject({ index: 0 });
     expect(standIn(new Float32Array(0), { index: 0, place: [0, 0, 0] }, 0.5)).toBe(null);
   });
 
   test('lies at the distance that is told', () => {
-    expect(nearest(positions, 3, [2, 3, 4])).toEqual({ particle: 2, distance: 5 });
+    expect(nearest(positions, 3, [2, 3, 4])).toEqual({ index: 2, distance: 5 });
     expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
   });
 });

@@ -3,22 +3,7 @@
  * place.
  */
 import { NO_PARENT } from '../../engine/core-numbers.js';
-
-/**
- * Returns the particle nearest to a place, and its distance; null if there is none.
- * @param {ArrayLike<number>} positions  three per particle
- * @param {number} count
- * @param {ArrayLike<number>} place
- */
-export function nearest(positions, count, place) {
-  let particle = -1;
-  let leastSq = Infinity;
-  for (let i = 0; i < count; i += 1) {
-    const sq = distanceSq(positions, i, place);
-    if (sq < leastSq) [particle, leastSq] = [i, sq];
-  }
-  return particle < 0 ? null : { particle, distance: Math.sqrt(leastSq) };
-}
+import { distance, nearest, triple } from '../../engine/vector.js';
 
 /**
  * Returns the particle of a run that stands for a particle of the picture: the one with its number if it lies within r
@@ -30,17 +15,10 @@ export function nearest(positions, count, place) {
 export function standIn(positions, { index, place }, radius) {
   const count = positions.length / 3;
   if (index < count) {
-    const distance = Math.sqrt(distanceSq(positions, index, place));
-    if (distance < radius) return { particle: index, distance };
+    const away = distance(triple(positions, index), place);
+    if (away < radius) return { index, distance: away };
   }
   return nearest(positions, count, place);
-}
-
-/** @param {ArrayLike<number>} positions @param {number} i @param {ArrayLike<number>} place */
-export function distanceSq(positions, i, place) {
-  let sum = 0;
-  for (let k = 0; k < 3; k += 1) sum += (positions[3 * i + k] - place[k]) ** 2;
-  return sum;
 }
 
 /**

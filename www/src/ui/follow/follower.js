@@ -4,12 +4,12 @@
  */
 
 import { batch, computed, signal } from '@preact/signals-core';
-import { clamp, triple } from '../../engine/vector.js';
+import { clamp, nearest, triple } from '../../engine/vector.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { surfaceWords } from '../surface-link.js';
-import { nearest, standIn } from './find.js';
+import { standIn } from './find.js';
 import { Relaxation } from './rest.js';
 import { alikeIn, isOfSolid, settingsOf, surfaceKey } from './run.js';
 
@@ -111,7 +111,7 @@ export class Follower {
     const run = await this.#runFor(coarser);
     if (!run) return;
     const found = standIn(run.end.positions, this.#wanted, run.adaptive ? 0 : run.radius);
-    if (found) await this.open(found.particle, { picture: { index, distance: found.distance } });
+    if (found) await this.open(found.index, { picture: { index, distance: found.distance } });
     else this.status.value = { kind: 'failed', text: 'The algorithm found no surface here.' };
   }
 
@@ -144,7 +144,7 @@ export class Follower {
   async anew() {
     const { columns } = this.engine;
     const found = this.#wanted && nearest(columns.placed, columns.count, this.#wanted.place);
-    if (found) await this.follow(found.particle);
+    if (found) await this.follow(found.index);
   }
 
   /**

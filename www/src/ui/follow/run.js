@@ -4,9 +4,8 @@
  */
 
 import { NO_PARENT } from '../../engine/core-numbers.js';
-import { triple } from '../../engine/vector.js';
+import { distance, triple } from '../../engine/vector.js';
 import { RESIDUAL } from '../../figures/particle.js';
-import { distanceSq } from './find.js';
 
 /**
  * @import { Engine, LessonParticles, LessonSettings, Vec3 } from '../../engine/types.js'
@@ -89,7 +88,6 @@ function seedsOf({ columns }) {
 export function alikeIn({ placed, count }, { positions }, radius) {
   const most = Math.min(count, positions.length / 3);
   let i = 0;
-  while (i < most && distanceSq(positions, i, [placed[3 * i], placed[3 * i + 1], placed[3 * i + 2]]) < radius ** 2)
-    i += 1;
+  while (i < most && distance(triple(positions, i), triple(placed, i)) < radius) i += 1;
   return i;
 }

@@ -3,6 +3,7 @@ import { computed } from '@preact/signals-core';
 import { draw, footOf } from '../chart.js';
 import { h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
+import { tableOf } from '../table.js';
 import { coarsen, trim } from './bins.js';
 
 /**
@@ -52,27 +53,11 @@ const chartOf = ({ min, max, bins: counts }) => ({
 
 /** @param {Bins} bins */
 const tableOfBins = (bins) =>
-  h(
-    'table',
-    null,
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        ['From', 'To', 'Particles'].map((text) => h('th', { scope: 'col' }, text)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      coarsen(bins, TABLE_ROWS).map(({ from, to, count }) =>
-        h(
-          'tr',
-          null,
-          [formatFixed(from, 2), formatFixed(to, 2), formatCount(count)].map((text) => h('td', null, text)),
-        ),
-      ),
-    ),
-  );
+  tableOf({
+    head: ['From', 'To', 'Particles'],
+    rows: coarsen(bins, TABLE_ROWS).map(({ from, to, count }) => [
+      formatFixed(from, 2),
+      formatFixed(to, 2),
+      formatCount(count),
+    ]),
+  });

@@ -1,6 +1,6 @@
 /** Finds the places in the picture that a figure of the report is about: crowded pairs and wide holes. */
 
-import { distance, triple } from '../../engine/vector.js';
+import { nearest, triple } from '../../engine/vector.js';
 import { formatFixed } from '../format.js';
 import { valueAt } from './rows.js';
 
@@ -43,21 +43,7 @@ export function placeOf(list, index, columns) {
   return {
     places: [place.position],
     radius: place.radius,
-    normal: triple(normals, nearestTo(place.position, columns)),
+    normal: triple(normals, nearest(positions, columns.count, place.position)?.index ?? 0),
     text: formatFixed(place.ratio, 2) + count,
   };
-}
-
-/**
- * Returns the index of the particle that is nearest to a place.
- * @param {readonly number[]} place
- * @param {Columns} columns
- */
-function nearestTo(place, { positions, count }) {
-  let [best, least] = [0, Infinity];
-  for (let i = 0; i < count; i += 1) {
-    const away = distance(place, positions.subarray(3 * i, 3 * i + 3));
-    if (away < least) [best, least] = [i, away];
-  }
-  return best;
 }

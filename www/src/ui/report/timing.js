@@ -2,6 +2,7 @@
 import { computed } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
+import { tableOf } from '../table.js';
 
 /** @import { Engine, ReadonlySignal, Timing } from '../../engine/types.js' */
 
@@ -35,35 +36,17 @@ function tableOfTimes({ steps, sampling, seconds }) {
     steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
   );
   const longest = Math.max(...phases.map(([key]) => seconds[key]), 1e-9);
-  return h(
-    'table',
-    null,
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        h('th', { scope: 'col' }, steps > 0 ? capital(lastSteps(steps)) : 'Sampling'),
-        h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Share')),
-        h('th', { scope: 'col' }, formatSeconds(sampling)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      phases.map(([key, label]) => {
-        const width = `${(seconds[key] / longest) * 100}%`;
-        return h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, label),
-          h('td', { class: 'bar-cell' }, h('span', { class: 'bar', 'aria-hidden': 'true', style: { width } })),
-          h('td', null, formatSeconds(seconds[key])),
-        );
-      }),
-    ),
-  );
+  return tableOf({
+    head: [
+      steps > 0 ? capital(lastSteps(steps)) : 'Sampling',
+      h('span', { class: 'visually-hidden' }, 'Share'),
+      formatSeconds(sampling),
+    ],
+    rows: phases.map(([key, label]) => {
+      const width = `${(seconds[key] / longest) * 100}%`;
+      return [label, h('span', { class: 'bar', 'aria-hidden': 'true', style: { width } }), formatSeconds(seconds[key])];
+    }),
+  });
 }
 
 /** @param {Timing} timing */

@@ -5,14 +5,14 @@
 import { batch } from '@preact/signals-core';
 import { MOST_PULLS } from '../../../engine/constants.js';
 import { canGrab, endOf, pullBetween } from '../../../engine/pulls.js';
-import { along, distance, dot, triple } from '../../../engine/vector.js';
+import { along, distance, dot, nearest, triple } from '../../../engine/vector.js';
 import { button } from '../../button.js';
 import { h, live } from '../../dom.js';
 import { towardEye } from '../../space.js';
 import { createHandle } from './handle.js';
 
 /**
- * @import { Columns, Engine, Grip, Pull, Ray, Vec3 } from '../../../engine/types.js'
+ * @import { Engine, Grip, Pull, Ray, Vec3 } from '../../../engine/types.js'
  * @import { Pins } from '../../types.js'
  * @import { Mark } from '../types.js'
  */
@@ -185,7 +185,7 @@ class Hand {
   push(k, radii) {
     this.grab(k);
     const { columns } = this.#engine;
-    const near = nearest(columns, this.#start.pins[k]);
+    const near = nearest(columns.positions, columns.count, this.#start.pins[k])?.index ?? 0;
     this.#pull(along(this.#start.pins[k], triple(columns.normals, near), radii * columns.radii[near]), false);
     this.#wanted = null;
   }
@@ -234,17 +234,6 @@ function fieldOf({ field: { value: field }, state }) {
   return JSON.stringify(
     field?.kind === 'points' ? [surface, centres, pulls] : field && [field.formula, field.parameters],
   );
-}
-
-/** Returns the particle nearest to a place. @param {Columns} columns @param {Vec3} place */
-function nearest({ positions, count }, place) {
-  let best = 0;
-  let least = Infinity;
-  for (let i = 0; i < count; i += 1) {
-    const away = distance(triple(positions, i), place);
-    if (away < least) [best, least] = [i, away];
-  }
-  return best;
 }
 
 /** Creates the card that says what a pull has come to. @param {Engine} engine @param {Pins} pins */
