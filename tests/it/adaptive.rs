@@ -1,13 +1,13 @@
 //! Tests of the adaptive front (paper §5): children touch their parents, particles cover the surface, and a run does not
 //! depend on how it is cut into steps.
 
+use crate::runs::{assert_fates, figures, gallery_figures, of_gallery, sampled, sampled_in_any_steps};
 use crate::smooth::smooth;
-use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::particles::{Particles, SlotFate};
-use marching_particles::quality::{self, Figures, Sizes};
+use marching_particles::particles::Particles;
+use marching_particles::quality::{self, Sizes};
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Sampler, Sampling, Settings, SizeMode, StopReason,
 };
@@ -21,38 +21,15 @@ fn settings() -> Settings {
         relax_steps: 0; ..Settings::default())
 }
 
-fn run(field: &mut dyn Field, surface: &gallery::Surface, settings: &Settings, budget: u32) -> Sampler {
-    let mut sampler = Sampler::new();
-    sampler.start(field, &surface.bounds, settings).expect("valid settings");
-    while sampler.step(field, budget).stop_reason.is_none() {}
-    sampler
-}
-
-fn sampled(surface: &str, settings: &Settings) -> Sampler {
-    let surface = gallery::find(surface).expect("a gallery surface");
-    run(&mut surface.field(), surface, settings, 5_000)
-}
-
-fn figures(surface: &str, particles: &Particles) -> Figures {
-    let surface = gallery::find(surface).expect("a gallery surface");
-    let mut field = surface.field();
-    let options = quality::MeasureOptions { sizes: Sizes::Given(&particles.radius), ..Default::default() };
-    quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
-        .figures
-}
-
 #[test]
 fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
     let bounds = Bounds::cube(1.5);
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 5e-4; ..Settings::default());
     for (ripple, most) in [("0.004*sin(50x)", 10), ("0.003*sin(80x)", 20)] {
         let mut field = Formula::as_written(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &bounds, &settings).expect("valid settings");
-        while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
-        let Particles { position, normal, radius, .. } = sampler.particles();
-        let options = quality::MeasureOptions { sizes: Sizes::Given(radius), ..Default::default() };
-        let figures = quality::measure(position, normal, &mut field, Some(&bounds), &options).figures;
+        let sampler = sampled(&mut field, &bounds, &settings, 100_000);
+        let particles = sampler.particles();
+        let figures = figures(&mut field, &bounds, particles, Sizes::Given(&particles.radius));
         assert!(figures.edges.overlap_min > 0.6, "{ripple}: {}", figures.edges.overlap_min);
         assert!(
             figures.spacing.crowded.is_some_and(|crowded| crowded <= most),
@@ -115,7 +92,7 @@ fn children_touch_their_parents() {
     for (surface, _) in smooth() {
         // The particles are so small that grading lowers no radius behind the front.
         let fine = settings!(size_mode: SizeMode::Radius, chord_error: 1e-4; ..settings());
-        let sampler = sampled(surface, &fine);
+        let sampler = of_gallery(surface, &fine);
         assert!(untouched(sampler.particles()) <= 2e-3, "{surface}: {}", untouched(sampler.particles()));
     }
 }
@@ -123,9 +100,9 @@ fn children_touch_their_parents() {
 #[test]
 fn particles_cover_and_crowd_nothing() {
     for (surface, euler) in smooth() {
-        let sampler = sampled(surface, &settings());
+        let sampler = of_gallery(surface, &settings());
         let particles = sampler.particles();
-        let figures = figures(surface, particles);
+        let figures = gallery_figures(surface, particles, Sizes::Given(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert_eq!((figures.order.open, figures.connectivity.components), (0, 1), "{context}");
         assert!((figures.connectivity.euler - euler).abs() <= 1, "{context}");
@@ -140,9 +117,9 @@ fn particles_cover_and_crowd_nothing() {
 #[test]
 fn ten_steps_even_the_sizes_out() {
     for (surface, _) in smooth() {
-        let sampler = sampled(surface, &settings!(relax_steps: 10; ..settings()));
+        let sampler = of_gallery(surface, &settings!(relax_steps: 10; ..settings()));
         let particles = sampler.particles();
-        let figures = figures(surface, particles);
+        let figures = gallery_figures(surface, particles, Sizes::Given(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert!(figures.edges.size_cv <= 0.12, "{context}");
         assert!(largest_hole(surface, particles) <= 1.6, "{context}: {}", largest_hole(surface, particles));
@@ -159,14 +136,9 @@ fn the_bunny_is_even_after_ten_steps() {
     let fit = models::fit(bunny);
     let mut field = RbfField::new(fit.data).expect("the data is whole");
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &fit.bounds, &settings).expect("valid settings");
-    while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
+    let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);
     let particles = sampler.particles();
-    let options = quality::MeasureOptions { sizes: Sizes::Given(&particles.radius), ..Default::default() };
-    let report =
-        quality::measure(&particles.position, &particles.normal, &mut field, Some(&fit.bounds), &options);
-    let figures = report.figures;
+    let figures = figures(&mut field, &fit.bounds, particles, Sizes::Given(&particles.radius));
     let context = format!("{} particles: {figures:?}", particles.len());
     assert!(figures.edges.size_cv <= 0.12, "{context}");
     assert!(figures.coverage.cover_local <= 1.6, "{context}");
@@ -178,7 +150,7 @@ fn a_particle_takes_no_more_than_two_evaluations() {
     for (surface, _) in smooth() {
         // A given radius takes one front; a given count would take the search for the radius too.
         let settings = settings!(chord_error: 1e-4, size_mode: SizeMode::Radius; ..settings());
-        let sampler = sampled(surface, &settings);
+        let sampler = of_gallery(surface, &settings);
         let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
         assert!(each <= 2.0, "{surface}: {each}");
     }
@@ -189,12 +161,7 @@ fn how_a_run_is_cut_into_steps_does_not_change_it() {
     for surface in ["ellipsoid", "gyroid", "torus"] {
         let surface = gallery::find(surface).expect("a gallery surface");
         let settings = settings!(count: 2_000, relax_steps: 3; ..settings());
-        let mut field = surface.field();
-        let whole = run(&mut field, surface, &settings, u32::MAX);
-        for budget in [1, 7, 1_000] {
-            let cut = run(&mut field, surface, &settings, budget);
-            assert_eq!(cut.particles().digest(), whole.particles().digest(), "{} by {budget}", surface.id);
-        }
+        sampled_in_any_steps(&mut surface.field(), &surface.bounds, &settings);
     }
 }
 
@@ -204,11 +171,12 @@ fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
         let equal = settings!(size_mode: SizeMode::Radius,
             radius_min_share: 0.006,
             radius_max_share: 0.006; ..settings());
-        let sampler = sampled(surface, &equal);
+        let sampler = of_gallery(surface, &equal);
         let radii = &sampler.particles().radius;
         assert!(radii.iter().all(|r| (r / radii[0] - 1.0).abs() < 1e-5), "{surface}");
-        let uniform = sampled(surface, &settings!(sampling: Sampling::Uniform; ..equal));
-        let [adaptive, uniform] = [&sampler, &uniform].map(|s| figures(surface, s.particles()));
+        let uniform = of_gallery(surface, &settings!(sampling: Sampling::Uniform; ..equal));
+        let [adaptive, uniform] = [&sampler, &uniform]
+            .map(|s| gallery_figures(surface, s.particles(), Sizes::Given(&s.particles().radius)));
         let context = format!("{surface}: {adaptive:?} {uniform:?}");
         assert!(adaptive.order.six >= 0.85 && adaptive.edges.size_cv <= 0.11, "{context}");
         assert!(adaptive.edges.size_cv <= uniform.edges.size_cv, "{context}");
@@ -222,7 +190,7 @@ fn a_wanted_count_is_met() {
         ("torus", LawKind::MaxCurvature, 12_000),
         ("tanglecube", LawKind::SumOfCurvatures, 9_000),
     ] {
-        let sampler = sampled(surface, &settings!(count, radius_law; ..settings()));
+        let sampler = of_gallery(surface, &settings!(count, radius_law; ..settings()));
         let miss = sampler.particles().len() as f64 / f64::from(count) - 1.0;
         assert!(miss.abs() <= 0.03, "{surface}, {radius_law:?}: {} of {count}", sampler.particles().len());
     }
@@ -231,7 +199,7 @@ fn a_wanted_count_is_met() {
 #[test]
 fn radii_follow_the_curvature_and_neighbours_differ_little() {
     let settings = settings();
-    let sampler = sampled("ellipsoid", &settings);
+    let sampler = of_gallery("ellipsoid", &settings);
     let particles = sampler.particles();
     let (least, most) =
         particles.radius.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &r| (a.min(r), b.max(r)));
@@ -246,7 +214,8 @@ fn radii_follow_the_curvature_and_neighbours_differ_little() {
 
 #[test]
 fn the_limit_and_the_stop_button_leave_whole_particles() {
-    let capped = sampled("torus", &settings!(size_mode: SizeMode::Radius, max_particles: 700; ..settings()));
+    let capped =
+        of_gallery("torus", &settings!(size_mode: SizeMode::Radius, max_particles: 700; ..settings()));
     assert_eq!(capped.particles().len(), 700);
     assert!(capped.counts().fates.capped > 0);
 
@@ -272,7 +241,7 @@ fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
     for surface in gallery::SURFACES {
         let mut field = surface.field();
         let settings = settings!(count: 1_500, relax_steps: 2; ..settings());
-        let sampler = run(&mut field, surface, &settings, 10_000);
+        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
         let particles = sampler.particles();
         let context = format!("{}, {} particles", surface.id, particles.len());
         assert!(particles.len() > 500, "{context}");
@@ -286,7 +255,7 @@ fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
 
 #[test]
 fn a_surface_cut_by_its_box_ends_there() {
-    let sampler = sampled("gyroid", &settings());
+    let sampler = of_gallery("gyroid", &settings());
     assert!(sampler.counts().fates.outside > 50, "{:?}", sampler.counts().fates);
 }
 
@@ -294,28 +263,16 @@ fn a_surface_cut_by_its_box_ends_there() {
 fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
         let sampler =
-            sampled(surface, &settings!(size_mode: SizeMode::Radius, chord_error: 3e-4; ..settings()));
-        let (particles, fates) = (sampler.particles(), sampler.counts().fates);
-        let count = |fate| {
-            let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
-            slots.filter(|&f| f == fate).count() as u64
-        };
-        let context = surface;
-        assert_eq!(count(SlotFate::Added), fates.added, "{context}");
-        assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
-        assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");
-        assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{context}");
-        let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
-        assert_eq!(fates.added + seeds, particles.len() as u64, "{context}");
-        assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{context}");
+            of_gallery(surface, &settings!(size_mode: SizeMode::Radius, chord_error: 3e-4; ..settings()));
+        assert_fates(&sampler, surface);
     }
 }
 
 #[test]
 fn particles_that_fill_gaps_are_counted() {
     let settings = settings!(size_mode: SizeMode::Radius, chord_error: 3e-4; ..settings());
-    let left = sampled("kummer", &settings!(gaps: GapPolicy::Leave; ..settings));
-    let filled = sampled("kummer", &settings);
+    let left = of_gallery("kummer", &settings!(gaps: GapPolicy::Leave; ..settings));
+    let filled = of_gallery("kummer", &settings);
     let count = filled.counts().gaps_filled as usize;
     assert!(count > 0 && left.counts().gaps_filled == 0, "{count}");
     assert_eq!(filled.particles().len(), left.particles().len() + count);
@@ -323,7 +280,7 @@ fn particles_that_fill_gaps_are_counted() {
 
 #[test]
 fn levels_increase_along_the_columns() {
-    let sampler = sampled("ellipsoid", &settings!(gaps: GapPolicy::Leave; ..settings()));
+    let sampler = of_gallery("ellipsoid", &settings!(gaps: GapPolicy::Leave; ..settings()));
     let particles = sampler.particles();
     assert!(particles.level.is_sorted());
     assert!(particles.parent[1..].is_sorted());
@@ -346,7 +303,7 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
             radius_max_share: largest,
             grading: 0.5,
             gaps: GapPolicy::Leave; ..settings());
-        let sampler = sampled(id, &settings);
+        let sampler = of_gallery(id, &settings);
         let fast = sampler.particles();
         let same = lesson::LessonSettings {
             sampling: Sampling::Adaptive,

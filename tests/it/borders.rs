@@ -1,27 +1,19 @@
 //! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is lost without a word.
 
+use crate::runs::{figures, sampled, sampled_in_any_steps};
 use glam::Vec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
-use marching_particles::quality;
+use marching_particles::quality::Sizes;
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
 use marching_particles::topology::Topology;
 use proptest::prelude::*;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {
     settings!(method, size_mode: SizeMode::Count, count, seed; ..Settings::default())
-}
-
-fn sampled(field: &mut Formula, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
-    let mut sampler = Sampler::new();
-    sampler.start(field, bounds, settings).expect("valid settings");
-    // A run that hangs would never end.
-    let steps = (0..1_000_000).find(|_| sampler.step(field, budget).stop_reason.is_some());
-    assert!(steps.is_some(), "the run does not end");
-    sampler
 }
 
 fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
@@ -66,11 +58,7 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
         let (counts, particles) = (sampler.counts(), sampler.particles());
         assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
         assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
-        let options = quality::MeasureOptions::default();
-        let bounds = &surface.bounds;
-        let report =
-            quality::measure(&particles.position, &particles.normal, &mut field, Some(bounds), &options);
-        let f = report.figures;
+        let f = figures(&mut field, &surface.bounds, particles, Sizes::None);
         assert!(f.order.six >= 0.96, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(
@@ -221,15 +209,8 @@ fn a_field_that_ends_at_the_box_is_refined_to_its_end() {
 fn any_cut_into_steps_gives_the_same_particles_at_a_border() {
     let mut field = Formula::as_written("z = 0.1 sin(3 x)", &[]).expect("a formula");
     let bounds = Bounds::cube(1.0);
-    let mut digest = |budget: u32| {
-        let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 2_000, 1), budget);
-        assert_eq!(sampler.counts().refusal, None);
-        sampler.particles().digest()
-    };
-    let expected = digest(u32::MAX);
-    for budget in [1, 777] {
-        assert_eq!(digest(budget), expected, "in steps of {budget}");
-    }
+    let sampler = sampled_in_any_steps(&mut field, &bounds, &settings(Method::Refined, 2_000, 1));
+    assert_eq!(sampler.counts().refusal, None);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Tests of the box that a session fits around the surface of a formula.
 
+use crate::runs::run;
 use marching_particles::extent::Reach;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
@@ -25,12 +26,6 @@ fn fit(session: &mut Session, settings: &Settings, only_grows: bool) -> FieldAns
             return answer;
         }
     }
-}
-
-fn run(session: &mut Session, settings: &Settings) -> Report {
-    session.start(settings).expect("the settings are in their ranges");
-    while session.run.step(100_000).stop_reason.is_none() {}
-    session.report()
 }
 
 fn coarse() -> Settings {

@@ -1,6 +1,7 @@
 //! Tests that every component of the surface gets particles, however small or near another one, and that the report
 //! says whether this is proven.
 
+use crate::runs::{finished, run, session};
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::formula::Formula;
@@ -11,20 +12,9 @@ use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Search, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Session};
 
-fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Report) {
-    let mut session = Session::new();
-    let request =
-        FieldRequest { formula: Some(formula.into()), bounds: Some(bounds), ..FieldRequest::default() };
-    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.run.step(5_000).stop_reason.is_none() {}
-    let report = session.report();
-    (session, report)
-}
-
 /// Samples in the cube of half-width `half`, with `share` of its diagonal as radius.
 fn sampled(formula: &str, half: f64, share: f64) -> (Session, Report) {
-    session(formula, Bounds::cube(half), &settings!(radius_share: share; ..Settings::default()))
+    finished(formula, Bounds::cube(half), &settings!(radius_share: share; ..Settings::default()))
 }
 
 fn is_proven(report: &Report, context: &str) {
@@ -143,7 +133,7 @@ fn a_sphere_of_two_radii_in_a_large_box_is_found() {
     let radius = 0.004;
     for centre in [[0.03, 0.03, 0.03], [-0.41, 0.72, 0.345], [0.97, -0.97, 0.03]] {
         let settings = settings!(radius_share: 0.5 * radius / 12.0_f64.sqrt(); ..Settings::default());
-        let (session, report) = session(&balls(&[(centre, radius)]), Bounds::cube(1.0), &settings);
+        let (session, report) = finished(&balls(&[(centre, radius)]), Bounds::cube(1.0), &settings);
         is_proven(&report, "tiny");
         assert_eq!(
             (report.stop_reason, report.proof.components),
@@ -199,7 +189,7 @@ fn each_of_many_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() 
 fn a_count_is_met_on_a_component_that_the_survey_misses() {
     let settings = settings!(size_mode: marching_particles::sampler::SizeMode::Count,
         count: 1_000; ..Settings::default());
-    let (_, report) = session(&balls(&[([0.03; 3], 0.01)]), Bounds::cube(1.0), &settings);
+    let (_, report) = finished(&balls(&[([0.03; 3], 0.01)]), Bounds::cube(1.0), &settings);
     assert!((970..=1_030).contains(&report.count), "{}", report.count);
 }
 
@@ -218,9 +208,7 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             let mut session = Session::new();
             let request = FieldRequest { surface: Some(surface.id.into()), ..FieldRequest::default() };
             session.set_field(&request).unwrap();
-            session.start(&settings!(radius_share: share; ..Settings::default())).unwrap();
-            while session.run.step(50_000).stop_reason.is_none() {}
-            let report = session.report();
+            let report = run(&mut session, &settings!(radius_share: share; ..Settings::default()));
             let context = format!("{} at {share}", surface.id);
             if surface.id == "cayley" || surface.smooth && !surface.intricate {
                 is_proven(&report, &context);
@@ -246,7 +234,7 @@ fn a_surface_that_touches_its_box_is_proven_to_be_found() {
     }
     // The plane coincides with a face of the box.
     let bounds = Bounds { min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 1.0] };
-    let (_, report) = session("z", bounds, &settings!(radius_share: 0.01; ..Settings::default()));
+    let (_, report) = finished("z", bounds, &settings!(radius_share: 0.01; ..Settings::default()));
     is_proven(&report, "z");
     assert_eq!(report.proof.components, 1);
 }
@@ -276,13 +264,7 @@ fn an_empty_surface_is_proven_empty() {
         ("1/(x^2 + y^2 + z^2 - 0.5)", 1.0),
         ("x^4 + y^4 + z^4 - 2x^2 - 2y^2 - 2z^2 + 3.01", 2.0),
     ] {
-        let mut session = Session::new();
-        let request = FieldRequest {
-            formula: Some(formula.into()),
-            bounds: Some(Bounds::cube(half)),
-            ..FieldRequest::default()
-        };
-        session.set_field(&request).unwrap();
+        let mut session = session(formula, Bounds::cube(half));
         session.start(&Settings::default()).unwrap();
         let progress = session.run.step(1_000);
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
@@ -388,7 +370,7 @@ fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
     assert!((0.9..1.2).contains(&cover), "{cover}");
 
     let as_placed = settings!(radius_share: share, relax_steps: 0; ..Settings::default());
-    let (session, _) = session("(x^2 + y^2)/0.81 + z^2/0.0001 - 1", Bounds::cube(1.0), &as_placed);
+    let (session, _) = finished("(x^2 + y^2)/0.81 + z^2/0.0001 - 1", Bounds::cube(1.0), &as_placed);
     // The two sheets meet at the rim.
     check(
         session.run.particles(),
@@ -435,13 +417,7 @@ fn cutting_a_run_into_steps_changes_nothing() {
         format!("({}) / 0.05", balls(&[([0.53, 0.53, 0.53], 0.025)])),
     ]);
     let run = |budget: u32| {
-        let mut session = Session::new();
-        let request = FieldRequest {
-            formula: Some(formula.clone()),
-            bounds: Some(Bounds::cube(1.0)),
-            ..FieldRequest::default()
-        };
-        session.set_field(&request).unwrap();
+        let mut session = session(&formula, Bounds::cube(1.0));
         session.start(&settings!(radius_share: 0.005; ..Settings::default())).unwrap();
         while session.run.step(budget).stop_reason.is_none() {}
         (session.run.particles().digest(), session.report().proof.undecided_cells)
@@ -472,7 +448,7 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
     }
     for sampling in [Sampling::Adaptive, Sampling::Uniform] {
         let settings = settings!(sampling, radius_share: 0.02; ..Settings::default());
-        let (session, report) = session("z*(z-0.001)*(z-0.002)", Bounds::cube(1.0), &settings);
+        let (session, report) = finished("z*(z-0.001)*(z-0.002)", Bounds::cube(1.0), &settings);
         let on = |height: f32| {
             session.run.particles().position.iter().filter(|p| (p.z - height).abs() < 2e-4).count()
         };
@@ -510,7 +486,7 @@ fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
         for (planes, gap) in [(3, 1e-3), (3, 1e-4), (5, 1e-3), (7, 1e-3)] {
             let factors: Vec<String> = (0..planes).map(|k| format!("(z-{})", f64::from(k) * gap)).collect();
             let settings = settings!(sampling, radius_share: 0.02; ..Settings::default());
-            let (_, report) = session(&factors.join("*"), Bounds::cube(1.0), &settings);
+            let (_, report) = finished(&factors.join("*"), Bounds::cube(1.0), &settings);
             is_proven(
                 &report,
                 &report.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
@@ -599,7 +575,7 @@ fn a_small_ellipsoid_across_a_large_sphere_holds_a_particle() {
 fn sheets_within_the_probe_of_a_survey_are_not_taken_for_one_that_f_touches() {
     let says_so = |formula: &str, sampling: Sampling| {
         let settings = settings!(sampling, radius_share: 0.02, relax_steps: 0; ..Settings::default());
-        let (_, report) = session(formula, Bounds::cube(1.0), &settings);
+        let (_, report) = finished(formula, Bounds::cube(1.0), &settings);
         report.warnings.iter().any(|warning| warning.to_string().contains("without changing its sign"))
     };
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {

@@ -1,5 +1,6 @@
 //! Tests of boxes far from the origin, where single precision would round the places of particles.
 
+use crate::runs::{finished, run};
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::export::{self, Format, MeshFormat};
@@ -21,19 +22,9 @@ fn about(centre: DVec3, formula: &str) -> String {
 }
 
 /// A finished run of the formula in a cube around `centre`.
-fn run(centre: DVec3, formula: &str, half: f64, settings: &Settings) -> (Session, Report) {
-    let mut session = Session::new();
+fn sampled(centre: DVec3, formula: &str, half: f64, settings: &Settings) -> (Session, Report) {
     let (min, max) = ((centre - half).to_array(), (centre + half).to_array());
-    let request = FieldRequest {
-        formula: Some(about(centre, formula)),
-        bounds: Some(Bounds { min, max }),
-        ..FieldRequest::default()
-    };
-    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.run.step(100_000).stop_reason.is_none() {}
-    let report = session.report();
-    (session, report)
+    finished(&about(centre, formula), Bounds { min, max }, settings)
 }
 
 #[test]
@@ -48,8 +39,8 @@ fn far_from_the_origin_the_figures_are_those_at_the_origin() {
         ("(X^2 + Y^2 + Z^2 - 1) (X^2 + Y^2 + Z^2 - 0.9)", 1.25),
     ] {
         for settings in [uniform, adaptive, refined] {
-            let (_, near) = run(DVec3::ZERO, formula, half, &settings);
-            let (session, far) = run(FAR, formula, half, &settings);
+            let (_, near) = sampled(DVec3::ZERO, formula, half, &settings);
+            let (session, far) = sampled(FAR, formula, half, &settings);
             let name = format!("{formula}, {:?}, {:?}", settings.sampling, settings.method);
             let figures =
                 |report: &Report| report.measures.quality.unwrap_or_else(|| panic!("{name}: no particles"));
@@ -130,7 +121,7 @@ fn a_field_with_an_origin_is_the_same_field_there() {
 fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
     let settings = settings!(radius_share: 0.01, method: Method::Refined; ..Settings::default());
     let (_, touch) =
-        run(FAR, "(X^2 + Y^2 + (Z - 0.9)^2 - 0.81) (X^2 + Y^2 + (Z + 0.9)^2 - 0.81)", 1.0, &settings);
+        sampled(FAR, "(X^2 + Y^2 + (Z - 0.9)^2 - 0.81) (X^2 + Y^2 + (Z + 0.9)^2 - 0.81)", 1.0, &settings);
     let named = "near (100.000, -200.000, 300.000) the gradient vanishes";
     assert!(touch.warnings.iter().any(|warning| warning.to_string().contains(named)), "{:?}", touch.warnings);
     assert!(!touch.measures.places.holes.is_empty(), "the largest hole is told");
@@ -140,7 +131,7 @@ fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
     }
     // A ball smaller than a particle, beside a large one.
     let two = "(X^2 + Y^2 + Z^2 - 0.25) ((X - 0.51)^2 + Y^2 + Z^2 - 0.000001)";
-    let (_, report) = run(FAR, two, 1.0, &settings!(radius_share: 0.02; ..Settings::default()));
+    let (_, report) = sampled(FAR, two, 1.0, &settings!(radius_share: 0.02; ..Settings::default()));
     assert!(!report.proof.sampled.without.is_empty(), "{:?}", report.proof.sampled);
     for witness in &report.proof.sampled.without {
         let away = DVec3::from_array(witness.position) - FAR - DVec3::new(0.51, 0.0, 0.0);
@@ -152,7 +143,7 @@ fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
 #[test]
 fn files_hold_far_places_in_double_precision() {
     let settings = settings!(radius_share: 0.02; ..Settings::default());
-    let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    let (mut session, _) = sampled(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
     while session.run.join(u32::MAX).is_none() {}
     let (particles, measured) = (session.run.particles(), session.run.measured());
     let file = |format: Format| {
@@ -236,29 +227,25 @@ fn only_a_box_far_for_its_size_has_an_origin_of_its_own() {
 #[test]
 fn a_session_leaves_a_far_box_as_it_came() {
     let settings = settings!(radius_share: 0.02; ..Settings::default());
-    let finish = |session: &mut Session| {
-        session.start(&settings).expect("settings in range");
-        while session.run.step(u32::MAX).stop_reason.is_none() {}
-    };
     let mut fresh = Session::new();
-    finish(&mut fresh);
-    let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    run(&mut fresh, &settings);
+    let (mut session, _) = sampled(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
     let far = session.run.particles().digest();
     // A fitted box is far, too.
     let request =
         FieldRequest { formula: Some(about(FAR, "X^2 + Y^2 + Z^2 = 2")), ..FieldRequest::default() };
     let mut fitted = Session::new();
     fitted.set_field(&request).expect("a formula");
-    finish(&mut fitted);
+    let report = run(&mut fitted, &settings);
     assert!(
         fitted.run.particles().origin != DVec3::ZERO
-            && fitted.report().measures.quality.expect("figures").accuracy.err_max < 1e-4
+            && report.measures.quality.expect("figures").accuracy.err_max < 1e-4
     );
     // Back at the origin, and far away again.
     let surface = FieldRequest { surface: Some("ellipsoid".into()), ..FieldRequest::default() };
     session.set_field(&surface).expect("a surface of the gallery");
-    finish(&mut session);
+    run(&mut session, &settings);
     assert_eq!(session.run.particles().digest(), fresh.run.particles().digest());
-    let (again, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    let (again, _) = sampled(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
     assert_eq!(again.run.particles().digest(), far);
 }

@@ -1,6 +1,7 @@
 //! Tests on formulas without a regular surface: poles, jumps, self-intersections, singular points, open surfaces. The
 //! sampler ends on all of them, places particles only on zeros, and reports what it met.
 
+use crate::runs::session;
 use glam::{DVec3, Vec3};
 use marching_particles::Field;
 use marching_particles::field::formula::Formula;
@@ -12,13 +13,7 @@ use marching_particles::{Report, Warning};
 
 /// Samples `formula` in the cube of half-width `half`.
 fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress, Report) {
-    let mut session = Session::new();
-    let request = FieldRequest {
-        formula: Some(formula.into()),
-        bounds: Some(Bounds { min: [-half; 3], max: [half; 3] }),
-        ..FieldRequest::default()
-    };
-    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    let mut session = session(formula, Bounds::cube(half));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
     // The limit is far more work than any of these surfaces takes, so a run that does not end fails.
     let mut progress = session.run.step(0);
@@ -230,13 +225,7 @@ fn a_surface_that_crosses_or_touches_itself_is_told() {
 
 #[test]
 fn a_run_that_another_field_ends_marks_the_particles_next_to_its_own_singular_points() {
-    let mut session = Session::new();
-    let cone = FieldRequest {
-        formula: Some("x^2 + y^2 = z^2".into()),
-        bounds: Some(Bounds::cube(1.0)),
-        ..FieldRequest::default()
-    };
-    session.set_field(&cone).unwrap();
+    let mut session = session("x^2 + y^2 = z^2", Bounds::cube(1.0));
     session.start(&settings!(radius_share: 0.01; ..Settings::default())).unwrap();
     while session.run.step(200).phase != Phase::Relaxation {}
     let request = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 0.5".into()), ..FieldRequest::default() };

@@ -1,13 +1,14 @@
 //! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with the paper as it is written, the
 //! reference, particle by particle.
 
+use crate::runs::{assert_fates, gallery_figures, of_gallery, sampled};
 use crate::smooth::smooth;
 use glam::Vec3;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{self, Event, Lesson};
 use marching_particles::paper::Particle;
-use marching_particles::particles::{Particles, SlotFate, Slots};
-use marching_particles::quality::{self, Figures};
+use marching_particles::particles::{Particles, SlotFate};
+use marching_particles::quality::{Figures, Sizes};
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
@@ -17,27 +18,10 @@ use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopRe
 const ORDER: [(&str, f64, f64); 4] =
     [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
 
-fn sampled(surface: &str, settings: &Settings) -> Sampler {
-    let surface = gallery::find(surface).expect("a gallery surface");
-    let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
-    while sampler.step(&mut field, 5_000).stop_reason.is_none() {}
-    sampler
-}
-
 /// Samples by the front of the paper alone, without gap filling and relaxation.
 fn front(surface: &str, radius_share: f64) -> Sampler {
     let settings = settings!(radius_share, relax_steps: 0, gaps: GapPolicy::Leave; ..Settings::default());
-    sampled(surface, &settings)
-}
-
-fn figures(surface: &str, particles: &Particles) -> Figures {
-    let surface = gallery::find(surface).expect("a gallery surface");
-    let mut field = surface.field();
-    let options = quality::MeasureOptions::default();
-    quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
-        .figures
+    of_gallery(surface, &settings)
 }
 
 /// The reference with the rules of the fast front, from the same seed.
@@ -165,12 +149,12 @@ fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
 #[test]
 fn a_front_covers_smooth_surfaces_regularly() {
     for (surface, euler) in smooth() {
-        let sampler = sampled(
+        let sampler = of_gallery(
             surface,
             &settings!(size_mode: SizeMode::Count, count: 14_000, relax_steps: 0; ..Settings::default()),
         );
         assert!(sampler.counts().gaps_filled > 0, "{surface}");
-        let figures = figures(surface, sampler.particles());
+        let figures = gallery_figures(surface, sampler.particles(), Sizes::None);
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
         assert!(figures.coverage.cover <= 1.5, "{context}");
         assert_eq!(figures.order.open, 0, "{context}");
@@ -189,8 +173,8 @@ fn most_particles_of_a_front_have_six_neighbours() {
     for (surface, six, angle) in ORDER {
         let settings =
             settings!(size_mode: SizeMode::Count, count: 55_748, relax_steps: 0; ..Settings::default());
-        let sampler = sampled(surface, &settings);
-        let figures = figures(surface, sampler.particles());
+        let sampler = of_gallery(surface, &settings);
+        let figures = gallery_figures(surface, sampler.particles(), Sizes::None);
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
         assert!(figures.order.six >= six, "{context}");
         assert!(figures.angles.ang_min_mean >= angle, "{context}");
@@ -201,13 +185,14 @@ fn most_particles_of_a_front_have_six_neighbours() {
 fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
     for (surface, _) in smooth() {
         let settings = settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default());
-        let left = sampled(surface, &settings!(gaps: GapPolicy::Leave; ..settings));
-        let filled = sampled(surface, &settings);
+        let left = of_gallery(surface, &settings!(gaps: GapPolicy::Leave; ..settings));
+        let filled = of_gallery(surface, &settings);
         let (left, particles) = (left.particles(), filled.particles());
         let count = filled.counts().gaps_filled as usize;
         assert_eq!(particles.len(), left.len() + count, "{surface}");
         assert_eq!(particles.position[..left.len()], left.position, "{surface}");
-        let (was, is) = (figures(surface, left), figures(surface, particles));
+        let (was, is) =
+            (gallery_figures(surface, left, Sizes::None), gallery_figures(surface, particles, Sizes::None));
         // The unit is 2r, because the hexagonal spacing changes with the count.
         let hole = |f: &Figures| f.coverage.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
         assert!(hole(&is) < hole(&was), "{surface}: {} to {}", hole(&was), hole(&is));
@@ -229,7 +214,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
 fn a_particle_costs_about_two_evaluations() {
     for (surface, _) in smooth() {
         let sampler =
-            sampled(surface, &settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default()));
+            of_gallery(surface, &settings!(radius_share: 0.006, relax_steps: 0; ..Settings::default()));
         let per_particle = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
         assert!(per_particle <= 2.2, "{surface}: {per_particle}");
     }
@@ -268,38 +253,20 @@ fn levels_increase_along_the_columns_and_grow_as_hexagons() {
 fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
         let sampler = front(surface, 0.01);
-        let (particles, fates) = (sampler.particles(), sampler.counts().fates);
+        assert_fates(&sampler, surface);
         // Tips, around which rings stand before the front begins, have more than six.
-        let slots = |first: usize, most: usize| {
-            particles.slots[first..].iter().flat_map(move |s| (0..most).map(|k| s.get(k)))
-        };
-        let count = |fate| slots(0, Slots::COUNT).filter(|&f| f == fate).count() as u64;
-        assert_eq!(count(SlotFate::Added), fates.added, "{surface}");
-        assert_eq!(count(SlotFate::Matched), fates.matched, "{surface}");
-        assert_eq!(count(SlotFate::Outside), fates.outside, "{surface}");
-        assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{surface}");
-        assert_eq!(count(SlotFate::Undefined), fates.undefined, "{surface}");
-        assert_eq!(slots(particles.twins.len(), 6).filter(|&f| f == SlotFate::Open).count(), 0, "{surface}");
-        let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
-        assert_eq!(fates.added + seeds, particles.len() as u64, "{surface}");
-        assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{surface}");
+        let particles = sampler.particles();
+        let mut slots =
+            particles.slots[particles.twins.len()..].iter().flat_map(|s| (0..6).map(|k| s.get(k)));
+        assert!(slots.all(|fate| fate != SlotFate::Open), "{surface}");
     }
 }
 
 #[test]
 fn every_gallery_surface_is_sampled_with_finite_normals() {
     for surface in gallery::SURFACES {
-        let mut field = surface.field();
-        let mut sampler = Sampler::new();
-        let settings = settings!(radius_share: 0.012; ..Settings::default());
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-        let progress = loop {
-            let progress = sampler.step(&mut field, 5_000);
-            if progress.stop_reason.is_some() {
-                break progress;
-            }
-        };
-        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{}", surface.id);
+        let sampler = of_gallery(surface.id, &settings!(radius_share: 0.012; ..Settings::default()));
+        assert_eq!(sampler.progress().stop_reason, Some(StopReason::Complete), "{}", surface.id);
         let particles = sampler.particles();
         assert!(particles.len() > 500, "{}: {} particles", surface.id, particles.len());
         for (p, n) in particles.position.iter().zip(&particles.normal) {
@@ -321,10 +288,7 @@ fn where_the_surface_moves_little_the_seed_does_and_most_places_keep_their_level
             let [before, after] = values.map(|value| {
                 let mut field = surface.field();
                 field.set_parameter(name, value).expect("a parameter");
-                let mut sampler = Sampler::new();
-                sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-                while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
-                sampler
+                sampled(&mut field, &surface.bounds, &settings, 100_000)
             });
             let (old, new) = (before.particles(), after.particles());
             let spacing = 2.0 * before.radius() as f32;

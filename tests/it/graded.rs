@@ -1,10 +1,11 @@
 //! The refinement of a coarse front to sizes that follow the curvature.
 
-use crate::refine::{assert_rings, sampled};
+use crate::refine::assert_rings;
+use crate::runs::{gallery_figures, of_gallery, sampled_in_any_steps};
 use marching_particles::differential::exact_curvature;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
-use marching_particles::quality::{self, Figures, Sizes};
+use marching_particles::quality::{Figures, Sizes};
 use marching_particles::sampler::{LawKind, Method, Refusal, Sampler, Sampling, Settings, SizeMode};
 
 fn graded(seed: u64) -> Settings {
@@ -20,17 +21,9 @@ fn counted(count: u32, seed: u64) -> Settings {
 
 /// A run, its figures and the surface that it is on.
 fn run(id: &str, settings: &Settings) -> (Sampler, Figures) {
-    let surface = gallery::find(id).expect("a surface of the gallery");
-    let mut field = surface.field();
-    let sampler = sampled(&mut field, &surface.bounds, settings, 10_000);
-    let particles = sampler.particles();
-    let options = quality::MeasureOptions {
-        sizes: Sizes::Given(&particles.radius),
-        ..quality::MeasureOptions::default()
-    };
-    let report =
-        quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options);
-    (sampler, report.figures)
+    let sampler = of_gallery(id, settings);
+    let figures = gallery_figures(id, sampler.particles(), Sizes::Given(&sampler.particles().radius));
+    (sampler, figures)
 }
 
 #[test]
@@ -88,13 +81,7 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
 #[test]
 fn any_cut_into_steps_gives_the_same_graded_particles() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
-    let digest = |budget: u32| {
-        sampled(&mut surface.field(), &surface.bounds, &counted(3_000, 1), budget).particles().digest()
-    };
-    let expected = digest(u32::MAX);
-    for budget in [1, 777] {
-        assert_eq!(digest(budget), expected, "in steps of {budget}");
-    }
+    sampled_in_any_steps(&mut surface.field(), &surface.bounds, &counted(3_000, 1));
 }
 
 #[test]

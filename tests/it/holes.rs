@@ -1,5 +1,6 @@
 //! Holds the figure of the largest hole to a search by brute force, on surfaces that the box cuts.
 
+use crate::runs::{finished, run};
 use glam::DVec3;
 use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
@@ -53,9 +54,7 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
         return false;
     }
     let settings = settings!(radius_share: share, relax_steps: 3; ..Settings::default());
-    session.start(&settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    while session.run.step(100_000).stop_reason.is_none() {}
-    let report = session.report();
+    let report = run(&mut session, &settings);
     let Some(figures) =
         report.measures.quality.filter(|_| report.count > 300 && report.proof.singular_points == Some(0))
     else {
@@ -104,18 +103,9 @@ fn the_largest_hole_of_a_clipped_surface_is_that_of_brute_force() {
 #[test]
 fn triangles_across_a_gap_do_not_count() {
     let formula = "0.764x^2 + 0.464x^2 y^4 - 0.243x^2 z^4 + 0.048y + 0.481z^4 + 0.413x^2 z + 1.11(x^2 + y^2 + z^2) - 0.89";
-    let request = FieldRequest {
-        formula: Some(formula.into()),
-        bounds: Some(Bounds::cube(2.1)),
-        ..FieldRequest::default()
-    };
     for (method, share) in [(Method::Front, 0.006), (Method::Front, 0.0036), (Method::Refined, 0.0036)] {
-        let mut session = Session::new();
-        session.set_field(&request).expect("a field");
         let settings = settings!(method, radius_share: share; ..Settings::default());
-        session.start(&settings).expect("settings");
-        while session.run.step(100_000).stop_reason.is_none() {}
-        let report = session.report();
+        let (_, report) = finished(formula, Bounds::cube(2.1), &settings);
         let figures = report.measures.quality.expect("figures");
         let context = format!("{method:?} with {} particles: {figures:?}", report.count);
         // A sphere and two discs.

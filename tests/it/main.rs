@@ -55,6 +55,7 @@ mod rbf;
 mod readme;
 mod refine;
 mod relax;
+mod runs;
 mod session;
 mod shaders;
 mod sharp;

@@ -1,21 +1,13 @@
 //! Triangles over particles: one closed oriented manifold of the right genus over each smooth surface, one with border where
 //! the box cuts, and for any other set of points a manifold and a list of what is not in it.
 
+use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
-use marching_particles::particles::Particles;
-use marching_particles::sampler::{Sampler, Sampling, Settings, SizeMode};
+use marching_particles::sampler::{Sampling, Settings, SizeMode};
 use marching_particles::topology::Component;
-
-fn particles(surface: &Surface, settings: &Settings) -> Particles {
-    let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
-    while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
-    sampler.particles().clone()
-}
 
 fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Settings {
     settings!(size_mode: SizeMode::Count, count, seed, match_tolerance, relax_steps; ..Settings::default())
@@ -44,7 +36,7 @@ fn mesh(position: &[Vec3], normal: &[Vec3], bounds: Option<&Bounds>) -> Triangul
 /// Checks that the mesh is closed and connected and has the surface's Euler number.
 #[track_caller]
 fn assert_closed(surface: &Surface, settings: &Settings) {
-    let particles = particles(surface, settings);
+    let particles = of_gallery(surface.id, settings).particles().clone();
     let mesh = mesh(&particles.position, &particles.normal, Some(&surface.bounds));
     let genus = i64::from(surface.genus.expect("a closed surface"));
     let told = format!("{}, {} particles, {settings:?}", surface.id, particles.len());
@@ -85,7 +77,8 @@ fn surfaces_that_the_box_cuts_have_borders_at_the_box_alone() {
     for id in ["gyroid", "schwarz-p", "schwarz-d", "clebsch"] {
         let surface = gallery::find(id).expect("a surface of the gallery");
         for (seed, relax_steps) in [(0, 10), (1, 0), (2, 10)] {
-            let particles = particles(surface, &of_count(14_000, seed, 0.75, relax_steps));
+            let particles =
+                of_gallery(surface.id, &of_count(14_000, seed, 0.75, relax_steps)).particles().clone();
             let mesh = mesh(&particles.position, &particles.normal, Some(&surface.bounds));
             let told = format!("{id}, seed {seed}");
             assert_eq!(mesh.unfilled, [[0_u32; 0]; 0], "{told}");
@@ -105,7 +98,7 @@ fn surfaces_that_the_box_cuts_have_borders_at_the_box_alone() {
 #[test]
 fn a_tube_that_the_box_cuts_stays_open_however_few_points_are_round_it() {
     let surface = gallery::find("schwarz-p").expect("a surface of the gallery");
-    let particles = particles(surface, &of_count(3000, 0, 0.7, 10));
+    let particles = of_gallery(surface.id, &of_count(3000, 0, 0.7, 10)).particles().clone();
     for bounds in [None, Some(&surface.bounds)] {
         let mesh = mesh(&particles.position, &particles.normal, bounds);
         assert_eq!(mesh.topology.borders.len(), 24);

@@ -1,24 +1,20 @@
 //! Mesh files, read back. `cargo xtask test gltf` gives the GLB files that this writes to Khronos' validator.
 
+use crate::runs::of_gallery;
 use glam::Vec3;
 use marching_particles::export::{MeshFormat, Placement, RecordText, Unit, UpAxis, write_mesh};
 use marching_particles::field::gallery;
 use marching_particles::mesh::build::{MeshOptions, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::quality;
-use marching_particles::sampler::{Sampler, Settings};
+use marching_particles::sampler::Settings;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    let settings = settings!(radius_share; ..Settings::default());
-    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-    while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
-    let particles = sampler.particles().clone();
+    let particles = of_gallery(id, &settings!(radius_share; ..Settings::default())).particles().clone();
     let options = MeshOptions { bounds: Some(&surface.bounds), ..MeshOptions::default() };
     let mesh = triangulate(&particles.position, &particles.normal, &options);
     assert!(mesh.triangles.len() > 1000);

@@ -5,6 +5,7 @@
 //! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
 
 use crate::golden;
+use crate::runs::run;
 use marching_particles::MeshAnswer;
 use marching_particles::export::{MeshFormat, Placement, RecordText, write_mesh};
 use marching_particles::sampler::Settings;
@@ -33,9 +34,7 @@ fn joined(case: &Run, budget: u32) -> (Session, MeshAnswer) {
     let field: FieldRequest = serde_json::from_value(case.field.clone()).expect("a field request");
     session.set_field(&field).expect("a field");
     let settings: Settings = serde_json::from_value(case.settings.clone()).expect("settings");
-    session.start(&settings).expect("valid settings");
-    while session.run.step(100_000).stop_reason.is_none() {}
-    session.report();
+    run(&mut session, &settings);
     loop {
         if let Some(answer) = session.run.join(budget) {
             return (session, answer);

@@ -1,29 +1,11 @@
 //! Tests that sheets of the surface very near each other are told apart, or that the report says that they are not; and that it
 //! explains figures of the sample that are not those of the surface.
 
+use crate::runs::{finished, session};
 use marching_particles::Report;
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Doubt, Sampler, Sampling, Search, Settings, SizeMode};
-use marching_particles::session::{FieldRequest, Session};
-
-fn session(formula: &str, half: f64, settings: &Settings) -> Session {
-    let mut session = Session::new();
-    let request = FieldRequest {
-        formula: Some(formula.into()),
-        bounds: Some(Bounds::cube(half)),
-        ..FieldRequest::default()
-    };
-    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    session
-}
-
-fn complete(mut session: Session) -> (Session, Report) {
-    while session.run.step(50_000).stop_reason.is_none() {}
-    let report = session.report();
-    (session, report)
-}
 
 fn says(report: &Report, words: &str) -> bool {
     report.warnings.iter().any(|warning| warning.to_string().contains(words))
@@ -62,7 +44,7 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
         (2e-5, adaptive(0.1, 1.5)),
     ] {
         for (formula, components, euler) in layers(gap) {
-            let (_, report) = complete(session(&formula, 1.5, &settings));
+            let (_, report) = finished(&formula, Bounds::cube(1.5), &settings);
             let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
             assert_eq!(report.proof.search, Search::Proven, "{context}");
             assert_eq!(report.proof.components, components, "{context}");
@@ -96,7 +78,7 @@ fn of_nearer_sheets_the_report_says_how_near_they_are_and_where() {
     for gap in [1e-6, 1e-7] {
         for (formula, ..) in layers(gap) {
             for settings in [of_radius(0.1, 1.5), adaptive(0.1, 1.5)] {
-                let (session, report) = complete(session(&formula, 1.5, &settings));
+                let (session, report) = finished(&formula, Bounds::cube(1.5), &settings);
                 let context = format!("{formula}, {:?}: {:?}", settings.sampling, report.warnings);
                 assert_eq!(
                     (report.proof.search, report.proof.sampled.above),
@@ -128,12 +110,13 @@ fn a_search_that_is_not_proven_says_why() {
         ("floor(5x)/5 - y", "undecided"),
         ("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.00001)*(x^2+y^2+z^2-1.00002)", "tell sheets apart down to"),
     ] {
-        let (_, report) = complete(session(formula, 1.5, &of_radius(0.1, 1.5)));
+        let (_, report) = finished(formula, Bounds::cube(1.5), &of_radius(0.1, 1.5));
         assert_eq!(report.proof.search, Search::Searched, "{formula}");
         assert!(says(&report, words), "{formula}: {:?}", report.warnings);
     }
     // A run that is ended, and one that comes to its limit.
-    let mut ended = session("x^2+y^2+z^2-1", 1.5, &of_radius(0.01, 1.5));
+    let mut ended = session("x^2+y^2+z^2-1", Bounds::cube(1.5));
+    ended.start(&of_radius(0.01, 1.5)).expect("valid settings");
     ended.run.step(1_000);
     ended.run.cancel();
     let report = ended.report();
@@ -143,7 +126,7 @@ fn a_search_that_is_not_proven_says_why() {
         report.warnings
     );
     let capped = settings!(max_particles: 100; ..of_radius(0.01, 1.5));
-    let (_, report) = complete(session("x^2+y^2+z^2-1", 1.5, &capped));
+    let (_, report) = finished("x^2+y^2+z^2-1", Bounds::cube(1.5), &capped);
     assert!(
         report.proof.search == Search::Searched && says(&report, "ended before"),
         "{:?}",
@@ -161,7 +144,7 @@ fn where_the_triangles_leave_a_surface_open_the_report_says_so() {
     for (formula, half, radius) in
         [(pancake, 1.2, 0.2), (pancake, 1.2, 0.04), (ring, 1.5, 0.03), (needle, 1.2, 0.1), (shell, 2.1, 0.1)]
     {
-        let (_, report) = complete(session(formula, half, &of_radius(radius, half)));
+        let (_, report) = finished(formula, Bounds::cube(half), &of_radius(radius, half));
         assert!(says(&report, "need not be those of the surface"), "{formula}: {:?}", report.warnings);
     }
     for (formula, half, radius, euler) in [
@@ -171,7 +154,7 @@ fn where_the_triangles_leave_a_surface_open_the_report_says_so() {
         // Cut by the box.
         ("(sqrt(x^2+y^2)-1)^2+z^2=0.16", 1.1, 0.03, 0),
     ] {
-        let (_, report) = complete(session(formula, half, &of_radius(radius, half)));
+        let (_, report) = finished(formula, Bounds::cube(half), &of_radius(radius, half));
         assert!(!says(&report, "need not be those of the surface"), "{formula}: {:?}", report.warnings);
         assert!(
             half < 1.2 || report.measures.quality.map(|q| q.connectivity.euler) == Some(euler),

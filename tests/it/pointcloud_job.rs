@@ -6,8 +6,8 @@
 //! it pointcloud_job::`.
 
 use crate::golden;
+use crate::rbf::sampled;
 use glam::DVec3;
-use marching_particles::Report;
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
@@ -15,7 +15,6 @@ use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, JobStage};
 use marching_particles::pointcloud::thin::KEPT;
 use marching_particles::sampler::Settings;
-use marching_particles::session::{FieldRequest, Session};
 use proptest::prelude::*;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -327,7 +326,7 @@ fn fit_of(name: &str, text: String) -> Fit {
 
 /// Warnings about the surface of a fit that speak of the mesh of its file.
 fn said_of_mesh(fit: Fit) -> Vec<String> {
-    let warnings = sampled(fit, 2000).1.warnings;
+    let warnings = sampled(fit, &Settings::with_count(2000)).1.warnings;
     warnings.iter().map(ToString::to_string).filter(|warning| warning.contains("mesh of the file")).collect()
 }
 
@@ -417,19 +416,9 @@ fn noisy(points: &[(DVec3, DVec3)], noise: f64, has_normals: bool, random: &mut 
     text
 }
 
-/// A session that has sampled the surface of a fit, and its report.
-fn sampled(fit: Fit, count: u32) -> (Session, Report) {
-    let mut session = Session::new();
-    session.set_points(fit.data, fit.info, fit.bounds, &FieldRequest::default()).expect("a field");
-    session.start(&Settings::with_count(count)).expect("valid settings");
-    while session.run.step(10_000).stop_reason.is_none() {}
-    let report = session.report();
-    (session, report)
-}
-
 /// Components and Euler number of a fit, and the root of the mean square of its distances from the true surface.
 fn distance_of(fit: Fit, distance: impl Fn(DVec3) -> f64) -> (usize, i64, f64) {
-    let (session, report) = sampled(fit, 2000);
+    let (session, report) = sampled(fit, &Settings::with_count(2000));
     let connectivity = report.measures.quality.expect("particles").connectivity;
     let distances = session.run.particles().position.iter().map(|p| distance(p.as_dvec3()));
     let (sum, count) = distances.fold((0.0, 0.0), |(sum, count), d| (sum + d * d, count + 1.0));
@@ -474,7 +463,7 @@ fn noise_is_smoothed_by_all_points() {
 fn a_noisy_bunny_keeps_its_form() {
     let bunny = marching_particles::pointcloud::models::fit(&MODELS[0]);
     let mut field = bunny.field();
-    let (session, _) = sampled(bunny, 5000);
+    let (session, _) = sampled(bunny, &Settings::with_count(5000));
     let true_points: Vec<(DVec3, DVec3)> = session
         .run
         .particles()

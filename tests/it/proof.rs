@@ -3,11 +3,11 @@
 //!
 //! `PROOF_CASES` sets the number of cases of each family, 150 by default, fewer where a case takes long.
 
+use crate::runs::session;
 use glam::DVec3;
 use marching_particles::Warning;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Doubt, Sampling, Search, Settings, Unsampled};
-use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -155,13 +155,7 @@ fn says(warnings: &[Warning], words: &str) -> bool {
 /// Says whether the search was proven; panics if it says so and a component is neither sampled nor named.
 fn holds(case: &Case, context: &str) -> bool {
     let Case { formula, pieces, settings } = case;
-    let mut session = Session::new();
-    let request = FieldRequest {
-        formula: Some(formula.clone()),
-        bounds: Some(Bounds::cube(1.0)),
-        ..FieldRequest::default()
-    };
-    session.set_field(&request).unwrap_or_else(|e| panic!("{formula}: {e}"));
+    let mut session = session(formula, Bounds::cube(1.0));
     session.start(settings).unwrap_or_else(|e| panic!("{formula}: {e}"));
     while session.run.step(100_000).stop_reason.is_none() {}
     let sampled = session.run.sampler().sampled();

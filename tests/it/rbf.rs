@@ -1,5 +1,6 @@
 //! Tests of fields from points: the fit, its errors, and the evaluation against the sum in double precision.
 
+use crate::runs::run;
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
 use marching_particles::field::Field;
@@ -40,12 +41,11 @@ fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
     complete(approximate(cloud, &all, &cloud.position, ModelInfo::default(), |_| {}))
 }
 
-fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
+/// A session that has sampled the surface of a fit, and its report.
+pub(crate) fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
     let mut session = Session::new();
     session.set_points(fit.data, fit.info, fit.bounds, &FieldRequest::default()).expect("a field");
-    session.start(settings).expect("valid settings");
-    while session.run.step(10_000).stop_reason.is_none() {}
-    let report = session.report();
+    let report = run(&mut session, settings);
     (session, report)
 }
 

@@ -1,19 +1,13 @@
 //! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and
 //! particles stay on the surface.
 
+use crate::runs::{gallery_figures, sampled};
 use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self, Figures};
+use marching_particles::quality::Sizes;
 use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode};
-
-fn figures(surface: &gallery::Surface, particles: &Particles) -> Figures {
-    let mut field = surface.field();
-    let options = quality::MeasureOptions::default();
-    quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
-        .figures
-}
 
 /// The particles after the front and after the relaxation.
 fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler) {
@@ -98,13 +92,7 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
 fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back() {
     let surface = gallery::find("double-torus").expect("a gallery surface");
     let settings = settings!(radius_share: 0.03; ..Settings::default());
-    let run = |budget: u32| {
-        let mut field = surface.field();
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-        while sampler.step(&mut field, budget).stop_reason.is_none() {}
-        sampler
-    };
+    let run = |budget: u32| sampled(&mut surface.field(), &surface.bounds, &settings, budget);
     let whole = run(u32::MAX);
     // There are two evaluations per particle and step, and two at the end. The others are those of rejected steps.
     let evaluations = whole.counts().relaxation_evaluations;
@@ -156,7 +144,10 @@ fn holes_and_crowded_pairs_shrink() {
         let surface = gallery::find(id).expect("a gallery surface");
         let settings = settings!(size_mode: SizeMode::Count, count: 14_000; ..Settings::default());
         let (before, sampler) = before_and_after(surface, &settings);
-        let (was, is) = (figures(surface, &before), figures(surface, sampler.particles()));
+        let (was, is) = (
+            gallery_figures(surface.id, &before, Sizes::None),
+            gallery_figures(surface.id, sampler.particles(), Sizes::None),
+        );
         let context = format!("{id}, seed 0\nbefore {was:?}\nafter  {is:?}");
         assert!(is.coverage.cover < was.coverage.cover, "{context}");
         assert!(is.coverage.cover <= 1.45, "{context}");

@@ -1,11 +1,12 @@
 //! Tests of the radius field in adaptive sampling (paper §5): radii follow the radius law, respect the grading, and the
 //! relaxation evens them out.
 
+use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};
-use marching_particles::field::gallery::{self, SURFACES, Surface};
+use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self, Figures, MeasureOptions, Sizes};
-use marching_particles::sampler::{LawKind, Sampler, Sampling, Settings, SettingsError, SizeMode};
+use marching_particles::quality::Sizes;
+use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
 use marching_particles::spatial::CellGrid;
 
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
@@ -15,20 +16,6 @@ fn adaptive(count: u32, relax_steps: u32) -> Settings {
         size_mode: SizeMode::Count,
         count,
         relax_steps; ..Settings::default())
-}
-
-fn sampled(surface: &Surface, settings: &Settings) -> Sampler {
-    let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
-    while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
-    sampler
-}
-
-fn figures(surface: &Surface, particles: &Particles) -> Figures {
-    let options = MeasureOptions { sizes: Sizes::Given(&particles.radius), ..MeasureOptions::default() };
-    let (position, normal) = (&particles.position, &particles.normal);
-    quality::measure(position, normal, &mut surface.field(), Some(&surface.bounds), &options).figures
 }
 
 /// Pairs of particles of a sheet that are nearer than `reach` times the sum of their radii.
@@ -62,7 +49,7 @@ fn neighbours_never_differ_by_more_than_the_grading_allows() {
             [(LAWS[0], 0.2, 10), (LAWS[1], 0.1, 3), (LAWS[2], 0.2, 3), (LAWS[0], 0.1, 0)]
         {
             let settings = settings!(radius_law, grading; ..adaptive(4_000, relax_steps));
-            let sampler = sampled(surface, &settings);
+            let sampler = of_gallery(surface.id, &settings);
             let particles = sampler.particles();
             let neighbours = pairs(particles, 1.15);
             assert!(neighbours.len() > particles.len(), "{} has neighbours", surface.id);
@@ -92,7 +79,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
         let settings = settings!(sampling: Sampling::Adaptive,
             chord_error: 4e-4,
             radius_min_share: 0.002; ..Settings::default());
-        let sampler = sampled(surface, &settings);
+        let sampler = of_gallery(surface.id, &settings);
         let particles = sampler.particles();
         let mut curvature = vec![Curvature::default(); particles.len()];
         curvatures(&mut surface.field(), &particles.position, &mut curvature);
@@ -117,7 +104,7 @@ fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface() {
     for surface in SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_law in LAWS {
             let settings = settings!(radius_law; ..adaptive(4_000, 10));
-            let sampler = sampled(surface, &settings);
+            let sampler = of_gallery(surface.id, &settings);
             let energy = sampler.energy();
             assert_eq!(energy.len(), 11, "{} {radius_law:?}", surface.id);
             assert!(energy.is_sorted_by(|a, b| a > b), "{} {radius_law:?}: {energy:?}", surface.id);
@@ -130,7 +117,7 @@ fn the_reported_energy_is_that_of_all_overlaps() {
     // The radius law of this surface needs no grading, which would lower radii afterwards.
     let surface = gallery::find("ellipsoid").expect("in the gallery");
     for steps in [1, 10] {
-        let sampler = sampled(surface, &adaptive(4_000, steps));
+        let sampler = of_gallery(surface.id, &adaptive(4_000, steps));
         let particles = sampler.particles();
         let mut sum = 0.0;
         for (i, j, distance) in pairs(particles, 1.15) {
@@ -147,9 +134,10 @@ fn the_reported_energy_is_that_of_all_overlaps() {
 #[test]
 fn ten_steps_fit_the_particles_to_their_sizes() {
     for id in ["ellipsoid", "torus", "tanglecube", "dupin-cyclide"] {
-        let surface = gallery::find(id).expect("in the gallery");
-        let front = figures(surface, sampled(surface, &adaptive(14_000, 0)).particles());
-        let relaxed = figures(surface, sampled(surface, &adaptive(14_000, 10)).particles());
+        let [front, relaxed] = [0, 10].map(|steps| {
+            let sampler = of_gallery(id, &adaptive(14_000, steps));
+            gallery_figures(id, sampler.particles(), Sizes::Given(&sampler.particles().radius))
+        });
         println!("{id}: {front:#?} {relaxed:#?}");
         for f in [&front, &relaxed] {
             assert!(f.edges.size_cv <= 0.12, "{id}: size_cv {}", f.edges.size_cv);
@@ -170,11 +158,9 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
 #[test]
 fn more_steps_can_follow_and_cutting_a_run_into_slices_changes_nothing() {
     let surface = gallery::find("ellipsoid").expect("in the gallery");
-    let whole = sampled(surface, &adaptive(2_000, 6));
     let mut field = surface.field();
-    let mut sliced = Sampler::new();
-    sliced.start(&mut field, &surface.bounds, &adaptive(2_000, 6)).expect("valid settings");
-    while sliced.step(&mut field, 17).stop_reason.is_none() {}
+    let whole = sampled(&mut field, &surface.bounds, &adaptive(2_000, 6), u32::MAX);
+    let mut sliced = sampled(&mut field, &surface.bounds, &adaptive(2_000, 6), 17);
     assert_eq!(sliced.particles().digest(), whole.particles().digest());
     let before = *sliced.energy().last().expect("an energy");
     sliced.relax(4);

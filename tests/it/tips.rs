@@ -1,11 +1,11 @@
 //! Tips: isolated points of the surface at which sheets end as cones, where one particle stands for all of them.
 
+use crate::runs::finished;
 use glam::Vec3;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, triangulate_particles};
 use marching_particles::sampler::{Method, Sampling, Settings};
-use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Formula, Refusal, Warning, sample};
 
 /// A surface with its tips and its topology in a cube, whose nappes are sheets of their own.
@@ -65,17 +65,8 @@ fn one_particle_stands_at_a_tip_and_the_sheets_close_around_it() {
     for Tipped { formula, half, tips, components, euler } in surfaces() {
         for ((method, sampling), count) in WAYS.into_iter().flat_map(|way| [(way, 1_500), (way, 5_000)]) {
             let settings = settings!(method: method, sampling: sampling; ..Settings::with_count(count));
-            let mut session = Session::new();
-            let request = FieldRequest {
-                formula: Some(formula.clone()),
-                bounds: Some(Bounds::cube(half)),
-                ..FieldRequest::default()
-            };
-            session.set_field(&request).expect("a formula");
-            session.start(&settings).expect("valid settings");
-            while session.run.step(100_000).stop_reason.is_none() {}
+            let (session, report) = finished(&formula, Bounds::cube(half), &settings);
             let name = format!("{formula}, {method:?}, {sampling:?}, {count}");
-            let report = session.report();
             let quality = report.measures.quality.expect("particles");
             assert_eq!(report.proof.singular_points, Some(tips as u64), "{name}");
             assert_eq!((report.proof.components, quality.connectivity.euler), (components, euler), "{name}");

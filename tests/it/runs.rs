@@ -1,0 +1,90 @@
+//! Runs to their end, and what is measured of them.
+
+use marching_particles::Report;
+use marching_particles::field::Field;
+use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
+use marching_particles::particles::{Particles, SlotFate, Slots};
+use marching_particles::quality::{Figures, MeasureOptions, Sizes, measure};
+use marching_particles::sampler::{Sampler, Settings};
+use marching_particles::session::{FieldRequest, Session};
+
+/// A field, sampled in a box by steps of `budget`.
+pub(crate) fn sampled(field: &mut dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+    let mut sampler = Sampler::new();
+    sampler.start(field, bounds, settings).expect("valid settings");
+    while sampler.step(field, budget).stop_reason.is_none() {}
+    sampler
+}
+
+/// Samples a field in a box, and finds the same particles however the run is cut into steps.
+pub(crate) fn sampled_in_any_steps(field: &mut dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+    let whole = sampled(field, bounds, settings, u32::MAX);
+    for budget in [1, 777] {
+        let cut = sampled(field, bounds, settings, budget);
+        assert_eq!(cut.particles().digest(), whole.particles().digest(), "in steps of {budget}");
+    }
+    whole
+}
+
+/// A surface of the gallery, sampled.
+pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler {
+    let surface = gallery::find(id).expect("a surface of the gallery");
+    sampled(&mut surface.field(), &surface.bounds, settings, 10_000)
+}
+
+/// The fates of the slots agree with what was counted, and each particle but a seed is the child of one other.
+pub(crate) fn assert_fates(sampler: &Sampler, context: &str) {
+    let (particles, fates) = (sampler.particles(), sampler.counts().fates);
+    let count = |fate| {
+        let slots = particles.slots.iter().flat_map(|slots| (0..Slots::COUNT).map(|k| slots.get(k)));
+        slots.filter(|&found| found == fate).count() as u64
+    };
+    assert_eq!(count(SlotFate::Added), fates.added, "{context}");
+    assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
+    assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");
+    assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{context}");
+    assert_eq!(count(SlotFate::Undefined), fates.undefined, "{context}");
+    let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
+    assert_eq!(fates.added + seeds, particles.len() as u64, "{context}");
+    assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{context}");
+}
+
+pub(crate) fn figures(
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    Particles { position, normal, .. }: &Particles,
+    sizes: Sizes,
+) -> Figures {
+    measure(position, normal, field, Some(bounds), &MeasureOptions { sizes, ..MeasureOptions::default() })
+        .figures
+}
+
+/// Figures of particles on a surface of the gallery.
+pub(crate) fn gallery_figures(id: &str, particles: &Particles, sizes: Sizes) -> Figures {
+    let surface = gallery::find(id).expect("a surface of the gallery");
+    figures(&mut surface.field(), &surface.bounds, particles, sizes)
+}
+
+/// A session with a formula in a box.
+pub(crate) fn session(formula: &str, bounds: Bounds) -> Session {
+    let mut session = Session::new();
+    let request =
+        FieldRequest { formula: Some(formula.into()), bounds: Some(bounds), ..FieldRequest::default() };
+    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    session
+}
+
+/// A finished run of a formula in a box.
+pub(crate) fn finished(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Report) {
+    let mut session = session(formula, bounds);
+    let report = run(&mut session, settings);
+    (session, report)
+}
+
+/// Leads a session through a run.
+pub(crate) fn run(session: &mut Session, settings: &Settings) -> Report {
+    session.start(settings).expect("valid settings");
+    while session.run.step(100_000).stop_reason.is_none() {}
+    session.report()
+}
