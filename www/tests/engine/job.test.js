@@ -68,6 +68,22 @@ async function run(
  */
 const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type === type));
 
+/**
+ * Listens to the calls of a method. Returns what tells how long the longest has taken, in ms.
+ * @param {ReturnType<typeof fakeCore>} core @param {'fit' | 'step' | 'measure' | 'join'} method
+ */
+function longestOf(core, method) {
+  let longest = 0;
+  const call = /** @type {(...parts: any[]) => any} */ (core[method].bind(core));
+  core[method] = (/** @type {any[]} */ ...parts) => {
+    const before = core.clock.ms;
+    const out = call(...parts);
+    longest = Math.max(longest, core.clock.ms - before);
+    return out;
+  };
+  return () => longest;
+}
+
 describe('a job', () => {
   test('ranges join up to the core’s own columns, in order and without a gap', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3, usPerUnit: 5 });
@@ -101,21 +117,14 @@ describe('a job', () => {
   test('a search for a box that takes long gives way to a newer job at once, and to a stop', async () => {
     for (const usPerSlice of [5, 1000]) {
       const core = fakeCore({ fitSlices: 1e6, usPerSlice });
-      let longest = 0;
-      const search = core.fit.bind(core);
-      core.fit = (...parts) => {
-        const before = core.clock.ms;
-        const answer = search(...parts);
-        longest = Math.max(longest, core.clock.ms - before);
-        return answer;
-      };
+      const longest = longestOf(core, 'fit');
       const replaced = await run(core, sampleJob(), { interrupt: () => (core.clock.ms > 300 ? 'replace' : null) });
       expect(of(replaced.posted, 'done')).toHaveLength(0);
       expect(of(replaced.posted, 'beat').length).toBeGreaterThan(0);
       const stopped = await run(core, sampleJob(), { interrupt: () => 'stop' });
       expect(of(stopped.posted, 'done')[0].outcome).toBe('stopped');
       expect(core.calls).not.toContain('start');
-      expect(longest, `at ${usPerSlice} µs a slice`).toBeLessThan(50);
+      expect(longest(), `at ${usPerSlice} µs a slice`).toBeLessThan(50);
     }
   });
 
@@ -155,16 +164,9 @@ describe('a job', () => {
   test('no single step outlasts a stop by more than 50 ms, on a fast machine and on a slow one', async () => {
     for (const usPerUnit of [0.05, 1, 20]) {
       const core = fakeCore({ particles: 200_000, relax_steps: 0, usPerUnit });
-      let longest = 0;
-      const step = core.step.bind(core);
-      core.step = (budget) => {
-        const before = core.clock.ms;
-        const out = step(budget);
-        longest = Math.max(longest, core.clock.ms - before);
-        return out;
-      };
+      const longest = longestOf(core, 'step');
       await run(core, sampleJob({ settings: { relax_steps: 0 }, live: true }));
-      expect(longest, `at ${usPerUnit} µs per unit`).toBeLessThan(50);
+      expect(longest(), `at ${usPerUnit} µs per unit`).toBeLessThan(50);
     }
   });
 
@@ -181,17 +183,10 @@ describe('a job', () => {
   test('a measurement ends no call later than 50 ms after it began, on a fast machine and on a slow one', async () => {
     for (const usPerSlice of [5, 50, 1000]) {
       const core = fakeCore({ slices: 5000, usPerSlice });
-      let longest = 0;
-      const measure = core.measure.bind(core);
-      core.measure = (budget) => {
-        const before = core.clock.ms;
-        const out = measure(budget);
-        longest = Math.max(longest, core.clock.ms - before);
-        return out;
-      };
+      const longest = longestOf(core, 'measure');
       const { posted } = await run(core, sampleJob());
       expect(of(posted, 'report')).toHaveLength(1);
-      expect(longest, `at ${usPerSlice} µs per slice`).toBeLessThan(50);
+      expect(longest(), `at ${usPerSlice} µs per slice`).toBeLessThan(50);
     }
   });
 
@@ -346,16 +341,9 @@ describe('a job', () => {
 
   test('joins in steps that leave room for a stop', async () => {
     const core = fakeCore({ particles: 500, slices: 20_000, usPerSlice: 50 });
-    let longest = 0;
-    const join = core.join.bind(core);
-    core.join = (budget) => {
-      const before = core.clock.ms;
-      const out = join(budget);
-      longest = Math.max(longest, core.clock.ms - before);
-      return out;
-    };
+    const longest = longestOf(core, 'join');
     await run(core, sampleJob(), { mesh: true });
-    expect(longest).toBeLessThan(50);
+    expect(longest()).toBeLessThan(50);
   });
 
   test('shows the levels of a refinement as they come, and of a drag the coarse one, whole', async () => {

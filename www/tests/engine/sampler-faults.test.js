@@ -13,9 +13,8 @@ describe('a formula with a fault', () => {
   };
 
   test('leaves the last surface, dimmed', () => {
-    const { sampler, store, columns, say, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, columns, say, complete, start } = page();
+    start(1);
     complete(1, 7);
     told.length = 0;
     sampler.sample(request('x+'));
@@ -65,9 +64,8 @@ describe('a formula with a fault', () => {
   });
 
   test('dims also what comes to the page only after it', () => {
-    const { sampler, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, say, start } = page();
+    start(1);
     sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     say(columnsMessage(1, 7));
@@ -75,9 +73,8 @@ describe('a formula with a fault', () => {
   });
 
   test('typed during a measurement lets the figures come', () => {
-    const { sampler, store, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, say, start } = page();
+    start(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
     sampler.sample(request('x+'));
@@ -91,34 +88,30 @@ describe('a formula with a fault', () => {
   });
 
   test('that was followed by another that is accepted is forgotten, answered or not', () => {
-    const { sampler, store, say, accept } = page();
+    const { sampler, store, accept, finish } = page();
     sampler.sample(request('x'));
     sampler.sample(request('x+'));
     sampler.sample(request('y'));
     accept(1);
     expect(store.busy.value).toBe(true);
     accept(3, 'y');
-    say(columnsMessage(3, 7));
-    say(done(3, 'complete', 7));
+    finish(3, 7);
     expect(store.busy.value).toBe(false);
     expect(store.field.value?.formula).toBe('y');
   });
 
   test('taken back while the run before it is under way is no fault any more', () => {
-    const { sampler, store, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, say, start } = page();
+    start(1);
     sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
-    sampler.sample(request('x'));
-    accept(3);
+    start(3);
     expect(store.fieldError.value).toBe(null);
   });
 
   test('and the worker’s end in the middle of the run before it: that run is made again', () => {
-    const { sampler, say, accept, jobs } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, say, start, jobs } = page();
+    start(1);
     sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
@@ -129,12 +122,10 @@ describe('a formula with a fault', () => {
 describe('the surface that stays', () => {
   test('because another would need too many particles, or is refused, gets the figures it has not had', () => {
     for (const outcome of ['ask', 'refused']) {
-      const { sampler, store, say, accept, jobs, complete } = page();
-      sampler.sample(request('x'));
-      accept(1);
+      const { store, say, accept, complete, start, jobs } = page();
+      start(1);
       say(columnsMessage(1, 7));
-      sampler.sample(request('y'));
-      accept(2, 'y');
+      start(2, 'y');
       say(done(2, outcome, 0, { progress: null }));
       expect(told.at(-1)).toBe('dim');
       expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
@@ -144,8 +135,7 @@ describe('the surface that stays', () => {
       expect(store.report.value?.count).toBe(9);
       expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
       // With its figures there it is left alone.
-      sampler.sample(request('z'));
-      accept(4, 'z');
+      start(4, 'z');
       say(done(4, outcome, 0, { progress: null }));
       expect(jobs()).toHaveLength(4);
       expect(store.report.value?.count).toBe(9);
@@ -153,48 +143,41 @@ describe('the surface that stays', () => {
   });
 
   test('is made with the relaxation that another cut off', () => {
-    const { sampler, say, accept, jobs, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, say, complete, start, jobs } = page();
+    start(1);
     complete(1, 7);
     sampler.relax(1);
     say(columnsMessage(2, 7));
-    sampler.sample(request('y'));
-    accept(3, 'y');
+    start(3, 'y');
     say(done(3, 'refused', 0, { progress: null }));
     expect(jobs().at(-1)).toMatchObject({ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 11 } });
   });
 
   test('is the one asked for again where it is asked for while it is being restored', () => {
-    const { sampler, store, say, accept, jobs } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, say, accept, start, finish, jobs } = page();
+    start(1);
     say(columnsMessage(1, 7));
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    start(2, 'y');
     say(done(2, 'ask', 0, { progress: null }));
     accept(3);
     sampler.sample(request('x'));
     expect(jobs()).toHaveLength(4);
     accept(4);
-    say(columnsMessage(4, 7));
-    say(done(4, 'complete', 7));
+    finish(4, 7);
     expect(store.field.value?.formula).toBe('x');
     expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
   });
 
   test('stays dimmed where its restoring is stopped at once, or the worker fails while it is idle', () => {
     for (const end of ['stop', 'crash']) {
-      const { sampler, say, accept } = page();
-      sampler.sample(request('x'));
-      accept(1);
+      const { sampler, say, accept, start } = page();
+      start(1);
       say(columnsMessage(1, 7));
       if (end === 'crash') {
         say(done(1, 'complete', 7, { reportFollows: true }));
         say(reportMessage(1, 7));
       }
-      sampler.sample(request('y'));
-      accept(2, 'y');
+      start(2, 'y');
       say(done(2, 'refused', 0, { progress: null }));
       if (end === 'stop') {
         accept(3);
@@ -209,10 +192,9 @@ describe('the surface that stays', () => {
 
   test('from a drag that a mistake broke off, or a stop, gets its figures', () => {
     for (const end of ['mistake', 'mistake meanwhile', 'stop']) {
-      const { sampler, say, accept, jobs } = page();
+      const { sampler, say, accept, finish, jobs } = page();
       const ended = () => {
-        say(columnsMessage(1, 7));
-        say(done(1, 'complete', 7));
+        finish(1, 7);
       };
       sampler.sampleLive(request('x'), 3);
       accept(1);
@@ -237,14 +219,12 @@ describe('the surface that stays', () => {
   });
 
   test('because the sampler fails on every other is dimmed and gets its figures', () => {
-    const { sampler, say, accept, jobs } = page();
+    const { say, accept, start, jobs } = page();
     const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
-    sampler.sample(request('x'));
-    accept(1);
+    start(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    start(2, 'y');
     say(crash);
     accept(3, 'y');
     say(crash);
@@ -253,24 +233,20 @@ describe('the surface that stays', () => {
   });
 
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
-    const { sampler, columns, say, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { columns, say, complete, start } = page();
+    start(1);
     complete(1, 7);
-    sampler.sample(request('x'));
-    accept(2);
+    start(2);
     say(done(2, 'stopped', 0));
     expect(columns.count).toBe(7);
     expect(told.at(-1)).toBe('clear');
   });
 
   test('because the next was stopped before its first particle is whole, and dimmed', () => {
-    const { sampler, store, columns, say, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, columns, say, complete, start } = page();
+    start(1);
     complete(1, 7);
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    start(2, 'y');
     sampler.stop();
     say(columnsMessage(2, 0));
     say(done(2, 'stopped', 0));
@@ -282,12 +258,10 @@ describe('the surface that stays', () => {
   });
 
   test('keeps its figures until there are particles of another', () => {
-    const { sampler, store, say, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { store, say, complete, start } = page();
+    start(1);
     complete(1, 7);
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    start(2, 'y');
     expect(store.report.value?.count).toBe(7);
     say(columnsMessage(2, 5));
     expect(store.report.value).toBe(null);
@@ -328,9 +302,8 @@ describe('a worker that fails', () => {
   });
 
   test('in the middle of a measurement owes the figures: that run is made again', () => {
-    const { sampler, store, say, accept, jobs } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { store, say, start, jobs } = page();
+    start(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
     say(crash);
@@ -348,9 +321,8 @@ describe('a worker that fails', () => {
   });
 
   test('by silence while a file is written leaves nobody waiting for it', async () => {
-    const { sampler, say, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, say, complete, start } = page();
+    start(1);
     complete(1, 7);
     const file = sampler.client.meshFile({ format: 'ply' });
     // Nothing else is under way that the silence would break off.
@@ -367,11 +339,10 @@ describe('a worker that fails', () => {
   });
 
   test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
-    const { sampler, store, columns, say, jobs, accept } = page();
+    const { sampler, store, columns, say, accept, finish, jobs } = page();
     sampler.sample(request('kept'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
+    finish(1, 7);
     for (let k = 0; k < 4; k += 1) {
       sampler.sample(request(`formula ${k}`));
       say({ ...crash, id: 0 });
@@ -387,9 +358,8 @@ describe('a worker that fails', () => {
   });
 
   test('after it, relaxing makes the whole run again with the steps added', () => {
-    const { sampler, say, jobs, accept, complete } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, say, accept, complete, start, jobs } = page();
+    start(1);
     say(columnsMessage(1, 7));
     say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
     sampler.relax(5);

@@ -89,9 +89,11 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
 });
 
 /**
- * `say` posts a message of the worker, `accept` its answer to a field, `complete` all that ends a run of n particles.
+ * `say` posts a message of the worker, `accept` its answer to a field; `start` asks for a run, whose field is accepted; `finish` ends it
+ * with n particles, and `complete` with their figures, too.
  * @returns {{sampler: Sampler, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void,
- *   accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
+ *   accept: (id: number, formula?: string) => void, start: (id: number, formula?: string) => void,
+ *   finish: (id: number, n: number) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
  */
 export function page() {
   const store = createStore();
@@ -137,6 +139,14 @@ export function page() {
     columns,
     say,
     accept,
+    start(id, formula = 'x') {
+      sampler.sample(request(formula));
+      accept(id, formula);
+    },
+    finish(id, n) {
+      say(columnsMessage(id, n));
+      say(done(id, 'complete', n));
+    },
     complete(id, n) {
       say(columnsMessage(id, n));
       say(done(id, 'complete', n, { reportFollows: true }));

@@ -72,11 +72,10 @@ test('the curvature is asked for while it is shown, of a new worker again', () =
 });
 
 test('the mesh is asked for while it is drawn, of a new worker again, and shown until the particles change', () => {
-  const { sampler, store, columns, say, accept } = page();
+  const { sampler, store, columns, say, start } = page();
   sampler.client.wish('mesh', true);
   sampler.client.wish('mesh', true);
-  sampler.sample(request('x'));
-  accept(1);
+  start(1);
   const about = { triangles: 1, components: [{ triangles: 1, euler: 1, open_edges: 3 }], unfilled: 0, left_out: 0 };
   const mesh = { triangles: Uint32Array.of(0, 1, 2), about };
   say({ ...columnsMessage(1, 3), mesh });
@@ -107,7 +106,7 @@ test('a mesh is exported by the worker that holds it, and not by a new one', asy
 
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
-    const { sampler, store, columns, say, jobs, accept } = page();
+    const { sampler, store, columns, say, accept, jobs } = page();
     sampler.sample(request('x', { fit: true }));
     expect(store.busy.value).toBe(true);
     expect(jobs()).toHaveLength(1);
@@ -145,13 +144,10 @@ describe('a run', () => {
   });
 
   test('that was overtaken is not listened to any more', () => {
-    const { sampler, store, columns, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
-    sampler.sample(request('y'));
-    accept(2, 'y');
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
+    const { sampler, store, columns, start, finish } = page();
+    start(1);
+    start(2, 'y');
+    finish(1, 7);
     expect(columns.count).toBe(0);
     expect(store.field.value?.formula).toBe('y');
     expect(store.busy.value).toBe(true);
@@ -159,30 +155,24 @@ describe('a run', () => {
   });
 
   test('that was stopped keeps its particles and is labelled', () => {
-    const { sampler, store, columns, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, columns, say, start, finish } = page();
+    start(1);
     say(columnsMessage(1, 7));
     sampler.stop();
     expect(workers[0].posted.at(-1)).toEqual({ type: 'stop' });
     say(done(1, 'stopped', 7));
     expect(columns.count).toBe(7);
     expect(store.partial.value).toBe(true);
-    sampler.sample(request('x'));
-    accept(2);
-    say(columnsMessage(2, 9));
-    say(done(2, 'complete', 9));
+    start(2);
+    finish(2, 9);
     expect(store.partial.value).toBe(false);
   });
 
   test('without a surface keeps the last one, dimmed and of no account, until there is another', () => {
-    const { sampler, store, columns, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    const { sampler, store, columns, say, start, finish } = page();
+    start(1);
+    finish(1, 7);
+    start(2, 'y');
     // The worker sends what fates there are, also of no particle.
     say(columnsMessage(2, 0));
     say({ ...done(2, 'complete', 0), progress: progress(0, { phase: 'done', stop_reason: 'no_surface' }) });
@@ -207,8 +197,7 @@ describe('a run', () => {
     }
     expect(columns.stale).toBe(true);
     expect(store.empty.value).toBe(true);
-    sampler.sample(request('x'));
-    accept(5);
+    start(5);
     expect(told.at(-1)).toBe('dim');
     // Whether that one has a surface is not known until its first particle, or its end.
     expect(store.empty.value).toBe(false);
@@ -221,9 +210,8 @@ describe('a run', () => {
   });
 
   test('of a drag says that there is no surface until it counts particles, so that the words do not flicker', () => {
-    const { sampler, store, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
+    const { sampler, store, say, accept, start } = page();
+    start(1);
     say(done(1, 'complete', 0));
     sampler.sample(request('y', { live: true }));
     accept(2, 'y');
@@ -235,26 +223,21 @@ describe('a run', () => {
   });
 
   test('that is stopped before its first particle counts none of the last surface where that is of no account', () => {
-    const { sampler, store, columns, say, accept } = page();
-    sampler.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
-    sampler.sample(request('y'));
-    accept(2, 'y');
+    const { store, columns, say, start, finish } = page();
+    start(1);
+    finish(1, 7);
+    start(2, 'y');
     say(done(2, 'complete', 0));
-    sampler.sample(request('z'));
-    accept(3, 'z');
+    start(3, 'z');
     say(done(3, 'stopped', 0));
     expect(columns).toMatchObject({ count: 7, stale: true });
     expect([store.empty.value, store.progress.value.particles]).toEqual([false, 0]);
   });
 
   test('counts up with every range of columns that may change what is shown of the particles', () => {
-    const { sampler, store, say, accept } = page();
+    const { store, say, start } = page();
     const seen = [store.revision.value];
-    sampler.sample(request('x'));
-    accept(1);
+    start(1);
     for (const message of [columnsMessage(1, 7), done(1, 'complete', 7)]) {
       say(message);
       seen.push(store.revision.value);
@@ -263,7 +246,7 @@ describe('a run', () => {
   });
 
   test('that needs more particles than agreed is asked about, once', () => {
-    const { sampler, say, jobs, accept } = page();
+    const { sampler, say, accept, jobs } = page();
     sampler.sample(request('x'));
     expect(jobs()[0].askAbove).toBe(1000);
     accept(1);
@@ -275,12 +258,10 @@ describe('a run', () => {
 });
 
 test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
-  const { sampler, store, columns, say, accept, complete } = page();
-  sampler.sample(request('x'));
-  accept(1);
+  const { store, columns, say, complete, start } = page();
+  start(1);
   complete(1, 7);
-  sampler.sample(request('x'));
-  accept(2);
+  start(2);
   say(
     done(2, 'refused', 0, {
       progress: null,
@@ -296,24 +277,21 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   expect(columns.count).toBe(7);
   expect(told.at(-1)).toBe('dim');
   // Until fewer are asked for.
-  sampler.sample(request('x'));
-  accept(3);
+  start(3);
   expect(store.notice.value).toBe(null);
 });
 
 test('a drag is counted: what was asked for, what was shown, how late', () => {
-  const { sampler, store, say, accept } = page();
+  const { sampler, store, accept, finish } = page();
   sampler.sampleLive(request('x'), 3);
   sampler.sampleLive(request('y'), 3);
   sampler.sampleLive(request('z'), 3);
   accept(1);
   vi.advanceTimersByTime(20);
-  say(columnsMessage(1, 7));
-  say(done(1, 'complete', 7));
+  finish(1, 7);
   accept(2);
   vi.advanceTimersByTime(30);
-  say(columnsMessage(2, 7));
-  say(done(2, 'complete', 7));
+  finish(2, 7);
   expect(store.lastDrag.value).toMatchObject({ requested: 3, shown: 2, latency_ms: 30, particles: 7 });
 });
 
@@ -322,7 +300,7 @@ describe('latest wins', () => {
   const formulas = (/** @type {any[]} */ jobs) => jobs.map((job) => job.field.formula);
 
   test('a slider at 120 Hz never has more than one job waiting, and the last value is always run', () => {
-    const { sampler, jobs, accept, say } = page();
+    const { sampler, say, accept, jobs } = page();
     const end = (/** @type {{id: number}} */ { id }) => {
       accept(id);
       say(done(id, 'complete', 5));

@@ -28,9 +28,9 @@ let workers = [];
 let events = [];
 /** @type {string[]} */
 let messages = [];
-/** @returns {Supervisor} */
-const supervised = () =>
-  new Supervisor({
+/** A supervisor that has started its first worker. */
+function supervised() {
+  const supervisor = new Supervisor({
     spawn: () => {
       const worker = new FakeWorker();
       workers.push(worker);
@@ -44,6 +44,18 @@ const supervised = () =>
     onSafeMode: (crash) => events.push(`safe after ${crash.restarts}`),
     onLoadError: (message) => events.push(`load: ${message}`),
   });
+  supervisor.start();
+  return supervisor;
+}
+
+/** One whose worker is ready and has work. */
+function busy() {
+  const supervisor = supervised();
+  workers[0].say(ready);
+  supervisor.setBusy(true);
+  return supervisor;
+}
+
 const ready = { type: 'ready', description: {} };
 const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
 
@@ -57,10 +69,7 @@ afterEach(() => vi.useRealTimers());
 
 describe('the supervisor', () => {
   test('replaces a busy worker that is silent for 2 s', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
+    busy();
     vi.advanceTimersByTime(1900);
     expect(workers).toHaveLength(1);
     vi.advanceTimersByTime(400);
@@ -71,7 +80,6 @@ describe('the supervisor', () => {
 
   test('gives up a worker whose script does not come within a minute, busy or not', () => {
     const supervisor = supervised();
-    supervisor.start();
     supervisor.setBusy(true);
     vi.advanceTimersByTime(59_000);
     expect(events).toEqual([]);
@@ -87,10 +95,7 @@ describe('the supervisor', () => {
   });
 
   test('leaves a busy worker alone that speaks', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
+    busy();
     for (let k = 0; k < 40; k += 1) {
       vi.advanceTimersByTime(250);
       workers[0].say({ type: 'beat' });
@@ -99,29 +104,20 @@ describe('the supervisor', () => {
   });
 
   test('says how long the silence was that it suffered', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
+    busy();
     vi.advanceTimersByTime(2_500);
     expect(messages).toEqual(['no word from the sampler for 2 s']);
   });
 
   test('does not watch an idle worker', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
+    const supervisor = busy();
     supervisor.setBusy(false);
     vi.advanceTimersByTime(60_000);
     expect(workers).toHaveLength(1);
   });
 
   test('a tab that slept finds the messages that waited before it judges', () => {
-    const supervisor = supervised();
-    supervisor.start();
-    workers[0].say(ready);
-    supervisor.setBusy(true);
+    busy();
     // The timer fires late; the message is handled right after it.
     vi.advanceTimersByTime(2001);
     workers[0].say({ type: 'beat' });
@@ -130,8 +126,7 @@ describe('the supervisor', () => {
   });
 
   test('replaces a worker that says it trapped, and hears no more of the old one', () => {
-    const supervisor = supervised();
-    supervisor.start();
+    supervised();
     workers[0].say(ready);
     const late = workers[0].onmessage;
     workers[0].say(crash);
@@ -143,7 +138,6 @@ describe('the supervisor', () => {
 
   test('the fourth failure within a minute is safe mode, until a person asks', () => {
     const supervisor = supervised();
-    supervisor.start();
     for (let k = 0; k < 4; k += 1) {
       workers.at(-1)?.say(ready);
       workers.at(-1)?.say(crash);
@@ -159,8 +153,7 @@ describe('the supervisor', () => {
   });
 
   test('failures far apart never lead to safe mode', () => {
-    const supervisor = supervised();
-    supervisor.start();
+    supervised();
     for (let k = 0; k < 8; k += 1) {
       workers.at(-1)?.say(crash);
       vi.advanceTimersByTime(21_000);
@@ -169,8 +162,7 @@ describe('the supervisor', () => {
   });
 
   test('a script that does not load is no crash', () => {
-    const supervisor = supervised();
-    supervisor.start();
+    supervised();
     workers[0].onerror?.({ message: 'not found' });
     expect(events).toEqual(['load: not found']);
     vi.advanceTimersByTime(10_000);
@@ -179,7 +171,6 @@ describe('the supervisor', () => {
 
   test('a load that failed is reported and not repeated by itself', () => {
     const supervisor = supervised();
-    supervisor.start();
     workers[0].say({ type: 'failed', fault: 'missing', message: 'gone' });
     vi.advanceTimersByTime(10_000);
     expect(events).toEqual(['failed']);
