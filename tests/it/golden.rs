@@ -48,3 +48,11 @@ pub(crate) fn finish<T: Serialize>(name: &str, content: &T, faults: &[String], m
         faults.join("\n")
     );
 }
+
+/// FNV-1a hash of bytes, in 16 hexadecimal digits.
+pub(crate) fn digest(bytes: &[u8]) -> String {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}

@@ -60,14 +60,6 @@ fn written(session: &mut Session, extension: &str, budget: u32) -> Vec<u8> {
     }
 }
 
-/// FNV-1a, 64 bits.
-fn digest(bytes: &[u8]) -> String {
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    format!("{hash:016x}")
-}
-
 fn golden() -> Golden {
     golden::read("meshes.json")
 }
@@ -84,7 +76,7 @@ fn mesh_files_have_the_digests_that_other_platforms_give() {
             .map(|&(extension, _)| {
                 let bytes = written(&mut session, extension, u32::MAX);
                 assert!(bytes.len() > 10_000, "{}, {extension}: {} bytes", case.name, bytes.len());
-                (extension.to_owned(), digest(&bytes))
+                (extension.to_owned(), golden::digest(&bytes))
             })
             .collect();
         golden::compare(&case.name, &mut case.files, files, &mut faults);

@@ -71,14 +71,6 @@ fn ellipsoid(steps: i32, normals: bool) -> String {
     text
 }
 
-/// FNV-1a hash of bytes in 16 hexadecimal digits.
-fn digest(bytes: &[u8]) -> String {
-    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    });
-    format!("{hash:016x}")
-}
-
 #[derive(Serialize, Deserialize)]
 struct Golden {
     runs: Vec<Run>,
@@ -106,7 +98,7 @@ fn systems_have_the_digests_that_other_platforms_give() {
             None => Job::file("points.xyz", ellipsoid(case.steps, case.normals).into(), case.centres),
         };
         let fit = job.and_then(|job| run(job, 100)).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        let found = digest(&fit.data.to_bytes());
+        let found = golden::digest(&fit.data.to_bytes());
         golden::compare(&case.name, &mut case.digest, found, &mut faults);
     }
     golden::finish("points.json", &golden, &faults, "pointcloud_job");

@@ -1,18 +1,12 @@
 // Holds the lesson's first view to the side of the seed, on every surface of the gallery.
 //
 // Usage: node tests/wasm/front.mjs, after `cargo xtask wasm core lesson`.
-import { readFile } from 'node:fs/promises';
 import process from 'node:process';
 import { ballOf, fitDistance, viewOf } from '../../www/src/engine/view/camera.js';
 import { anglesOf } from '../../www/src/engine/view/facing.js';
 import { FIRST_LEVELS, frontNormal, shareFacing } from '../../www/src/learn/front.js';
+import { load } from './bundles.mjs';
 
-const load = async (name) => {
-  const folder = new URL(`../../www/src/wasm/${name}/`, import.meta.url);
-  const bundle = await import(new URL(`${name}.js`, folder).href);
-  bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
-  return bundle;
-};
 const [{ Core }, { Lesson }] = [await load('core'), await load('lesson')];
 
 /** As many particles as the lesson's figures have. */

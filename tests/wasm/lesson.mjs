@@ -1,24 +1,20 @@
 // Holds the lesson as WebAssembly to the digests that the native one is held to by tests/it/paper.rs.
 //
 // Usage: node tests/wasm/lesson.mjs, after `cargo xtask wasm lesson`.
-import { readFile } from 'node:fs/promises';
 import process from 'node:process';
+import { accepted, golden, load } from './bundles.mjs';
 
-const root = new URL('../../', import.meta.url);
-const folder = new URL('www/src/wasm/lesson/', root);
-const bundle = await import(new URL('lesson.js', folder).href);
-bundle.initSync({ module: await readFile(new URL('lesson_bg.wasm', folder)) });
+const { Lesson } = await load('lesson');
 
 /** Units of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 37;
 
-const { runs } = JSON.parse(await readFile(new URL('tests/golden/lessons.json', root), 'utf8'));
+const { runs } = await golden('lessons.json');
 if (runs.length < 4) throw new Error(`only ${runs.length} runs`);
 let failures = 0;
 for (const { name, field, settings, events, half, digest } of runs) {
-  const lesson = new bundle.Lesson();
-  const answer = lesson.start(field, settings);
-  if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
+  const lesson = new Lesson();
+  accepted(lesson.start(field, settings), name);
   while (!lesson.step(BUDGET).is_done);
   const found = { events: lesson.seek(0xffffffff), digest: lesson.digest(), half: '' };
   lesson.seek(Math.floor(events / 2));
@@ -30,7 +26,7 @@ for (const { name, field, settings, events, half, digest } of runs) {
   lesson.free();
 }
 
-const lesson = new bundle.Lesson();
+const lesson = new Lesson();
 const [{ field }] = runs;
 for (const [bad, settings, words] of [
   [field, { radius: 0.001 }, /20000/],

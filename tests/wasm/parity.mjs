@@ -2,27 +2,14 @@
 // an answer in words where the memory is used up.
 //
 // Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core points`.
-import { readFile } from 'node:fs/promises';
 import process from 'node:process';
+import { accepted, digestOf, golden, load } from './bundles.mjs';
 
-const root = new URL('../../', import.meta.url);
-/** @param {string} name */
-const load = async (name) => {
-  const folder = new URL(`www/src/wasm/${name}/`, root);
-  const bundle = await import(new URL(`${name}.js`, folder).href);
-  const { memory } = bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
-  return { ...bundle, memory };
-};
 const { Core, memory } = await load('core');
 const { Points } = await load('points');
 
 /** Units of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 977;
-
-/** @param {{ok: boolean}} answer @param {string} name what it answers */
-function accepted(answer, name) {
-  if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
-}
 
 /** @param {Core} core @param {string} model @param {object} request @param {string} name */
 function solve(core, model, request, name) {
@@ -59,7 +46,7 @@ function sample({ name, field, model, pulls, settings, moves = [] }) {
   return result;
 }
 
-const { runs, models, moved } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
+const { runs, models, moved } = await golden('digests.json');
 if (runs.length < 3 || models.length < 2 || moved.length < 2)
   throw new Error(`only ${runs.length}, ${models.length} and ${moved.length} runs`);
 let failures = 0;
@@ -72,14 +59,7 @@ for (const run of [...runs, ...models, ...moved]) {
   );
 }
 
-/** FNV-1a, 64 bits. @param {Uint8Array} bytes */
-function digestOf(bytes) {
-  let hash = 0xcbf29ce484222325n;
-  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
-  return hash.toString(16).padStart(16, '0');
-}
-
-const { runs: meshed } = JSON.parse(await readFile(new URL('tests/golden/meshes.json', root), 'utf8'));
+const { runs: meshed } = await golden('meshes.json');
 for (const { name, field, settings, files } of meshed) {
   const core = new Core();
   accepted(core.set_field(field), `${name}: set_field`);

@@ -2,28 +2,14 @@
 // the core samples what it solves.
 //
 // Usage: node tests/wasm/points.mjs, after `cargo xtask wasm core points`.
-import { readFile } from 'node:fs/promises';
 import process from 'node:process';
+import { accepted, digestOf, golden, load } from './bundles.mjs';
 
-const root = new URL('../../', import.meta.url);
-/** @param {string} name */
-const load = async (name) => {
-  const folder = new URL(`www/src/wasm/${name}/`, root);
-  const bundle = await import(new URL(`${name}.js`, folder).href);
-  bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
-  return bundle;
-};
 const { Core } = await load('core');
 const { Points } = await load('points');
 
 /** Pieces of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 37;
-
-/** @param {any} answer @param {string} name what it answers */
-function accepted(answer, name) {
-  if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
-  return answer;
-}
 
 /** @param {boolean} holds @param {string} claim */
 function claim(holds, claim) {
@@ -54,13 +40,6 @@ function ellipsoid(steps, normals) {
   return new TextEncoder().encode(`${lines.join('\n')}\n`);
 }
 
-/** FNV-1a. @param {Uint8Array} bytes */
-function digest(bytes) {
-  let hash = 0xcbf29ce484222325n;
-  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
-  return hash.toString(16).padStart(16, '0');
-}
-
 /** Steps to the end. @param {Points} points @param {string} name */
 function finish(points, name) {
   let before = 0;
@@ -83,7 +62,7 @@ function sampled(points, known, name) {
   return count;
 }
 
-const { runs } = JSON.parse(await readFile(new URL('tests/golden/points.json', root), 'utf8'));
+const { runs } = await golden('points.json');
 claim(runs.length >= 3, `only ${runs.length} runs`);
 let failures = 0;
 const points = new Points();
@@ -91,7 +70,7 @@ for (const { name, model, steps, normals, centres, digest: expected } of runs) {
   accepted(model === null ? points.file('points.xyz', ellipsoid(steps, normals), centres) : points.model(model), name);
   claim(points.field().length === 0 && points.info().ok === false, `${name}: a field before there is one`);
   const { ok: _, ...known } = finish(points, name);
-  const found = digest(points.field());
+  const found = digestOf(points.field());
   const same = found === expected;
   failures += same ? 0 : 1;
   claim(points.centres().length === 3 * centres, `${name}: ${points.centres().length} numbers for ${centres} centres`);

@@ -129,8 +129,8 @@ impl BranchWalk {
         &mut self,
         nodes: &[Id],
         base: &Base,
-        mut decide: impl FnMut(ChoiceCondition) -> Holds,
-        mut visit: impl FnMut(Id, bool),
+        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
+        visit: &mut dyn FnMut(Id, bool),
         forks: &mut Vec<Self>,
     ) {
         while self.left > 0 {
@@ -226,9 +226,9 @@ impl Base {
         walk: &mut BranchWalk,
     ) -> Id {
         let (mut way, mut rest) = (Vec::new(), holds.iter());
-        let next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
+        let mut next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
         walk.begin(part, &self.graph);
-        walk.run(&part.nodes, self, next, |id, holds| way.push((id, holds)), &mut Vec::new());
+        walk.run(&part.nodes, self, &mut next, &mut |id, holds| way.push((id, holds)), &mut Vec::new());
         let graph = &mut self.graph;
         let mut map: Vec<Id> = (0..graph.len() as Id).collect();
         for (id, holds) in way.into_iter().rev() {
@@ -373,12 +373,12 @@ impl Branches {
         };
         let index = self.parts.len();
         let mut has_choice = false;
-        let look = |_| {
+        let mut look = |_| {
             has_choice = true;
             Holds::Always
         };
         self.walk.begin(&part, &self.base.graph);
-        self.walk.run(&part.nodes, &self.base, look, |_, _| {}, &mut Vec::new());
+        self.walk.run(&part.nodes, &self.base, &mut look, &mut |_, _| {}, &mut Vec::new());
         self.parts.push(part);
         if !has_choice {
             self.parts[index].number = Some(self.numbered.len() as u32);
@@ -405,7 +405,7 @@ impl Branches {
         &self,
         of: usize,
         limit: usize,
-        mut decide: impl FnMut(ChoiceCondition) -> Holds,
+        decide: &mut dyn FnMut(ChoiceCondition) -> Holds,
     ) -> Vec<Vec<bool>> {
         let part = &self.parts[of];
         let mut first = BranchWalk::default();
@@ -414,7 +414,7 @@ impl Branches {
         while found.len() < limit
             && let Some(mut walk) = open.pop()
         {
-            walk.run(&part.nodes, &self.base, &mut decide, |_, _| {}, &mut open);
+            walk.run(&part.nodes, &self.base, decide, &mut |_, _| {}, &mut open);
             found.push(walk.holds);
         }
         found
@@ -426,7 +426,7 @@ impl Branches {
             *left = left.saturating_sub(1);
             return;
         }
-        for holds in self.ways(of, *left, |_| Holds::Somewhere) {
+        for holds in self.ways(of, *left, &mut |_| Holds::Somewhere) {
             let part = self.taken(of, &holds, values);
             self.number(part, left, values);
         }
@@ -452,8 +452,8 @@ impl Branches {
             }
             self.base.graph.evaluate(&part.nodes, values, p, &mut self.doubles);
             self.walk.begin(part, &self.base.graph);
-            let decide = |condition: ChoiceCondition| condition.at_point(|id| self.doubles[id as usize]);
-            self.walk.run(&part.nodes, &self.base, decide, |_, _| {}, &mut Vec::new());
+            let mut decide = |condition: ChoiceCondition| condition.at_point(|id| self.doubles[id as usize]);
+            self.walk.run(&part.nodes, &self.base, &mut decide, &mut |_, _| {}, &mut Vec::new());
             let holds = core::mem::take(&mut self.walk.holds);
             at = self.taken(at, &holds, values);
             self.walk.holds = holds;
@@ -479,7 +479,7 @@ impl Branches {
                 numbers.push(number);
                 continue;
             }
-            let found = self.ways(at, MAX_LISTED + 1 - ways, |condition| condition.in_box(range));
+            let found = self.ways(at, MAX_LISTED + 1 - ways, &mut |condition| condition.in_box(range));
             ways += found.len();
             if ways > MAX_LISTED {
                 return None;
