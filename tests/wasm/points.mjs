@@ -54,7 +54,7 @@ function finish(points, name) {
 /** Samples a solved field in the core. @param {Points} points @param {object} known @param {string} name */
 function sampled(points, known, name) {
   const core = new Core();
-  accepted(core.set_points(points.field(), known), `${name}: set_points`);
+  accepted(core.set_points(points.field(), known, {}), `${name}: set_points`);
   accepted(core.start({ radius_share: 0.02, relax_steps: 2 }), `${name}: start`);
   while (core.step(1000).stop_reason === null);
   const count = core.count();
