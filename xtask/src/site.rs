@@ -29,7 +29,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
         Bundle::Core => 690.0,
         Bundle::Points => 143.0,
-        Bundle::Lesson => 172.0,
+        Bundle::Lesson => 173.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
     }
