@@ -42,7 +42,7 @@ use glam::{Vec2, Vec3};
 
 /// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first particles live to the end than with half of
 /// it, and holes stay smaller than with half as much again.
-const BALANCE_EVERY: u32 = 4;
+pub(crate) const BALANCE_EVERY: u32 = 4;
 
 /// Steps of relaxation after a balance; every other frame has one. With one the closest pairs of the sweeps are 0.03 nearer, a third changes
 /// nothing.
@@ -219,6 +219,11 @@ impl Flow {
     /// Whether the surface is surveyed in the next frame.
     pub(crate) fn is_due(&self) -> bool {
         self.frames == 0
+    }
+
+    /// The turn of the next frame among those from one balance to the next.
+    pub(crate) fn turn(&self) -> u32 {
+        self.frames
     }
 
     /// Whether the particles are balanced in the next frame.

@@ -8,11 +8,11 @@ use crate::sampler::constraint::tips::{self, Tip};
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
-use crate::sampler::flow::{FlowSurface, Settled};
+use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{FlowStage, PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
-use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal};
+use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal, Turn};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
@@ -562,7 +562,8 @@ impl Sampler {
         }
         let (particles, corners) = (&self.output.particles, &self.output.corners);
         let (target, spacing) = (self.attempt.moving_target(&self.settings), self.attempt.spacing());
-        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, self.tools.flow.is_last()) {
+        let turn = Turn { at: self.tools.flow.turn(), of: BALANCE_EVERY };
+        match MovingMesh::new(particles, corners, &self.bounds, target, spacing, turn) {
             Some(mesh) => PhaseState::Flow(FlowStage::Mesh(Box::new(mesh))),
             None => self.begin_transport(),
         }

@@ -114,13 +114,20 @@ struct Shape {
     wanted: f64,
 }
 
+/// The part of the particles of a mesh at which surgery looks in a frame: part number `at` of `of`, in the order in which they came.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    pub(crate) at: u32,
+    pub(crate) of: u32,
+}
+
 /// Goals of the level under way, and the recipe that leads to them.
 #[derive(Clone, Debug)]
 struct Goals {
     /// Whether it is the level of the front, where order is made. At full resolution the goals of a last level follow on it.
     is_first: bool,
-    /// Whether it is no level, but a frame of a mesh that follows a moving surface.
-    is_moving: bool,
+    /// The turn of surgery, if it is no level but a frame of a mesh that follows a moving surface.
+    turn: Option<Turn>,
     /// Levels still to come after this one.
     to_come: u32,
     recipe: Recipe,
@@ -163,7 +170,7 @@ enum Task {
 impl Goals {
     fn new(facts: &LevelFacts) -> Self {
         let &LevelFacts { is_first, to_come, .. } = facts;
-        Self { is_first, is_moving: false, to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
+        Self { is_first, turn: None, to_come, recipe: Recipe::of(facts), spacing: 0.0, faces: 0.0 }
     }
 }
 
@@ -337,7 +344,7 @@ impl Refinement {
     /// The task that begins a pass of the recipe, or the task after the last pass.
     fn begin_pass(&mut self, pass: usize) -> Task {
         let Some(&kind) = self.level.recipe.passes.get(pass) else {
-            if self.level.is_moving {
+            if self.level.turn.is_some() {
                 return Task::Done;
             }
             if self.level.is_first && self.level.to_come == 0 {
@@ -377,7 +384,13 @@ impl Refinement {
             | Pass::Follow => mesh.vertex_slots(),
             Pass::Clip => 0,
         };
-        Task::Pass { pass, next: 0, end: end as u32 }
+        let end = end as u32;
+        match (kind, self.level.turn) {
+            (Pass::Mend { .. }, Some(Turn { at, of })) => {
+                Task::Pass { pass, next: at * end / of, end: (at + 1) * end / of }
+            }
+            _ => Task::Pass { pass, next: 0, end },
+        }
     }
 
     /// Goes on with a pass for one block.
@@ -416,7 +429,7 @@ impl Refinement {
             Pass::Measure => self.tally.measure(net, next..last),
             Pass::Inspect => {
                 self.tally.inspect(net, next..last);
-                if self.target.halvings == 0 && !net.is_graded() && !self.level.is_moving {
+                if self.target.halvings == 0 && !net.is_graded() && !self.level.turn.is_some() {
                     self.tally.inspect_shapes(net, self.level.spacing, next..last);
                 }
             }

@@ -10,7 +10,7 @@
 use super::net::{MovedBlock, Net};
 use super::recipe::Recipe;
 use super::walls::{Planes, Walls};
-use super::{Goals, Refinement, Refusal, SurfaceFacts, Target};
+use super::{Goals, Refinement, Refusal, SurfaceFacts, Target, Turn};
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::{Particles, Slots};
@@ -26,15 +26,15 @@ pub(crate) struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// Begins a frame with the particles of the frame before, and the mesh between them by its `corners`. Where `is_due`, particles are
-    /// born and die in it. None if the mesh does not end at the box.
+    /// Begins a frame with the particles of the frame before, and the mesh between them by its `corners`. Particles are born and die among
+    /// those whose `turn` it is. None if the mesh does not end at the box.
     pub(crate) fn new(
         particles: &Particles,
         corners: &[u32],
         bounds: &Bounds,
         target: Target,
         spacing: f32,
-        is_due: bool,
+        turn: Turn,
     ) -> Option<Self> {
         let mesh = HalfEdges::from_triangles(particles.len(), corners.as_chunks().0).ok()?;
         let mut net = Net {
@@ -49,10 +49,10 @@ impl MovingMesh {
         if !net.hold_border() {
             return None;
         }
-        let recipe = Recipe::of_frame(is_due, net.has_border());
+        let recipe = Recipe::of_frame(net.has_border());
         let mut refinement = Refinement::of_layer(net, MovedBlock::default(), target, None);
         refinement.level =
-            Goals { is_first: false, is_moving: true, to_come: 0, recipe, spacing, faces: 0.0 };
+            Goals { is_first: false, turn: Some(turn), to_come: 0, recipe, spacing, faces: 0.0 };
         refinement.task = refinement.begin_pass(0);
         let area = refinement.area();
         Some(Self { refinement, area })

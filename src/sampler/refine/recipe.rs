@@ -201,17 +201,15 @@ impl Recipe {
         recipe
     }
 
-    /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels between. Where it `is_due`, particles are born
-    /// and die.
-    pub(super) fn of_frame(is_due: bool, has_border: bool) -> Self {
+    /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels between.
+    pub(super) fn of_frame(has_border: bool) -> Self {
         let Plan { theta, delta, .. } = TUNING.between;
+        let mend = Pass::Mend { loss: -TUNING.least_gain };
         let passes = vec![Pass::Follow, Pass::Follow, Pass::Clip];
         let mut recipe = Self { passes, theta, delta, stretch: TUNING.moving_stretch };
         recipe.sweep(1);
-        if is_due {
-            recipe.passes.extend([Pass::Measure, Pass::Mend { loss: -TUNING.least_gain }]);
-            recipe.sweep(1);
-        }
+        recipe.passes.extend([Pass::Measure, mend]);
+        recipe.sweep(1);
         if has_border {
             recipe.passes.extend([Pass::Thin, Pass::Flip]);
         }
