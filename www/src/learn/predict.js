@@ -80,7 +80,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
   const input = inputOf(prediction, question, stops.pickOf(id));
   stops.entries.set(id, { question, get: input.get, reveal: () => answer(input.get()) });
-  const result = h('div', { class: 'predict-result', role: 'status' });
+  const result = h('div', { class: 'predict-result', role: 'status', tabindex: '-1' });
   const reveal = button({ type: 'submit', class: 'primary' }, 'Reveal');
   const skip = button({ class: 'plain', press: () => void answer(null) }, 'Skip');
   const submit = (/** @type {SubmitEvent} */ event) => {
@@ -98,6 +98,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
 
   /** @param {string | number | null} guess */
   async function answer(guess) {
+    const isFocused = form.contains(document.activeElement);
     reveal.disabled = true;
     skip.disabled = true;
     fill(result, h('p', null, 'The run is asked.'));
@@ -109,6 +110,8 @@ export function mountPrediction(host, prediction, { lab, stops }) {
       host.dataset.state = 'open';
       input.lock();
       form.querySelector('.controls')?.remove();
+      // The button that was pressed is gone.
+      if (isFocused) result.focus({ preventScroll: true });
       stops.state(id).value = true;
       showFigure(host);
     } catch (error) {

@@ -44,7 +44,7 @@ export function mountStops({ stops, others, questions, onBench, onCollect, say }
     if (!isPresenting) void loaded?.then(({ end }) => end());
     if (!found) return;
     if (!found.isExact) {
-      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`);
+      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`, found.stop);
       history.replaceState(history.state, '', writeAddress({ stop: found.stop, parts }));
     }
     const isBench = others.includes(found.stop);

@@ -248,5 +248,6 @@ export interface StopsOptions {
   onBench: (id: string, given: Record<string, string>) => Promise<void>;
   /** opens the part of the page where work is collected */
   onCollect: () => Promise<void>;
-  say: (words: string) => void;
+  /** says something at a stop, or at the top of the page */
+  say: (words: string, stop?: string) => void;
 }

@@ -228,6 +228,15 @@ test('an unknown stop leads to the nearest one, and the page says so', async ({ 
   await expect(page.locator('#notice')).toContainText('There is no stop “ringz”');
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
   await expect(page.locator('#rings h2')).toBeInViewport();
+  await expect(page.locator('#notice')).toBeInViewport({ ratio: 1 });
+});
+
+test('the focus goes from the button of a question to its answer', async ({ page }) => {
+  await openLesson(page, { hash: '#predict-ring' });
+  await page.getByLabel('Particles in ring 12').fill('70');
+  await page.keyboard.press('Enter');
+  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+  await expect(page.locator('#predict-ring .predict-result')).toBeFocused();
 });
 
 test('without the bundle the text stays and a figure says what is missing', async ({ page }) => {
