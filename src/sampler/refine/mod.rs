@@ -429,7 +429,7 @@ impl Refinement {
             Pass::Measure => self.tally.measure(net, next..last),
             Pass::Inspect => {
                 self.tally.inspect(net, next..last);
-                if self.target.halvings == 0 && !net.is_graded() && !self.level.turn.is_some() {
+                if self.target.halvings == 0 && !net.is_graded() && self.level.turn.is_none() {
                     self.tally.inspect_shapes(net, self.level.spacing, next..last);
                 }
             }
