@@ -225,11 +225,12 @@ export class Viewer {
     this.moved();
   }
 
-  /** Turns to a side of the surface, unless it is seen already. @param {Vec3} normal */
+  /** Turns to a side of the surface, or stays if it is seen already. @param {Vec3} normal */
   turnTo(normal) {
     const to = facing(this.camera.state, normal);
-    if (!to) return;
-    this.camera.turnTo(to);
+    if (to) this.camera.turnTo(to);
+    // The turn of the opening would lead away from it.
+    else this.camera.turn = null;
     this.moved();
   }
 

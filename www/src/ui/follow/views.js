@@ -1,5 +1,6 @@
 /**
- * The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm.
+ * The linked views of a particle at one event: the tangent plane with its slots in words,
+ * the algorithm, the profile and the numbers.
  */
 import { adaptivePlane } from '../../figures/adaptive.js';
 import { algorithmList } from '../../figures/algorithm.js';
@@ -22,9 +23,9 @@ export function createViews(follower) {
     'div',
     { class: 'follow-views' },
     view(follower, 'Tangent plane', tangentView),
+    view(follower, 'Algorithm', algorithmView),
     view(follower, 'Profile', profileView, true),
     view(follower, 'Numbers', numbersView, true),
-    view(follower, 'Algorithm', algorithmView),
     createRestViews(follower),
   );
   linkHover(element, follower);
