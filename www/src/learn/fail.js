@@ -124,6 +124,7 @@ export function createFail(lab, { choose, isLocked }) {
     seed: (place) => turn(SEED, seedAt(place)),
     /** Measures what is shown, and says why it is as it is. @param {Setup} setup */
     async tell({ left, right }) {
+      fill(verdict, h('p', { class: 'figure-status' }, 'Each choice is tried with the others put back'));
       try {
         const usual = await tries.take(USUAL);
         for (const value of [left, ...Object.values(keptSides(lab))]) if (value) await tries.take(value);

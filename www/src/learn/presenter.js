@@ -183,9 +183,10 @@ function createWalk(id, questions) {
     const card = cards[cards.findIndex((one) => one.hasAttribute('data-current')) + by];
     if (card) showCard(card);
     if (cards.length > 0) return card !== undefined;
-    const press = stage?.querySelector('button[data-step]');
-    if (press instanceof HTMLElement && press.checkVisibility() && by > 0 && pressed < LONG) {
-      pressed += 1;
+    const press = chapter.querySelector(`button[data-${by > 0 ? 'step' : 'back'}="${id}"]`);
+    const isTurn = by > 0 ? pressed < LONG : pressed > 0;
+    if (press instanceof HTMLElement && press.checkVisibility() && press.ariaDisabled !== 'true' && isTurn) {
+      pressed += by;
       press.click();
       return true;
     }

@@ -46,6 +46,15 @@ test('the run accepts its own decisions, from the keyboard, too, and objects to 
   const radius = Math.min(box.width, box.height) / 10.1;
   await page.mouse.click(box.x + box.width / 2 - radius, box.y + box.height / 2 - Math.sqrt(3) * radius);
   await expect(told).toContainText('The child of slot 2 became particle 7.');
+  // Back over a slot that was missed: the mistakes stay.
+  const question = figure.locator('.plane-question');
+  for (const place of ['Particle 1, slot 2', 'Particle 1, slot 1', 'Particle 1, slot 0', 'Particle 0, slot 5']) {
+    await press(figure, 'One slot back');
+    await expect(question).toContainText(place);
+  }
+  await expect(score).toHaveText('Particle 1 of 10 · 2 mistakes · 5 slots decided.');
+  await press(figure, 'A new one');
+  await expect(question).toContainText('Particle 1, slot 0');
   expect(await overflow(page)).toBe(0);
   clean();
 });
@@ -104,6 +113,21 @@ test('the live line is the one that asks, and with the answer to the question th
   await expect(question.getByRole('status')).toContainText('You said 5.3 children are new. Slot 0 holds the parent');
   await expect(figure.locator('.plane-question')).toContainText('Particle 1, slot 0');
   await expect(line).toHaveText('Slot 0 holds the parent, if p has one');
+});
+
+test('a clicker goes slot by slot, and back', async ({ page }) => {
+  await openLesson(page, { hash: '#predict-children&mode=present' });
+  const question = (await live(page, 'plane')).locator('.plane-question');
+  for (const [key, place] of [
+    ['PageDown', 'Particle 1, slot 0'],
+    ['PageDown', 'Particle 1, slot 1'],
+    ['PageDown', 'Particle 1, slot 2'],
+    ['PageUp', 'Particle 1, slot 1'],
+    ['PageUp', 'Particle 1, slot 0'],
+  ]) {
+    await page.keyboard.press(key);
+    await expect(question).toContainText(place);
+  }
 });
 
 test('mistakes are saved with an assignment, those of the first round, too', async ({ page }) => {

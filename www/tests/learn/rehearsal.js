@@ -11,6 +11,7 @@ async function slideSettled(page) {
     await expect(stage).toHaveAttribute('data-state', 'live', { timeout: 60_000 });
   await expect(asked).toHaveCount(0, { timeout: 60_000 });
   await expect(busy).toHaveCount(0, { timeout: 60_000 });
+  await expect(page.locator('[data-current] [aria-busy="true"]:visible')).toHaveCount(0, { timeout: 60_000 });
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 

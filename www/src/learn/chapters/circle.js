@@ -5,7 +5,7 @@ import { fateShape, label, line, ring } from '../../figures/svg.js';
 import { inDegrees, inRadii } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, live, s } from '../../ui/dom.js';
-import { formatCount, formatFixed, formatShare, formatSignificant, MISSING } from '../../ui/format.js';
+import { formatCount, formatFixed, formatShare, formatSignificant } from '../../ui/format.js';
 import { bracketOf, isOn, landingsOf, MOST_THETA, newtonShare, onCircle, slotOf, slotOn, turned } from '../bend.js';
 import { createNumber, dragIn } from '../drag.js';
 import { openBend, openSlot } from '../measure.js';
@@ -27,6 +27,8 @@ const [LEAST_R, MOST_R, MOST_BEND] = [0.25, 1.1, 0.9];
 const RUNS = [180, 720];
 /** From here on the place of the child is named. */
 const NAMED_RAD = 0.2;
+/** Angle between the child and its name. */
+const BESIDE_RAD = 0.16;
 /** Parts of the arc on which f changes its sign. */
 const ARC = 24;
 /** Size of the charts, in rem, and the place of their axes. */
@@ -68,18 +70,9 @@ export async function circle({ lab, stops }) {
   }
   show(sharpest);
 
-  /** @param {string} name @param {typeof bend} number @param {number} min @param {number} max */
-  const handle = (name, number, min, max) =>
-    createNumber({
-      name,
-      scale: { min, max, step: 10 ** (Math.floor(Math.log10(max)) - 2) },
-      value: () => number.value,
-      say: (value) => formatSignificant(value, 3),
-      change(value) {
-        isHere.value = false;
-        number.value = value;
-      },
-    });
+  const handle = handleOf(() => {
+    isHere.value = false;
+  });
   const sentence = h(
     'p',
     null,
@@ -118,7 +111,14 @@ export async function circle({ lab, stops }) {
       'div',
       { class: 'controls' },
       range.element,
-      button({ press: () => take(turned(slot.value, theta(), bracket.peek())) }, 'One step of the search'),
+      button(
+        {
+          'data-step': 'circle',
+          off: () => isOn(slot.value, theta()),
+          press: () => take(turned(slot.value, theta(), bracket.peek())),
+        },
+        'One step of the search',
+      ),
       button(
         {
           hidden: () => isHere.value && here.value === sharpest,
@@ -127,11 +127,30 @@ export async function circle({ lab, stops }) {
         'Back to the sharpest bend',
       ),
     ),
-    h('div', null, () => facts(factsOf(slot.value, isOpen()))),
+    h('div', { hidden: () => !isOpen() }, () => facts(factsOf(slot.value))),
     newton,
   );
   return [h('div', { class: 'two lab' }, box, side)];
 }
+
+/**
+ * Makes numbers of the sentence that can be dragged.
+ * @param {() => void} leave  says that the slot is none of this surface any more
+ */
+const handleOf =
+  (leave) =>
+  /** @param {string} name @param {Signal<number>} number @param {number} min @param {number} max */
+  (name, number, min, max) =>
+    createNumber({
+      name,
+      scale: { min, max, step: 10 ** (Math.floor(Math.log10(max)) - 2) },
+      value: () => number.value,
+      say: (value) => formatSignificant(value, 3),
+      change(value) {
+        leave();
+        number.value = value;
+      },
+    });
 
 /**
  * The chart of the landings of Newton's method. A dot that is pressed shows its landing.
@@ -178,7 +197,12 @@ function landingsPart(lab, { isOpen, slot, show, first }) {
     input.valueAsNumber = nearestDot(landings.peek(), at);
     input.dispatchEvent(new Event('input', { bubbles: true }));
   });
-  return [errors, dots, h('p', { class: 'figure-count', hidden: () => !isOpen() }, () => landingWords(landings.value))];
+  const words = h(
+    'p',
+    { class: 'figure-count', hidden: () => !isOpen(), 'aria-busy': () => String(landings.value.length === 0) },
+    () => landingWords(landings.value),
+  );
+  return [errors, dots, words];
 }
 
 /** @param {SlotCase} slot @param {number} theta @param {[number, number] | null} bracket */
@@ -192,11 +216,11 @@ function told(slot, theta, bracket) {
   return `${side} f changes its sign between ${inDegrees(bracket[0], 1)} and ${inDegrees(bracket[1], 1)}.`;
 }
 
-/** @param {SlotCase} slot @param {boolean} isOpen @returns {[string, string][]} */
-function factsOf({ landing, radius, aside }, isOpen) {
+/** @param {SlotCase} slot @returns {[string, string][]} */
+function factsOf({ landing, radius, aside }) {
   const newton =
     landing === null ? 'no landing' : inRadii(landing, radius) + asideWords({ newtonAside: aside / radius });
-  return [['Newton lands at', isOpen ? newton : MISSING]];
+  return [['Newton lands at', newton]];
 }
 
 /**
@@ -253,8 +277,9 @@ function drawingOf({ subject, normals, radii, positions }, slot, { theta, bracke
     ]),
     ring(isLanded ? 'hand landed' : 'hand', [x, y], 0.13),
   );
-  // At the start the place is called θ₀ already.
-  if (Math.abs(theta) > NAMED_RAD) svg.append(label('name', [1.2 * x, 1.2 * y], 'θ'));
+  // At the start the place is called θ₀ already. The name stands on the circle, where the drawing has room.
+  if (Math.abs(theta) > NAMED_RAD)
+    svg.append(label('name', onCircle(reach / unit, theta + Math.sign(theta) * BESIDE_RAD), 'θ'));
   return svg;
 }
 
@@ -382,7 +407,7 @@ function landingWords(landings) {
     left === 0
       ? 'None left the plane of its slot.'
       : `Crosses: the ${formatShare(left / landings.length)} that left the plane of their slot, by up to ${formatFixed(most, 2)}\u00a0r.`;
-  return `Dots: ${formatCount(landings.length)} particles of this surface, placed by Newton’s method in two runs. ${aside}`;
+  return `Dots: ${formatCount(landings.length)} particles that Newton’s method has placed in two runs. ${aside}`;
 }
 
 /** The landings of Newton's method in runs on the surface, by their bends. @param {Lab} lab @param {LabRun} coarse */

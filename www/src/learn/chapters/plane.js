@@ -84,7 +84,11 @@ class Exercise {
   #which;
   #matched;
   #answers;
+  #back;
   #round = newRound();
+
+  /** What was shown at each slot that is decided. @type {Past[]} */
+  #past = [];
 
   /** The rounds before this one. @type {Round[]} */
   #rounds = [];
@@ -118,13 +122,20 @@ class Exercise {
       button({ press: () => this.#decide({ fate: 'parent', particle: null }) }, 'The parent'),
       button({ press: () => this.#decide({ fate: 'added', particle: null }) }, 'A new one'),
       h('span', { class: 'plane-match' }, this.#matched, this.#which),
-      button({ class: 'plain', 'data-step': '', press: () => this.#queue(() => this.#leave(1)) }, 'Let the run decide'),
+      button(
+        { class: 'plain', 'data-step': 'predict-children', press: () => this.#queue(() => this.#leave(1)) },
+        'Let the run decide',
+      ),
       button(
         { class: 'plain', press: () => this.#queue(() => this.#leave(Infinity)) },
         'The rest of this particle, too',
       ),
     );
     this.#now = null;
+    this.#back = button(
+      { class: 'plain', 'data-back': 'predict-children', press: () => this.#queue(() => this.#takeBack()) },
+      'One slot back',
+    );
     const again = button({ class: 'plain', press: () => this.#queue(() => this.#beginAgain()) }, 'Begin again');
     this.element = h(
       'div',
@@ -137,7 +148,7 @@ class Exercise {
         { class: 'side' },
         this.#answers,
         this.#told,
-        h('div', { class: 'controls plane-score' }, this.#score, again),
+        h('div', { class: 'controls plane-score' }, this.#score, this.#back, again),
       ),
       this.#picture.element,
     );
@@ -173,9 +184,24 @@ class Exercise {
   async #beginAgain() {
     if (isBegun(this.#round)) this.#rounds.push(this.#round);
     this.#round = newRound();
+    this.#past = [];
     this.#answers.hidden = false;
     this.#tell('', '');
     await this.take(0);
+  }
+
+  /** Goes back to the slot that was decided last. Mistakes stay counted. */
+  async #takeBack() {
+    const past = this.#past.pop();
+    if (!past) return;
+    const { particle, at, round } = past;
+    this.#round = { ...round, mistakes: this.#round.mistakes };
+    this.#answers.hidden = false;
+    this.#tell('', '');
+    await this.take(particle);
+    if (!this.#now) return;
+    this.#now.at = at;
+    this.#ask();
   }
 
   /** Shows the slot that is to be decided. */
@@ -216,6 +242,7 @@ class Exercise {
   /** Writes the score, also for an assignment. */
   #count() {
     const treated = formatCount((this.#now?.opened.subject.particle ?? 0) + 1);
+    this.#back.hidden = this.#past.length === 0;
     this.#score.textContent = `${[`Particle ${treated} of ${formatCount(TREATED)}`, ...scoreOf(this.#round)].join(' · ')}.`;
     const rounds = [...this.#rounds, this.#round].filter(isBegun);
     // Nothing is answered before the first decision.
@@ -228,6 +255,12 @@ class Exercise {
     const best = bestOf(rounds);
     if (best && best !== first) answer.push(`best of ${plural(rounds.length, 'round')}: ${scoreOf(best).join(', ')}`);
     this.#stops.outcomes.set(stop, { stop, question, guess: first.mistakes.length, answer: answer.join('; ') });
+  }
+
+  /** Keeps what is shown before a slot is decided. @param {Shown} now */
+  #keep({ opened, at }) {
+    const { seam } = this.#round;
+    this.#past.push({ particle: opened.subject.particle, at, round: { ...this.#round, seam: [...seam] } });
   }
 
   /** Goes on to the next slot, or the next particle. @param {string} words */
@@ -279,6 +312,7 @@ class Exercise {
     const decision = now.decisions[now.at];
     const why = objection(opened, decision, said);
     if (!why) {
+      this.#keep(now);
       this.#round.right += 1;
       this.#queue(() => this.#goOn(wordsOf(opened, decision)));
       return;
@@ -297,6 +331,7 @@ class Exercise {
   async #leave(most) {
     const now = this.#now;
     for (let slots = 0; now && now === this.#now && now.at < now.decisions.length && slots < most; slots += 1) {
+      this.#keep(now);
       this.#round.left += 1;
       await this.#goOn(wordsOf(now.opened, now.decisions[now.at]));
     }
@@ -327,6 +362,7 @@ class Exercise {
 }
 
 /** @typedef {ReturnType<typeof newRound>} Round */
+/** @typedef {{ particle: number, at: number, round: Round }} Past */
 
 /** A round before its first decision. `seam`: where the front has met itself out of step. */
 const newRound = () => ({
