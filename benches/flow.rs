@@ -1,8 +1,9 @@
 //! Particles that follow a moving surface, beside fresh runs: `docs/flow.md` is what this writes.
 //!
 //! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles, of fronts and of
-//! refined runs. `--count N` takes another number, `--front` and `--refined` one of the two, `--adaptive` takes sizes that follow the curvature, and `--random N` the motions of N random surfaces instead, on which the
-//! constants of the flow are chosen.
+//! refined runs, and with 5,000 of a refined run whose sizes follow the curvature. `--count N` takes another number, `--front` and `--refined`
+//! one of the two, `--adaptive` takes sizes that follow the curvature everywhere, and `--random N` the motions of N random surfaces instead, on
+//! which the constants of the flow are chosen.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
@@ -21,8 +22,8 @@ mod settings;
 /// Numbers of particles.
 const COUNTS: [u32; 2] = [5_000, 20_000];
 const FRAMES: u32 = 100;
-/// Frames from one comparison to the next.
-const COMPARED_EVERY: u32 = 25;
+/// Frames from one comparison to the next, of one size and of sizes that differ.
+const COMPARED_EVERY: [u32; 2] = [25, 50];
 
 /// A surface, the parameter `q` that moves it, and the half-width of the box.
 struct Sweep {
@@ -82,7 +83,8 @@ const HEAD: &str = "\
 # Particles that follow a moving surface
 
 Each surface is moved through a hundred frames by its parameter `q`, and its particles follow it. Every 25 frames they are compared with
-a fresh run of the same radius, whose figures stand in brackets. This page is written by `cargo bench --bench flow > docs/flow.md`. All
+a fresh run of the same radius, whose figures stand in brackets; where sizes follow the curvature, every 50 frames with one of as many
+particles, and holes and pairs are over the radii there. This page is written by `cargo bench --bench flow > docs/flow.md`. All
 figures but the times are the same on every machine; README.md says what they mean, and on which machine the times were taken. *Still the
 first*: particles of the run before the surface moved, over those that the smaller of the two surfaces has room for. *Fresh / frame*: time
 of a fresh run over that of a frame.
@@ -118,16 +120,20 @@ fn main() {
     if counts.is_empty() {
         counts.extend(COUNTS);
     }
+    let all = methods.iter().flat_map(|&method| counts.iter().map(move |&count| (method, sampling, count)));
+    let mut parts: Vec<(Method, Sampling, u32)> = all.collect();
+    if sampling == Sampling::Uniform && methods.contains(&Method::Refined) {
+        parts.push((Method::Refined, Sampling::Adaptive, counts[0]));
+    }
     println!("{HEAD}");
-    for method in methods {
+    for (method, sampling, count) in parts {
         let of = if method == Method::Front { "a front" } else { "a refined run, with its mesh" };
-        for &count in &counts {
-            println!("## About {count} particles of {of}\n\n{COLUMNS}");
-            for sweep in &sweeps {
-                measure(sweep, count, method, sampling);
-            }
-            println!();
+        let sizes = if sampling == Sampling::Uniform { "" } else { ", sizes by curvature" };
+        println!("## About {count} particles of {of}{sizes}\n\n{COLUMNS}");
+        for sweep in &sweeps {
+            measure(sweep, count, method, sampling);
         }
+        println!();
     }
 }
 
@@ -179,6 +185,7 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
     let mut run = Run::start(field(0), &settings).expect("a run");
     finish(&mut run);
     let first = run.count();
+    let every = COMPARED_EVERY[usize::from(sampling == Sampling::Adaptive)];
     let (mut spent, mut moved) = (0.0, 0);
     for frame in 1..=FRAMES {
         let next = field(frame);
@@ -187,7 +194,7 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
         finish(&mut run);
         spent += before.elapsed().as_secs_f64();
         moved += run.count();
-        if frame % COMPARED_EVERY != 0 {
+        if frame % every != 0 {
             continue;
         }
         let before = Instant::now();
@@ -212,7 +219,7 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
             ours.figures.connectivity.euler,
             fresh.figures.connectivity.euler,
             1e9 * spent / moved as f64,
-            took * f64::from(COMPARED_EVERY) / spent,
+            took * f64::from(every) / spent,
         );
         (spent, moved) = (0.0, 0);
     }

@@ -225,7 +225,7 @@ impl<F: Field> Run<F> {
     /// Returns whether the particles can follow. If not, a run on the new field has to be started: the surface is gone or has creases or
     /// tips, or it lies farther from the particles than they from each other. Either way the field is the run's from then on.
     ///
-    /// The order of the fronts is lost where particles are born and die; those of a refined run of one radius move with its mesh, and keep
+    /// The order of the fronts is lost where particles are born and die; those of a refined run move with its mesh, and keep
     /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey, and there is nothing more to
     /// [relax](Run::relax) before the next start.
     ///

@@ -187,22 +187,21 @@ impl Attempt {
     /// The target of the refinement of this attempt's front; none if the front is not refined.
     pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
         let Refining { halvings, sizing, .. } = self.refining.as_ref()?;
+        Some(self.target_of(settings, *halvings, sizing.as_ref()))
+    }
+
+    /// The target of a mesh that follows a moving surface.
+    pub(super) fn moving_target(&self, settings: &Settings) -> refine::Target {
+        self.target_of(settings, 0, self.sizing.as_ref())
+    }
+
+    fn target_of(&self, settings: &Settings, halvings: u32, sizing: Option<&Sizing>) -> refine::Target {
         let count = match (settings.size_mode, sizing) {
             (SizeMode::Count, _) => refine::Count::Total(f64::from(settings.count)),
             (SizeMode::Radius, None) => refine::Count::PerCell(self.packing),
             (SizeMode::Radius, Some(sizing)) => refine::Count::Total(self.packing * sizing.predicted_count()),
         };
-        let grading = sizing.as_ref().map(Sizing::slope);
-        Some(refine::Target { halvings: *halvings, radius: self.radius as f32, grading, count })
-    }
-
-    /// The target of a mesh of one radius that follows a moving surface.
-    pub(super) fn moving_target(&self, settings: &Settings) -> refine::Target {
-        let count = match settings.size_mode {
-            SizeMode::Count => refine::Count::Total(f64::from(settings.count)),
-            SizeMode::Radius => refine::Count::PerCell(self.packing),
-        };
-        refine::Target { halvings: 0, radius: self.radius as f32, grading: None, count }
+        refine::Target { halvings, radius: self.radius as f32, grading: sizing.map(Sizing::slope), count }
     }
 
     /// Spacing of the hexagonal lattice with as many particles of one radius as are expected.

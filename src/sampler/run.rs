@@ -555,9 +555,9 @@ impl Sampler {
         self.begin_relaxation()
     }
 
-    /// Begins a frame of particles that follow a moving surface: with the mesh of a refined run of one radius, as long as that can follow.
+    /// Begins a frame of particles that follow a moving surface: with the mesh of a refined run, as long as that can follow.
     fn begin_flow(&mut self) -> PhaseState {
-        if self.output.corners.is_empty() || self.attempt.sizing.is_some() || self.tools.flow.is_closed {
+        if self.output.corners.is_empty() || self.tools.flow.is_closed {
             return self.begin_transport();
         }
         let (particles, corners) = (&self.output.particles, &self.output.corners);
@@ -624,7 +624,7 @@ impl Sampler {
     /// Goes on with a frame in which the particles move with a mesh. Where that cannot follow, they go on without it.
     fn move_mesh(&mut self, probe: &mut Probe, left: &mut u32, mut mesh: Box<MovingMesh>) -> PhaseState {
         let start = probe.evaluations();
-        let stepped = mesh.step(probe, &self.bounds, *left);
+        let stepped = mesh.step(probe, &self.bounds, self.attempt.sizing.as_ref(), *left);
         self.counts.relaxation_evaluations += probe.evaluations() - start;
         match stepped {
             Ok(units) => *left -= units.min(*left),
@@ -636,7 +636,7 @@ impl Sampler {
         if !mesh.is_done() {
             return PhaseState::Flow(FlowStage::Mesh(mesh));
         }
-        if self.settings.size_mode == SizeMode::Count {
+        if self.settings.size_mode == SizeMode::Count && self.attempt.sizing.is_none() {
             self.attempt.radius *= mesh.growth();
         }
         let Output { particles, corners, moved, .. } = &mut self.output;
@@ -651,7 +651,7 @@ impl Sampler {
     /// Joins the particles of a refined run to a mesh again, which they have lost where the surface has torn or joined.
     fn join_again(&mut self, probe: &mut Probe) {
         let is_refined = self.settings.method == Method::Refined && self.counts.refusal.is_none();
-        if !is_refined || self.attempt.sizing.is_some() {
+        if !is_refined {
             return;
         }
         let Output { particles, corners, .. } = &mut self.output;

@@ -2,7 +2,7 @@
 
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::half_edge::HalfEdges;
+use marching_particles::mesh::half_edge::{HalfEdges, NONE};
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Method, Phase, Run, Sampling, Settings, Warning};
@@ -77,6 +77,7 @@ fn how_a_flow_is_cut_into_steps_changes_no_bit() {
         (Method::Front, Sampling::Uniform),
         (Method::Front, Sampling::Adaptive),
         (Method::Refined, Sampling::Uniform),
+        (Method::Refined, Sampling::Adaptive),
     ] {
         let settings = settings!(method, sampling; ..Settings::with_count(1_200));
         let digest = |budget: u32| {
@@ -179,36 +180,56 @@ fn mesh_of(run: &mut Run<Formula>) -> HalfEdges {
 #[test]
 fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
     let waves = "z-0.3*sin(3*x+q)*cos(3*y)";
-    for (formula, way, half, euler) in [(ELLIPSOID, [1.0, 1.3], 1.5, 2), (waves, [0.0, 1.0], 1.5, 1)] {
-        let settings = settings!(method: Method::Refined; ..Settings::with_count(2_000));
+    for (sampling, formula, way, euler) in [
+        (Sampling::Uniform, ELLIPSOID, [1.0, 1.3], 2),
+        (Sampling::Uniform, waves, [0.0, 1.0], 1),
+        (Sampling::Adaptive, ELLIPSOID, [1.0, 1.3], 2),
+        (Sampling::Adaptive, waves, [0.0, 1.0], 1),
+        (Sampling::Adaptive, TANGLECUBE, [11.0, 12.0], -8),
+    ] {
+        let of = format!("{sampling:?}, {formula}");
+        let settings = settings!(method: Method::Refined, sampling; ..Settings::with_count(2_000));
+        let half = if formula == TANGLECUBE { 2.6 } else { 1.5 };
         let mut run = started(formula, way[0], half, &settings);
         sweep(&mut run, formula, way, 40, u32::MAX);
         let mesh = mesh_of(&mut run);
-        assert_eq!(mesh.check(), Ok(()), "{formula}");
-        assert_eq!(mesh.euler(), euler, "{formula}");
+        assert_eq!(mesh.check(), Ok(()), "{of}");
+        assert_eq!(mesh.euler(), euler, "{of}");
+        assert_eq!(
+            mesh.edges().all(|h| mesh.twin(h) != NONE),
+            formula != waves,
+            "{of}: the mesh has a border"
+        );
         let figures = run.report().measures.quality.expect("figures");
-        assert!(figures.order.six > 0.8, "{formula}: {} have six neighbours", figures.order.six);
-        assert!(figures.coverage.cover < 1.4, "{formula}: a hole of {}", figures.coverage.cover);
-        assert!(run.count().abs_diff(2_000) <= 60, "{formula}: {} particles", run.count());
-        let radius = |run: &Run<Formula>| run.particles().radius[0];
-        let grown = radius(&run) / radius(&started(formula, way[1], half, &settings));
-        assert!((0.97..1.03).contains(&grown), "{formula}: radii {grown} times those of a fresh run");
+        assert!(figures.order.six > 0.8, "{of}: {} have six neighbours", figures.order.six);
+        let hole = match sampling {
+            Sampling::Uniform => figures.coverage.cover,
+            Sampling::Adaptive => figures.coverage.cover_local,
+        };
+        assert!(hole < 1.5, "{of}: a hole of {hole}");
+        assert!(run.count().abs_diff(2_000) <= 60, "{of}: {} particles", run.count());
+        let mean_radius =
+            |run: &Run<Formula>| run.particles().radius.iter().sum::<f32>() / run.count() as f32;
+        let grown = mean_radius(&run) / mean_radius(&started(formula, way[1], half, &settings));
+        assert!((0.97..1.03).contains(&grown), "{of}: radii {grown} times those of a fresh run");
         let identity = &run.particles().identity;
-        assert!(identity.is_sorted_by(|a, b| a < b), "{formula}");
+        assert!(identity.is_sorted_by(|a, b| a < b), "{of}");
         let first = identity.iter().filter(|&&number| number < 2_000).count();
-        assert!(first > 1_400, "{formula}: only {first} of the first particles are left");
+        assert!(first > 1_400, "{of}: only {first} of the first particles are left");
     }
 }
 
 #[test]
 fn a_mesh_is_given_up_where_its_surface_falls_apart_and_joined_again() {
-    let settings = settings!(method: Method::Refined; ..Settings::with_count(4_000));
-    let mut run = started(TANGLECUBE, 11.0, 2.6, &settings);
-    for (way, euler) in [([11.0, 14.0], 16), ([14.0, 11.0], -8)] {
-        sweep(&mut run, TANGLECUBE, way, 60, u32::MAX);
-        let mesh = mesh_of(&mut run);
-        assert_eq!(mesh.check(), Ok(()), "{way:?}");
-        assert_eq!(mesh.euler(), euler, "{way:?}");
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        let settings = settings!(method: Method::Refined, sampling; ..Settings::with_count(4_000));
+        let mut run = started(TANGLECUBE, 11.0, 2.6, &settings);
+        for (way, euler) in [([11.0, 14.0], 16), ([14.0, 11.0], -8)] {
+            sweep(&mut run, TANGLECUBE, way, 60, u32::MAX);
+            let mesh = mesh_of(&mut run);
+            assert_eq!(mesh.check(), Ok(()), "{sampling:?}, {way:?}");
+            assert_eq!(mesh.euler(), euler, "{sampling:?}, {way:?}");
+        }
     }
 }
 

@@ -51,7 +51,7 @@ pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
 
 /// The triangles between the particles of a front, if they can be had beyond doubt.
 pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u32; 3]>, Refusal> {
-    let radius = particles.radius.first().copied().unwrap_or(0.0);
+    let radius = particles.radius.iter().copied().fold(0.0, f32::max);
     let grown = border::grown(bounds, f64::from(radius));
     let options = MeshOptions { bounds: Some(&grown), ..MeshOptions::default() };
     let joined = triangulate_particles(particles, &options);
@@ -89,7 +89,7 @@ pub(super) fn join(
         size: Vec::new(),
         walls: Walls::new(bounds, &particles.position, spacing),
         on_crease: Vec::new(),
-        is_born: vec![false; rows.len()],
+        is_born: Vec::new(),
     };
     match ladder {
         None => judge_size(&net.mesh, particles, bounds, halvings)?,

@@ -2,19 +2,21 @@
 //!
 //! Newton's method brings the particles to the new surface, the springs and flips of a level keep the lattice even, and surgery lets
 //! particles be born and die where that costs least order: M. Botsch and L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling",
-//! Symposium on Geometry Processing 2004, with the trials of this module in place of splits and collapses by length.
+//! Symposium on Geometry Processing 2004, with the trials of this module in place of splits and collapses by length. Where sizes differ, those
+//! of the radius field are found anew at the new places, in every frame.
 //!
 //! Where a particle does not come to the surface, or a face looks against it, the surface has torn or joined. The mesh is given up then,
 //! and the particles go on without it: [`Flow`](crate::sampler::flow::Flow).
 
-use super::net::{MovedBlock, Net};
+use super::net::{Ground, MovedBlock, Net};
 use super::recipe::Recipe;
 use super::walls::{Planes, Walls};
-use super::{Goals, Refinement, Refusal, SurfaceFacts, Target, Turn};
+use super::{Goals, Refinement, Refusal, SurfaceFacts, Target, Turn, border, coarse};
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::{Particles, Slots};
 use crate::sampler::probe::Probe;
+use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
 /// A frame of a mesh that follows a surface.
@@ -36,20 +38,11 @@ impl MovingMesh {
         spacing: f32,
         turn: Turn,
     ) -> Option<Self> {
-        let mesh = HalfEdges::from_triangles(particles.len(), corners.as_chunks().0).ok()?;
-        let mut net = Net {
-            mesh,
-            position: particles.position.clone(),
-            normal: particles.normal.clone(),
-            slots: vec![Slots::default(); particles.len()],
-            walls: Walls::new(bounds, &particles.position, spacing),
-            is_born: vec![false; particles.len()],
-            ..Net::default()
-        };
+        let mut net = Net::over(particles, corners.as_chunks().0, bounds, target, spacing)?;
         if !net.hold_border() {
             return None;
         }
-        let recipe = Recipe::of_frame(net.has_border());
+        let recipe = Recipe::of_frame(net.is_graded(), net.has_border());
         let mut refinement = Refinement::of_layer(net, MovedBlock::default(), target, None);
         refinement.level =
             Goals { is_first: false, turn: Some(turn), to_come: 0, recipe, spacing, faces: 0.0 };
@@ -69,7 +62,13 @@ impl MovingMesh {
         bounds: &Bounds,
         target: Target,
     ) -> Result<Self, Refusal> {
-        let refinement = Refinement::of_component(probe, &facts(bounds), particles, target)?;
+        let spacing = 2.0 * target.radius;
+        let triangles = coarse::triangles(particles, bounds)?;
+        let net = Net::over(particles, &triangles, bounds, target, spacing);
+        let mut net = net.ok_or_else(|| coarse::doubtful(particles, 0))?;
+        let mut block = MovedBlock::default();
+        border::clip(&mut net, &mut Ground { probe, block: &mut block }, spacing)?;
+        let refinement = Refinement::of_layer(net, block, target, None);
         let area = refinement.area();
         Ok(Self { refinement, area })
     }
@@ -89,9 +88,16 @@ impl MovingMesh {
     /// # Errors
     ///
     /// The defect for which the mesh cannot follow.
-    pub(crate) fn step(&mut self, probe: &mut Probe, bounds: &Bounds, budget: u32) -> Result<u32, Refusal> {
+    pub(crate) fn step(
+        &mut self,
+        probe: &mut Probe,
+        bounds: &Bounds,
+        sizing: Option<&Sizing>,
+        budget: u32,
+    ) -> Result<u32, Refusal> {
+        let facts = SurfaceFacts { bounds: *bounds, sizing, ladder: None, bend: Vec3::ZERO, failures: 0 };
         // The columns are filled in the end: a frame that is cancelled leaves those of the frame before.
-        let (units, _) = self.refinement.step(probe, &facts(bounds), &mut Particles::default(), budget)?;
+        let (units, _) = self.refinement.step(probe, &facts, &mut Particles::default(), budget)?;
         Ok(units)
     }
 
@@ -109,6 +115,9 @@ impl MovingMesh {
         for (row, &v) in old.iter().enumerate() {
             particles.position[row] = net.position[v as usize];
             particles.normal[row] = net.normal[v as usize];
+            if net.is_graded() {
+                particles.radius[row] = radius * net.size_of(v);
+            }
         }
         for &v in &born {
             let near = net.mesh.neighbours(v).map(|other| place[other as usize]).find(|&row| row != NONE);
@@ -116,19 +125,39 @@ impl MovingMesh {
                 near.map_or((Particles::NO_PARENT, 0), |row| (row, particles.level[row as usize] + 1));
             place[v as usize] = particles.len() as u32;
             let (position, normal) = (net.position[v as usize], net.normal[v as usize]);
-            particles.push(position, normal, radius, parent, level, Slots::default());
+            particles.push(position, normal, radius * net.size_of(v), parent, level, Slots::default());
         }
         corners.clear();
         corners.extend(net.mesh.triangles().flatten().map(|v| place[v as usize]));
     }
 }
 
-/// What is known of a surface that moves.
-fn facts(bounds: &Bounds) -> SurfaceFacts<'_> {
-    SurfaceFacts { bounds: *bounds, sizing: None, ladder: None, bend: Vec3::ZERO, failures: 0 }
-}
-
 impl Net {
+    /// The net of particles with these triangles between them, with sizes in units of the radius of the target. None if that is no manifold.
+    fn over(
+        particles: &Particles,
+        triangles: &[[u32; 3]],
+        bounds: &Bounds,
+        target: Target,
+        spacing: f32,
+    ) -> Option<Self> {
+        let size = match target.grading {
+            Some(_) => particles.radius.iter().map(|radius| radius / target.radius).collect(),
+            None => Vec::new(),
+        };
+        let largest = size.iter().copied().reduce(f32::max).unwrap_or(1.0);
+        Some(Self {
+            mesh: HalfEdges::from_triangles(particles.len(), triangles).ok()?,
+            position: particles.position.clone(),
+            normal: particles.normal.clone(),
+            slots: vec![Slots::default(); particles.len()],
+            size,
+            walls: Walls::new(bounds, &particles.position, spacing * largest),
+            is_born: vec![false; particles.len()],
+            ..Self::default()
+        })
+    }
+
     /// Lets the particles of the border stay on the planes of the box on which they lie. Returns whether each of them lies on one.
     fn hold_border(&mut self) -> bool {
         for v in 0..self.position.len() as u32 {

@@ -478,9 +478,12 @@ impl Net {
         if first.planes.count() > second.planes.count() { first } else { second }
     }
 
-    /// Puts a new particle to a site. Its number may be that of one which was merged into another.
-    pub(super) fn put_new(&mut self, v: u32, site: Site) {
+    /// Puts a new particle of this size to a site. Its number may be that of one which was merged into another.
+    pub(super) fn put_new(&mut self, v: u32, site: Site, size: f32) {
         self.put(v, site);
+        if let Some(own) = self.size.get_mut(v as usize) {
+            *own = size;
+        }
         if let Some(is_born) = self.is_born.get_mut(v as usize) {
             *is_born = true;
         }

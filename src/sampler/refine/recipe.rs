@@ -202,11 +202,14 @@ impl Recipe {
     }
 
     /// The passes of a frame of a mesh that follows a moving surface, by the plan of the levels between.
-    pub(super) fn of_frame(has_border: bool) -> Self {
+    pub(super) fn of_frame(is_graded: bool, has_border: bool) -> Self {
         let Plan { theta, delta, .. } = TUNING.between;
         let mend = Pass::Mend { loss: -TUNING.least_gain };
         let passes = vec![Pass::Follow, Pass::Follow, Pass::Clip];
         let mut recipe = Self { passes, theta, delta, stretch: TUNING.moving_stretch };
+        if is_graded {
+            recipe.size(true);
+        }
         recipe.sweep(1);
         recipe.passes.extend([Pass::Measure, mend]);
         recipe.sweep(1);

@@ -306,10 +306,7 @@ impl Surgeon {
 
     /// Adds a new particle to the columns and to the patch.
     fn add(&mut self, net: &mut Net, v: u32, site: Site, size: f32) {
-        net.put_new(v, site);
-        if net.is_graded() {
-            net.size[v as usize] = size;
-        }
+        net.put_new(v, site, size);
         net.slots[v as usize] = Slots::default();
         self.stamp[v as usize] = self.trial;
         self.patch.push(v);

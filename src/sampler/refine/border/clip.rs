@@ -92,7 +92,8 @@ fn cut(net: &mut Net, ground: &mut Ground, spacing: f32, plane: usize) -> Result
             let [d, e] = [p, q].map(|p| net.walls.depth(p, plane));
             let start = p + (q - p) * (d / (d - e)).clamp(0.0, 1.0);
             let planes = common.joined(Planes::of(plane));
-            split(net, ground, h, EdgeSplit { near: start, planes, reach: spacing })?;
+            let reach = spacing * net.size_between(a, b);
+            split(net, ground, h, EdgeSplit { near: start, planes, reach })?;
         }
         h += 1;
     }
@@ -122,8 +123,9 @@ fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Res
         }
         None => return Err(Refusal::Cut { at: place.into() }),
     };
+    let size = net.size_between(net.mesh.origin(h), net.mesh.target(h));
     let v = net.mesh.split(h);
-    net.put_new(v, site);
+    net.put_new(v, site, size);
     Ok(())
 }
 
@@ -152,8 +154,9 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
         let depth = |plane: &usize| net.walls.depth(p, *plane);
         let nearest = (0..Planes::ALL).min_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
         let planes = Planes::of(nearest);
-        let is_near = depth(&nearest) <= OPEN_END * spacing;
-        let landing = if is_near { land_on(&net.walls, ground, planes, p, OPEN_END * spacing) } else { None };
+        let reach = OPEN_END * spacing * net.size_of(v);
+        let is_near = depth(&nearest) <= reach;
+        let landing = if is_near { land_on(&net.walls, ground, planes, p, reach) } else { None };
         let Some(site) = landing else { return Err(border(net, v)) };
         net.put(v, site);
     }
@@ -167,7 +170,8 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
         if m.common(n).is_inner() {
             let start = (net.position[a as usize] + net.position[b as usize]) * 0.5;
             let planes = m.joined(n);
-            split(net, ground, h, EdgeSplit { near: start, planes, reach: 2.0 * spacing })?;
+            let reach = 2.0 * spacing * net.size_between(a, b);
+            split(net, ground, h, EdgeSplit { near: start, planes, reach })?;
         }
     }
     Ok(())
@@ -185,13 +189,13 @@ fn tidy(net: &mut Net, spacing: f32) {
             .mesh
             .edges()
             .filter(is_at_border)
-            .filter(|&h| net.length(h) < SHORT * spacing)
+            .filter(|&h| is_short(net, h, spacing))
             .map(|h| key(net.length(h), h))
             .collect();
         short.sort_unstable();
         let mut has_changed = false;
         for (_, h) in short.into_iter().map(unkey) {
-            if net.mesh.has_half_edge(h) && net.length(h) < SHORT * spacing {
+            if net.mesh.has_half_edge(h) && is_short(net, h, spacing) {
                 let twin = net.mesh.twin(h);
                 has_changed |= collapse(net, h, spacing) || twin != NONE && collapse(net, twin, spacing);
             }
@@ -201,6 +205,10 @@ fn tidy(net: &mut Net, spacing: f32) {
             break;
         }
     }
+}
+
+fn is_short(net: &Net, h: u32, spacing: f32) -> bool {
+    net.length(h) < SHORT * spacing * net.size_between(net.mesh.origin(h), net.mesh.target(h))
 }
 
 /// Collapses an edge, where that is allowed and makes no flat triangle; whether it did.
