@@ -144,28 +144,36 @@ pub mod topology;
 #[doc(hidden)]
 pub mod web;
 
-pub use export::{Format, MeshFormat};
+pub use export::{Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis};
 pub use extent::Reach;
-pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Parameter};
+pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
+#[cfg(feature = "points")]
+pub use field::model::{GivenMesh, ModelInfo, NormalSource};
+#[cfg(feature = "points")]
+pub use field::rbf::RbfField;
 pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
 pub use glam;
-pub use math::{Bounds, Sym3};
+pub use math::{Bounds, Interval, Sym3};
 pub use mesh::build::Triangulation;
-pub use particles::{Particles, SlotFate, Slots};
+pub use particles::{OppositeFaces, Particles, SlotFate, Slots};
 #[cfg(feature = "points")]
-pub use pointcloud::fit::Fit;
+pub use pointcloud::CloudError;
+#[cfg(feature = "points")]
+pub use pointcloud::fit::{Fit, FitError};
 #[cfg(feature = "points")]
 pub use pointcloud::fit_points;
 #[cfg(feature = "points")]
 pub use pointcloud::job::JobError;
-pub use quality::{Figures, Histogram, Hole, Pair, Places, figures};
+#[cfg(feature = "points")]
+pub use pointcloud::read::ReadError;
+pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Run, Sample, Start,
     Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling, Search,
-    Settings, SettingsError, SizeMode, StopReason, Unsampled,
+    Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
 };
 pub use topology::{Component, Topology};
 

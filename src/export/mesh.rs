@@ -38,6 +38,23 @@ impl MeshFormat {
     }
 }
 
+/// A file of a mesh: its format, the place of the mesh in it, and the record that it carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// Its format.
+    pub format: MeshFormat,
+    /// Size and orientation of the mesh in it.
+    pub placement: Placement,
+    /// The record that it carries, but for STL.
+    pub record: RecordText,
+}
+
+impl From<MeshFormat> for MeshFile {
+    fn from(format: MeshFormat) -> Self {
+        Self { format, placement: Placement::default(), record: RecordText::default() }
+    }
+}
+
 /// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
 /// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every row of a particle is a vertex, so that normals are
 /// split at creases, whether it is in a triangle or not, so that indices stay; but in 3MF, which has no normals, every particle is one.

@@ -7,7 +7,7 @@ mod placement;
 mod record;
 mod three_mf;
 
-pub use mesh::{MeshFormat, write_mesh};
+pub use mesh::{MeshFile, MeshFormat, write_mesh};
 pub use placement::{Placement, Unit, UpAxis};
 pub use record::RecordText;
 
@@ -42,6 +42,21 @@ impl Format {
     #[must_use]
     pub fn of_extension(extension: &str) -> Option<Self> {
         Self::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(extension)).map(|&(_, format)| format)
+    }
+}
+
+/// A file of particles: its format, and the record that it carries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParticleFile {
+    /// Its format.
+    pub format: Format,
+    /// The record that it carries, but for XYZ and NPY.
+    pub record: RecordText,
+}
+
+impl From<Format> for ParticleFile {
+    fn from(format: Format) -> Self {
+        Self { format, record: RecordText::default() }
     }
 }
 

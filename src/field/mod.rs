@@ -172,6 +172,7 @@ pub trait Field: Send {
     }
 
     /// The equation of the same surface that is evaluated in the place of the one that was given, if there is one.
+    #[doc(hidden)]
     fn sampled_as(&self) -> Option<String> {
         None
     }
@@ -179,6 +180,7 @@ pub trait Field: Send {
     /// Looks for the creases of the surface in the box, in slices. Returns cells of it outside of which there are none, no wider than
     /// `width` but where that would take too long; no cell if there is no crease, as by default. Once the work is done branches that meet
     /// smoothly on the surface are one, numbers begin anew, and no branch is selected.
+    #[doc(hidden)]
     fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         let _ = (bounds, width);
         Box::pin(ready(Vec::new()))
@@ -186,6 +188,7 @@ pub trait Field: Send {
 
     /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
     /// on which f depends. Equal numbers are equal functions. A field that is smooth has the one branch 0, which is the default.
+    #[doc(hidden)]
     fn branch_at(&mut self, p: DVec3) -> u32 {
         let _ = p;
         0
@@ -193,6 +196,7 @@ pub trait Field: Send {
 
     /// The branches that may give a point of the surface in the box, each once; none if they are more than can be listed. By default
     /// there is branch 0 alone, as in a field without creases, whether the surface meets the box or not.
+    #[doc(hidden)]
     fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
         let _ = bounds;
         Some(vec![0])
@@ -200,6 +204,7 @@ pub trait Field: Send {
 
     /// Makes every evaluation of values and derivatives one of the smooth function of `branch`, wherever that gives f or not; or of f
     /// again. The numbers are those of [`Field::branch_at`]; bounds over boxes stay those of f.
+    #[doc(hidden)]
     fn select_branch(&mut self, branch: Option<u32>) {
         let _ = branch;
     }

@@ -254,6 +254,7 @@ fn law(kind: LawKind) -> fn(&Curvature<f64, DVec3>, f64) -> f64 {
 
 /// Why a run cannot begin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LessonError {
     /// A setting is no number within its range.
     #[error("{name} is {value}, but must lie between {min} and {max}")]

@@ -29,6 +29,17 @@ pub fn shortest_text(value: f64) -> String {
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
+/// A number rounded to a thousandth of a length.
+pub(crate) fn text_within(x: f64, length: f64) -> String {
+    let digits = (3.0 - libm::floor(libm::log10(length))).clamp(0.0, 15.0) as usize;
+    shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0)
+}
+
+/// A place in words, rounded to a thousandth of a length.
+pub(crate) fn place_text(position: [f64; 3], length: f64) -> String {
+    format!("({})", position.map(|x| text_within(x, length)).join(", "))
+}
+
 /// A count with commas between thousands.
 #[must_use]
 pub fn grouped(count: usize) -> String {

@@ -20,6 +20,7 @@ pub struct Callbacks {
 
 /// Why no renderer could be created.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum CreateError {
     /// The canvas gives no graphics context: none is supported, or the canvas already has one of another kind.
     #[error("the canvas gives no graphics context: {0}")]

@@ -16,6 +16,7 @@ pub struct View {
 
 /// Why a slice of numbers is not a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum ViewError {
     /// There are fewer numbers than a camera has.
     #[error("a view is 16 + 3 + 3 numbers, not {0}")]

@@ -1,7 +1,7 @@
 //! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when they change.
 
 use super::Run;
-use crate::export::{File, MeshFormat, Placement, RecordText};
+use crate::export::{File, MeshFile};
 use crate::field::Field;
 use crate::math::{Bounds, sort_few};
 use crate::mesh::build::{self, MeshOptions, Triangulation};
@@ -103,20 +103,9 @@ impl Meshing {
     }
 }
 
-/// A mesh file that is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileWish {
-    /// Its format.
-    pub format: MeshFormat,
-    /// Size and orientation of the mesh in it.
-    pub placement: Placement,
-    /// The record that the file carries.
-    pub record: RecordText,
-}
-
 /// A mesh file that is being written.
 struct Begun {
-    wish: FileWish,
+    wish: MeshFile,
     /// The particles as they are in the file, where that is not as they are in the run.
     placed: Option<(Particles, Measurements)>,
     /// Number of rows that are written.
@@ -178,7 +167,7 @@ impl<F: Field> Run<F> {
     /// # Errors
     ///
     /// An error if the 32-bit counters of the format are too small.
-    pub fn mesh_file(&mut self, wish: &FileWish, budget: u32) -> io::Result<Option<Vec<u8>>> {
+    pub fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
         let begun = self.meshing.file.take().filter(|begun| begun.wish == *wish);
         let mut begun = begun.unwrap_or_else(|| Begun {
             wish: wish.clone(),
@@ -188,7 +177,7 @@ impl<F: Field> Run<F> {
         });
         let own = (self.particles(), self.measured());
         let (particles, measured) = begun.placed.as_ref().map_or(own, |(p, m)| (p, m));
-        let FileWish { format, placement, record } = wish;
+        let MeshFile { format, placement, record } = wish;
         let file =
             File { format: *format, particles, measured, triangles: self.triangles(), placement, record };
         let all = file.rows();

@@ -10,7 +10,7 @@ mod report;
 mod sample;
 mod warning;
 
-pub use mesh::{FileWish, MeshAnswer, MeshComponent};
+pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report};
 pub use sample::{Sample, sample};
 pub use warning::Warning;

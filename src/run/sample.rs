@@ -2,7 +2,7 @@
 
 use super::mesh::Meshing;
 use super::{Error, Report, Run, Warning};
-use crate::export::{self, Format, MeshFormat, Placement, RecordText};
+use crate::export::{self, MeshFile, ParticleFile};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
@@ -110,22 +110,25 @@ impl Sample {
         self.mesh().volume(&self.particles)
     }
 
-    /// Writes the particles with what was measured of them to `out`, which should be buffered.
+    /// Writes the particles with what was measured of them to `out`, which should be buffered: in a [`Format`](crate::Format), or as
+    /// a [`ParticleFile`] with a record.
     ///
     /// # Errors
     ///
     /// The errors of `out`.
-    pub fn write(&self, format: Format, out: &mut dyn Write) -> io::Result<()> {
-        export::write(format, &self.particles, &self.measured, &RecordText::default(), out)
+    pub fn write(&self, file: impl Into<ParticleFile>, out: &mut dyn Write) -> io::Result<()> {
+        let ParticleFile { format, record } = file.into();
+        export::write(format, &self.particles, &self.measured, &record, out)
     }
 
-    /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered.
+    /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a [`MeshFormat`](crate::MeshFormat), or as a
+    /// [`MeshFile`] with a size, an upward axis and a record.
     ///
     /// # Errors
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
-    pub fn write_mesh(&self, format: MeshFormat, out: &mut dyn Write) -> io::Result<()> {
-        let (placement, record) = (Placement::default(), RecordText::default());
+    pub fn write_mesh(&self, file: impl Into<MeshFile>, out: &mut dyn Write) -> io::Result<()> {
+        let MeshFile { format, placement, record } = file.into();
         let triangles = &self.mesh().triangles;
         export::write_mesh(format, &self.particles, &self.measured, triangles, &placement, &record, out)
     }

@@ -4,7 +4,7 @@ use super::report::{CreaseCounts, creases_of};
 use super::{Report, Run, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
-use crate::math::{grouped, shortest_text};
+use crate::math::{grouped, place_text, shortest_text, text_within};
 use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
@@ -343,7 +343,7 @@ impl fmt::Display for Warning {
                 f,
                 "Near {} the gradient that the field gives is not that of its values: particles may lie off the surface and face the \
                  wrong way. Correct the gradient, or leave it out and it is found by differences.",
-                place(*position, *length)
+                place_text(*position, *length)
             ),
             Self::Count { count, wanted } => write!(
                 f,
@@ -389,7 +389,7 @@ impl fmt::Display for Warning {
                     f,
                     "The surface {meets}, first near {}. f has no gradient there, and the sheets are sampled up to it: the components \
                      and the Euler number of the sample are not those of the sheets.",
-                    place(*position, *length)
+                    place_text(*position, *length)
                 )
             }
             Self::Crosses { curves, position, length } => write!(
@@ -397,7 +397,7 @@ impl fmt::Display for Warning {
                 "Sheets of the surface cross along {}, first near {}, and share the particles there: components and Euler number \
                  are those of all sheets together, and the mesh is no manifold along it.",
                 counted(*curves, "curve", "curves"),
-                place(*position, *length)
+                place_text(*position, *length)
             ),
             Self::Moved => f.write_str(
                 "The particles have followed the surface while it moved: they are even, but less in order than those of a run, \
@@ -429,7 +429,7 @@ impl fmt::Display for Warning {
                     "The triangles between the particles leave {found}, first near {}: the components and the Euler number of the \
                      sample need not be those of the surface. The surface has an edge, a point or an end there, or is thinner or bends \
                      more sharply than the particles are large; then choose a smaller radius.",
-                    place(*position, *length)
+                    place_text(*position, *length)
                 )
             }
             Self::MeshDiffers { mesh, sample } => {
@@ -458,7 +458,7 @@ impl fmt::Display for Warning {
                     "The mesh of the file has {given}, the surface fitted to it {}: holes are closed, parts joined or edges rounded. \
                      The farthest point of the file is near {}. More centres, or a file with more points, follow the mesh more closely.",
                     told(sample, *area),
-                    place(*position, *length)
+                    place_text(*position, *length)
                 )?;
                 let is_open = mesh.topology.is_some_and(|topology| topology.borders > 0);
                 f.write_str(if is_open { " The mesh is open: beyond its borders the surface goes on." } else { "" })
@@ -468,7 +468,7 @@ impl fmt::Display for Warning {
                 f,
                 "f loses digits: near {} its rounding in double precision may move the surface by up to {}, {} times the distance between \
                  neighbours. It is small beside its terms there: enter it in a form in which they do not cancel.",
-                place(*position, *spacing),
+                place_text(*position, *spacing),
                 about_length(*distance),
                 about_length(distance / spacing)
             ),
@@ -485,17 +485,6 @@ fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// A number rounded to a thousandth of a length.
-fn short(x: f64, length: f64) -> String {
-    let digits = (3.0 - libm::floor(libm::log10(length))).clamp(0.0, 15.0) as usize;
-    shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0)
-}
-
-/// A place in words, rounded to a thousandth of a length.
-fn place(position: [f64; 3], length: f64) -> String {
-    format!("({})", position.map(|x| short(x, length)).join(", "))
-}
-
 /// A distance with two digits.
 fn about_length(x: f64) -> String {
     shortest_text(format!("{x:.1e}").parse::<f64>().unwrap_or(x))
@@ -510,7 +499,11 @@ fn without_particle(
 ) -> fmt::Result {
     let named = components.iter().take(NAMED).map(|&Unsampled { position, reach, goes_on }| {
         let about = if goes_on { "more than" } else { "about" };
-        format!("{}, reaching {about} {} from there", place(position, length), short(reach, length))
+        format!(
+            "{}, reaching {about} {} from there",
+            place_text(position, length),
+            text_within(reach, length)
+        )
     });
     let places = named.collect::<Vec<_>>().join("; near ");
     let more = components.len().saturating_sub(NAMED);
@@ -546,7 +539,7 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
              down to about {} in this box. Nearer ones may be sampled as one, and the components and the Euler number of the sample \
              need not be those of the surface. A smaller radius does not help: move the sheets apart, or sample one factor of f at \
              a time.",
-            place(position, length),
+            place_text(position, length),
             about_length(gap),
             about_length(least)
         ),
@@ -555,7 +548,7 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
             "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
              hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
             grouped_count(count, "cell", "cells"),
-            place(position, size.min(length)),
+            place_text(position, size.min(length)),
             about_length(size)
         ),
         Doubt::Witnesses { count, position } => write!(
@@ -563,7 +556,7 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
             "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
              may be too near there for this radius: a smaller one may decide it.",
             grouped_count(count, "point of the surface", "points of the surface"),
-            place(position, length)
+            place_text(position, length)
         ),
     }
 }

@@ -1,7 +1,7 @@
 //! Messages for the user of a run that has ended.
 
 use super::{Sampler, StopReason};
-use crate::math::shortest_text;
+use crate::math::place_text;
 use crate::sampler::discovery::completeness::Doubt;
 use crate::sampler::discovery::survey::Absence;
 use glam::DVec3;
@@ -62,8 +62,7 @@ impl Sampler {
 impl Sampler {
     /// A place in words, in the coordinates of the formula.
     fn place(&self, p: DVec3) -> String {
-        let p = self.output.particles.origin + p;
-        format!("({})", p.to_array().map(|x| shortest_text(rounded(x))).join(", "))
+        place_text((self.output.particles.origin + p).to_array(), self.bounds.diagonal())
     }
 
     /// A sentence on the first cell that the search for components left undecided; empty if there is none.
@@ -78,9 +77,4 @@ impl Sampler {
             )
         })
     }
-}
-
-/// A coordinate to three decimals, without a sign on 0.
-fn rounded(x: f64) -> f64 {
-    libm::round(x * 1_000.0) / 1_000.0 + 0.0
 }

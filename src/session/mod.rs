@@ -91,6 +91,7 @@ pub struct FieldAnswer {
 
 /// Why a field was refused. The field before it stays.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FieldError {
     /// The formula has a mistake.
     #[error(transparent)]

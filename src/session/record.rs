@@ -1,10 +1,9 @@
 //! The record that a file carries, from which it can be made again, and the request for a mesh file.
 
 use super::{BoxFaces, Session, SolidSettings, Source};
-use crate::export::{self, MeshFormat, Placement};
+use crate::export::{self, MeshFile, MeshFormat, Placement};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
-use crate::run::FileWish;
 use crate::sampler::{Method, Settings};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -115,7 +114,7 @@ impl Session {
         let record = if request.plain { None } else { self.record(request.link.clone()) };
         let record =
             record.map_or_else(export::RecordText::default, |made| export::RecordText::new(&json(&made)));
-        let wish = FileWish { format, placement: request.placement, record };
+        let wish = MeshFile { format, placement: request.placement, record };
         self.run.mesh_file(&wish, budget).map_or(Some(None), |bytes| bytes.map(Some))
     }
 }

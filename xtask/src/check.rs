@@ -187,7 +187,10 @@ fn lint_wasm(project: &Project) -> Result<()> {
 fn docs(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["doc", "--no-deps"]);
     command.args(TESTED).env("RUSTDOCFLAGS", "--deny warnings");
-    step::run("documentation", &mut command, "").map(drop)
+    step::run("documentation", &mut command, "")?;
+    let mut command = cargo_at_root(project, &["package", "--package", "marching-particles"]);
+    command.args(["--no-verify", "--allow-dirty", "--locked"]);
+    step::run("package", &mut command, "").map(drop)
 }
 
 /// What is compiled natively. Every command names it, because another choice of features has cargo compile everything again.

@@ -8,7 +8,6 @@ use crate::outcome::{Outcome, Seconds};
 use crate::output::OutputFile;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
-use marching_particles::export;
 use marching_particles::extent;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
@@ -17,8 +16,8 @@ use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
-    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFormat, Method, Parameter, Phase,
-    Reach, Run, Settings, StopReason, Warning, gallery,
+    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFile, MeshFormat, Method, Parameter,
+    ParticleFile, Phase, Reach, RecordText, Run, Settings, StopReason, Warning, gallery,
 };
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -58,7 +57,7 @@ fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Fa
             "{name} does not say what it was made from: it holds no record of this program"
         ))
     };
-    let json = export::RecordText::find(&bytes).ok_or_else(no_record)?;
+    let json = RecordText::find(&bytes).ok_or_else(no_record)?;
     let record: FileRecord = serde_json::from_str(json).map_err(|error| {
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
@@ -134,17 +133,14 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         solid: arguments.surface.solid(),
         settings,
     };
-    let record = export::RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
-    let (particles, measured) = (sample.particles(), sample.measured());
+    let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
     for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
-        output.write(|out| export::write(format, particles, measured, &record, out))?;
+        let file = ParticleFile { format, record: record.clone() };
+        output.write(|out| sample.write(file, out))?;
     }
-    let placement = arguments.placement();
     for (format, output) in mesh_formats.into_iter().zip(outputs) {
-        let triangles = &sample.mesh().triangles;
-        output.write(|out| {
-            export::write_mesh(format, particles, measured, triangles, &placement, &record, out)
-        })?;
+        let file = MeshFile { format, placement: arguments.placement(), record: record.clone() };
+        output.write(|out| sample.write_mesh(file, out))?;
     }
     seconds.writing = clock.seconds();
 

@@ -214,6 +214,7 @@ impl Formula {
     /// assert_eq!(field.parameters()[0].value, 1.5);
     /// # Ok::<(), marching_particles::field::formula::FormulaError>(())
     /// ```
+    #[doc(hidden)]
     pub fn pass_through(&mut self, points: &[DVec3]) -> Grip {
         let start = self.values.clone();
         let slope = points.iter().map(|&p| self.slope_at(p).filter(|slope| *slope > 0.0).unwrap_or(1.0));

@@ -200,6 +200,7 @@ impl Formula {
     ///
     /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an
     /// error are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
+    #[doc(hidden)]
     pub fn as_written(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
@@ -234,6 +235,7 @@ impl Formula {
     /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient of u does not. Text,
     /// normal form and MathML remain those of the formula. A field without such factors is returned unchanged.
     #[must_use]
+    #[doc(hidden)]
     pub fn without_powers(mut self) -> Self {
         if self.simplified.is_none()
             && let Some(simplified) = powers::without_powers(&self.equation)
@@ -340,18 +342,21 @@ impl Formula {
     /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names,
     /// and parsing it gives the same field.
     #[must_use]
+    #[doc(hidden)]
     pub fn normal_form(&self) -> String {
         display::plain_equation(&self.equation)
     }
 
     /// Whether both formulas have the same syntax tree, regardless of spans.
     #[must_use]
+    #[doc(hidden)]
     pub fn same_tree(&self, other: &Self) -> bool {
         self.equation == other.equation
     }
 
     /// Formula in presentation MathML: the content of a `math` element.
     #[must_use]
+    #[doc(hidden)]
     pub fn mathml(&self) -> MathNode {
         mathml::equation(&self.equation)
     }
@@ -426,6 +431,7 @@ impl Formula {
 
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
     /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
+    #[doc(hidden)]
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
         let compiled = self.branches.active(&mut self.compiled);
         compiled.transformed_jet(&self.values, place(self.origin, p))

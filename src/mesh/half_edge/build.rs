@@ -4,6 +4,7 @@ use super::{HalfEdges, NONE, next};
 
 /// Why triangles are not a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BuildError {
     /// A corner is not below the number of vertices, or a triangle has a vertex twice.
     #[error("triangle {triangle} has a corner that does not exist, or one corner twice")]

@@ -28,6 +28,7 @@ const ROWS: usize = 500;
 
 /// Why a file cannot be read. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file is empty.
     #[error("the file is empty; choose one that holds points")]

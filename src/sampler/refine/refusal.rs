@@ -1,6 +1,7 @@
 //! Why a surface is not refined.
 
 use super::LEAST_PARTICLES;
+use crate::math::place_text;
 use core::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -96,7 +97,7 @@ pub enum Refusal {
     },
 }
 
-/// A point in space. `Display` rounds it to three decimals.
+/// A point in space. `Display` gives four digits of its largest coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spot(pub [f32; 3]);
 
@@ -108,9 +109,8 @@ impl From<Vec3> for Spot {
 
 impl fmt::Display for Spot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Adding 0 takes the sign off −0.
-        let [x, y, z] = self.0.map(|x| (x * 1_000.0).round() / 1_000.0 + 0.0);
-        write!(f, "({x:.3}, {y:.3}, {z:.3})")
+        let [x, y, z] = self.0.map(f64::from);
+        f.write_str(&place_text([x, y, z], x.abs().max(y.abs()).max(z.abs()).max(f64::MIN_POSITIVE)))
     }
 }
 
