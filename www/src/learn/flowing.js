@@ -36,7 +36,6 @@ export const MOTIONS = [
     surface: moved('x^2/a^2 + y^2/0.49 + z^2/0.25 = 1', 'a', [1.7, 0.8, 0.6]),
     name: 'a',
     range: [0.8, 1.6],
-    seen: 0.84,
     radius: 0.04,
   },
   {
@@ -45,15 +44,12 @@ export const MOTIONS = [
     surface: moved('x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + c = 0', 'c', [2.6, 2.6, 2.6]),
     name: 'c',
     range: [11, 14],
-    seen: 0.8,
     radius: 0.14,
   },
 ];
 
 /** A slider of the learner's own surface is moved by this share of it, towards its farther end. */
 const OWN_SHARE = 0.25;
-/** Its box has some room around it. */
-const OWN_SEEN = 0.85;
 
 /** The learner's own surface, moved by each of its parameters. @param {Lab} lab @returns {Promise<Motion[]>} */
 export async function ownMotions(lab) {
@@ -68,7 +64,6 @@ export async function ownMotions(lab) {
       surface,
       name,
       range: [value, value + way],
-      seen: OWN_SEEN,
       radius,
     };
   });

@@ -1,12 +1,11 @@
 /** Where the front is, for the camera, and the pale body that hides the backs of the discs behind. */
 
 import { along, dot, size, triple, unit } from '../engine/vector.js';
-import { axes, fitDistance } from '../engine/view/camera.js';
+import { axes } from '../engine/view/camera.js';
 import { anglesOf } from '../engine/view/facing.js';
 
 /**
  * @import { LessonParticles } from '../engine/types.js'
- * @import { Ball } from '../engine/view/types.js'
  */
 
 /** The first view shows the discs of so many levels around the seed. */
@@ -35,19 +34,15 @@ const AROUND = Array.from({ length: DIRECTIONS }, (_, k) => {
 /**
  * The direction from which most discs of some levels of the first front are seen: that of their mean normal, unless
  * another is better.
- * @param {LessonParticles} particles @param {Ball} ball  that the camera is fitted to
- * @param {number} [from] @param {number} [to]
+ * @param {LessonParticles} particles @param {number} [from] @param {number} [to]
  * @returns {readonly number[]}
  */
-export function frontNormal(particles, { centre, radius }, from = 0, to = FIRST_LEVELS) {
+export function frontNormal(particles, from = 0, to = FIRST_LEVELS) {
   const chosen = onLevels(particles, from, to);
   const sum = chosen.reduce((total, i) => along(total, triple(particles.normals, i), 1), [0, 0, 0]);
   const mean = size(sum) > 0 ? unit(sum) : AROUND[0];
-  const seen = (/** @type {readonly number[]} */ way) => {
-    // The camera does not look from straight above or below.
-    const { forward } = axes(anglesOf(way));
-    return facingOf(particles, along(centre, forward, -fitDistance(radius)), chosen);
-  };
+  // The camera does not look from straight above or below.
+  const seen = (/** @type {readonly number[]} */ way) => facingOf(particles, axes(anglesOf(way)).forward, chosen);
   const first = { way: mean, count: seen(mean) };
   if (first.count === chosen.length) return mean;
   return AROUND.reduce((best, way) => {
@@ -58,18 +53,19 @@ export function frontNormal(particles, { centre, radius }, from = 0, to = FIRST_
 
 /**
  * The number of some discs that face the eye.
- * @param {LessonParticles} particles @param {readonly number[]} eye @param {readonly number[]} chosen
+ * @param {LessonParticles} particles @param {readonly number[]} forward  direction of the view
+ * @param {readonly number[]} chosen
  */
-const facingOf = ({ positions, normals }, eye, chosen) =>
-  chosen.filter((i) => dot(along(eye, triple(positions, i), -1), triple(normals, i)) > 0).length;
+const facingOf = ({ normals }, forward, chosen) => chosen.filter((i) => dot(forward, triple(normals, i)) < 0).length;
 
 /**
  * The share of the discs on some levels of the first front that face the eye; 1 if there are none.
- * @param {LessonParticles} particles @param {readonly number[]} eye @param {number} from @param {number} to
+ * @param {LessonParticles} particles @param {readonly number[]} forward  direction of the view
+ * @param {number} from @param {number} to
  */
-export function shareFacing(particles, eye, from, to) {
+export function shareFacing(particles, forward, from, to) {
   const all = onLevels(particles, from, to);
-  return all.length > 0 ? facingOf(particles, eye, all) / all.length : 1;
+  return all.length > 0 ? facingOf(particles, forward, all) / all.length : 1;
 }
 
 /** @type {WeakMap<LessonParticles, Pick<LessonParticles, 'positions' | 'normals' | 'radii' | 'levels'>>} */

@@ -54,7 +54,7 @@ function legendOf(colouring, [least, most]) {
  * @param {Lab} lab @param {{ bare?: boolean }} [how]  `bare`: pictures alone, since figures would tell which is which
  */
 export function createPair(lab, { bare = false } = {}) {
-  const orbit = new Orbit(lab.surface.bounds);
+  const orbit = new Orbit();
   const names = ['left', 'right'].map((side) => `The picture on the ${side}; both turn together`);
   const { pictures, captions, figures, point } = sideBySide(orbit, names);
   /** @param {number} k @param {number} particle */
@@ -95,7 +95,7 @@ export function createPair(lab, { bare = false } = {}) {
       if (isOld()) return;
       shown.runs = [left, right];
       shown.scores = null;
-      orbit.fitTo(left.end);
+      orbit.fitTo(left.end, right.end);
       if (isFirst) orbit.faceFront(left.placed);
       isFirst = false;
       const all = [...left.end.radii, ...right.end.radii];

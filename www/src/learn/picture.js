@@ -3,22 +3,26 @@
  * A page of figures would run out of contexts of the graphics card.
  */
 import { signal } from '@preact/signals-core';
-import { ballOf, Camera, projected, viewOf } from '../engine/view/camera.js';
+import { clamp } from '../engine/vector.js';
+import { axes, Camera, projected, viewOf } from '../engine/view/camera.js';
 import { anglesOf } from '../engine/view/facing.js';
 import { rgbFromPacked } from '../engine/view/oklab.js';
 import { Painter } from '../engine/view/painter.js';
 import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live, reducedMotion } from '../ui/dom.js';
+import { Fit } from './fit.js';
 import { bodyOf, frontNormal, shareFacing } from './front.js';
 
 /**
- * @import { Bounds, LessonParticles, Signal } from '../engine/types.js'
+ * @import { LessonParticles, Signal } from '../engine/types.js'
  * @import { Palette, View } from '../engine/view/types.js'
- * @import { Mark, Scene, ScorePlace } from './types.js'
+ * @import { Discs, Mark, Scene, ScorePlace } from './types.js'
  */
 
 const KEY_STEP_RAD = 0.14;
 const KEY_ZOOM = 1.2;
+/** Times by which the eye may come nearer than a fit. @type {readonly [number, number]} */
+const ZOOMS = [0.1, 30];
 /** Radians for a drag over a picture's whole height. */
 const DRAG_RAD = 3.4;
 /** A press that moves by less, in pixels, points at something. */
@@ -42,25 +46,27 @@ addEventListener('afterprint', () => {
   printing.value = false;
 });
 
-/** A camera that one or several pictures share. */
+/** A camera that one or several pictures share. Its rays are parallel: discs of one size are so in the whole picture. */
 export class Orbit {
-  #home;
+  #camera = new Camera();
+  #home = { yaw: 0, pitch: 0 };
+  #fit = new Fit([{ positions: new Float32Array(3), radii: Float32Array.of(1) }]);
+  /** So many times nearer than where the bodies fill the picture. */
+  #zoom = 1;
   #frame = 0;
+  /** Counts the changes. */
+  turned = signal(0);
 
-  /** @param {Bounds} bounds */
-  constructor(bounds) {
-    this.ball = ballOf(bounds);
-    this.camera = new Camera();
-    this.#home = { yaw: this.camera.state.yaw, pitch: this.camera.state.pitch };
-    this.camera.fit(this.ball, true);
-    /** Counts the changes. */
-    this.turned = signal(0);
+  /** @param {number} yawRad @param {number} pitchRad */
+  orbit(yawRad, pitchRad) {
+    this.#camera.rest();
+    this.#camera.orbit(yawRad, pitchRad);
+    this.#hasTurned();
   }
 
-  /** @param {(camera: Camera) => void} act */
-  change(act) {
-    this.camera.rest();
-    act(this.camera);
+  /** Comes nearer by a factor, within limits. @param {number} factor */
+  zoom(factor) {
+    this.#zoom = clamp(this.#zoom * factor, ...ZOOMS);
     this.#hasTurned();
   }
 
@@ -71,11 +77,12 @@ export class Orbit {
 
   /** Turns to a side of the surface. @param {readonly number[]} normal  of that side */
   turnTo(normal) {
-    this.camera.calm = reducedMotion();
-    this.camera.turnTo(anglesOf(normal, this.camera.state.yaw));
+    const camera = this.#camera;
+    camera.calm = reducedMotion();
+    camera.turnTo(anglesOf(normal, camera.state.yaw));
     let lastMs = performance.now();
     const frame = (/** @type {number} */ nowMs) => {
-      const goesOn = this.camera.step(Math.max(0, nowMs - lastMs) / 1000);
+      const goesOn = camera.step(Math.max(0, nowMs - lastMs) / 1000);
       lastMs = nowMs;
       this.#hasTurned();
       this.#frame = goesOn ? requestAnimationFrame(frame) : 0;
@@ -86,7 +93,7 @@ export class Orbit {
 
   /** Looks at the side on which the front begins, also after a reset. @param {LessonParticles} particles */
   faceFront(particles) {
-    this.#home = anglesOf(frontNormal(particles, this.ball));
+    this.#home = anglesOf(frontNormal(particles));
     this.reset();
   }
 
@@ -95,34 +102,31 @@ export class Orbit {
    * @param {LessonParticles} particles @param {number} level
    */
   follow(particles, level) {
-    const { eye } = viewOf(this.camera.state, 1, 1, this.ball);
-    if (shareFacing(particles, eye, level, level) < IN_SIGHT)
-      this.turnTo(frontNormal(particles, this.ball, level, level));
+    const { forward } = axes(this.#camera.state);
+    if (shareFacing(particles, forward, level, level) < IN_SIGHT) this.turnTo(frontNormal(particles, level, level));
   }
 
-  /** Fits the particles instead of the box, once they are known. @param {LessonParticles} particles */
-  fitTo({ positions, radii }) {
-    if (radii.length === 0) return;
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < positions.length; i += 1) {
-      min[i % 3] = Math.min(min[i % 3], positions[i]);
-      max[i % 3] = Math.max(max[i % 3], positions[i]);
-    }
-    const { centre } = ballOf({ min, max });
-    const radius = radii.reduce((most, own, i) => {
-      const far = Math.hypot(...centre.map((c, k) => positions[3 * i + k] - c));
-      return Math.max(most, far + own);
-    }, 0);
-    this.ball = { centre, radius };
-    this.change((camera) => camera.fit(this.ball, true));
+  /** Lets bodies fill the pictures, once they are known. @param {readonly Discs[]} bodies */
+  fitTo(...bodies) {
+    const drawn = bodies.filter(({ radii }) => radii.length > 0);
+    if (drawn.length === 0) return;
+    this.#fit = new Fit(drawn);
+    this.#zoom = 1;
+    this.#hasTurned();
   }
 
   reset() {
-    this.change((camera) => {
-      camera.set({ ...camera.state, ...this.#home });
-      camera.fit(this.ball, true);
-    });
+    this.#camera.set({ ...this.#camera.state, ...this.#home });
+    this.#zoom = 1;
+    this.#hasTurned();
+  }
+
+  /** What a picture of a size shows. @param {{ width: number, height: number }} size */
+  view({ width, height }) {
+    const { yaw, pitch } = this.#camera.state;
+    const { ball, distance } = this.#fit.in(pitch, { width, height });
+    const state = { yaw, pitch, target: ball.centre, distance: distance / this.#zoom, fit: true };
+    return viewOf(state, width, height, ball, undefined, true);
   }
 }
 
@@ -193,8 +197,7 @@ export class Picture {
   }
 
   #view() {
-    const { width, height } = this.#size.peek();
-    return viewOf(this.orbit.camera.state, width, height, this.orbit.ball);
+    return this.orbit.view(this.#size.peek());
   }
 
   #draw() {
@@ -284,7 +287,7 @@ export class Picture {
       const [dx, dy] = [clientX - held.x, clientY - held.y];
       held = { x: clientX, y: clientY, moved: held.moved + Math.abs(dx) + Math.abs(dy) };
       const scale = DRAG_RAD / Math.max(1, this.#size.peek().height);
-      if (held.moved > PRESS_PX) orbit.change((camera) => camera.orbit(dx * scale, dy * scale));
+      if (held.moved > PRESS_PX) orbit.orbit(dx * scale, dy * scale);
     });
     element.addEventListener('pointerup', ({ clientX, clientY }) => {
       const isPress = held !== null && held.moved <= PRESS_PX;
@@ -317,9 +320,9 @@ export class Picture {
     /** @type {Record<string, [number, number]>} */
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const turn = turns[key];
-    if (turn) orbit.change((camera) => camera.orbit(turn[0] * KEY_STEP_RAD, turn[1] * KEY_STEP_RAD));
-    else if (key === '+' || key === '=') orbit.change((camera) => camera.zoom(KEY_ZOOM));
-    else if (key === '-' || key === '_') orbit.change((camera) => camera.zoom(1 / KEY_ZOOM));
+    if (turn) orbit.orbit(turn[0] * KEY_STEP_RAD, turn[1] * KEY_STEP_RAD);
+    else if (key === '+' || key === '=') orbit.zoom(KEY_ZOOM);
+    else if (key === '-' || key === '_') orbit.zoom(1 / KEY_ZOOM);
     else if (key === 'Enter' && this.#onPick) this.#choose(this.#size.peek().width / 2, this.#size.peek().height / 2);
     else return false;
     return true;

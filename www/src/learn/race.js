@@ -155,7 +155,7 @@ class Course {
 
   /** Lays the lanes anew. */
   lay() {
-    const orbit = new Orbit(this.#lab.surface.bounds);
+    const orbit = new Orbit();
     const names = this.kind.peek() === 'uniform' ? ['The front', 'Witkin and Heckbert'] : ['The front', 'Forces'];
     const lanes = names.map((name) => createLane(orbit, name));
     fill(

@@ -117,6 +117,8 @@ export interface ScoreRow {
 }
 /** The colouring of the two pictures. */
 export type Colouring = 'level' | 'parent' | 'nearest' | 'radius';
+/** Discs that a picture is fitted to. */
+export type Discs = Pick<LessonParticles, 'positions' | 'radii'>;
 export type Side = { label: string; make: (lab: Lab) => Promise<LabRun> };
 export type Task = { title: string; setup: Setup; locks: Control[]; questions: string[] };
 /** The work that a learner hands in. */
@@ -130,17 +132,13 @@ export type Work = {
   predictions: Guessed[];
   runs: object[];
 };
-/**
- * A surface that moves by one parameter. `seen`: the share of its box to which a picture is fitted; `radius`: of the
- * particles on it.
- */
+/** A surface that moves by one parameter. `radius`: of the particles on it. */
 export interface Motion {
   value: string;
   label: string;
   surface: FormulaSurface;
   name: string;
   range: readonly [number, number];
-  seen: number;
   radius: number;
 }
 /** A lane at a snapshot. `step`: of the slider. */

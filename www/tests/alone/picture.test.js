@@ -1,7 +1,7 @@
 /** What is in the picture, by the painter: levels, the cutting plane, the inside, and when it is drawn at all. */
 import { describe, expect, test } from 'vitest';
 import { PALETTES } from '../../src/engine/view/palettes.js';
-import { halvesOf, INSIDE_TOLD, isInsideTold, SIDES } from '../engine/pixels.js';
+import { halvesOf, INSIDE_TOLD, isInsideTold, SIDES, shadeOf } from '../engine/pixels.js';
 import { coarse, eventually, expectSurface, hide, link, open, pause, picture, until, wishes } from './engine.js';
 
 /** @import { Console } from '../../src/main/types.js' */
@@ -163,6 +163,19 @@ test('creases are lines, on which dots are picked once', async () => {
   const camera = { target: /** @type {[number, number, number]} */ ([1, 1, 1]), distance: 4, yaw: 0.6, pitch: 0.5 };
   p.engine.setView({ camera: { ...camera, fit: false } });
   expect(p.engine.pick(...MIDDLE)).toBe(rows[0]);
+});
+
+test('with parallel rays, too, what is in front hides what is behind', async () => {
+  const p = await open();
+  await p.set({ formula: 'x^2 + y^2 + z^2 = 1', settings: { radius_share: 0.02 } });
+  p.engine.setView({ colour: 'plain', theme: 'light' });
+  const lights = [];
+  for (const projection of /** @type {const} */ (['perspective', 'orthographic'])) {
+    p.engine.setView({ projection });
+    lights.push(shadeOf(await p.pixels(160, 120)).light);
+  }
+  // Where the back of the far side is seen, it is darker.
+  expect(lights[1]).toBeGreaterThan(0.97 * lights[0]);
 });
 
 test('discs seen from behind are darker and greyer, on a light and on a dark ground', async () => {

@@ -9,6 +9,7 @@
  * @module
  */
 import { grown, NO_LEVEL } from '../columns.js';
+import { dot } from '../vector.js';
 import { END } from './creases.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
@@ -57,6 +58,24 @@ function eyeAxes(m) {
   };
   const { unit: right, length: clipXPerWorld } = axis(0);
   return { right, up: axis(1).unit, forward, clipXPerWorld };
+}
+
+/**
+ * Returns the view of an eye far away in the place of one with parallel rays, whose divisor w is 1 everywhere and so tells no
+ * depth. Other views are returned as they are.
+ * @param {Float32Array} m  a packed view
+ */
+function seenFromFar(m) {
+  if (m[3] !== 0 || m[7] !== 0 || m[11] !== 0) return m;
+  const eye = m.subarray(16, 19);
+  const forward = m.subarray(19, 22);
+  // Clip coordinates have the depth 0 at the near plane, 1 at the far plane, and it is linear between them.
+  const depthAtEye = m[2] * eye[0] + m[6] * eye[1] + m[10] * eye[2] + m[14];
+  const middle = (0.5 - depthAtEye) / Math.hypot(m[2], m[6], m[10]);
+  const far = m.map((value, k) => (k < 16 && k % 4 < 2 ? middle * value : value));
+  for (let k = 0; k < 3; k += 1) far[4 * k + 3] = forward[k];
+  far[15] = -dot(forward, eye);
+  return far;
 }
 
 /**
@@ -154,6 +173,7 @@ export class Painter {
     /** The ends of the pieces of creases, as `endsOf` returns them, and the colour of each piece. */
     this.ends = new Float32Array(0);
     this.lineColours = new Uint32Array(0);
+    /** @type {Float32Array} */
     this.view = new Float32Array(23);
     this.#style = {
       background: [1, 1, 1, 1],
@@ -228,7 +248,7 @@ export class Painter {
 
   /** @type {Renderer['set_view']} */
   set_view(view) {
-    this.view.set(view);
+    this.view = seenFromFar(Float32Array.from(view));
   }
 
   /** @type {Renderer['set_style']} */

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals-core';
 import { fill, h, live, reducedMotion } from '../../ui/dom.js';
 import { formatFixed, plural } from '../../ui/format.js';
 import { reasonOf } from '../figure.js';
-import { FrontLane, lossOf, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, surfaceAt, valueAt } from '../flowing.js';
+import { FrontLane, lossOf, MOTIONS, ownMotions, STEPS, SystemLane, scoreAt, valueAt } from '../flowing.js';
 import { createChart, createSelect } from '../parts.js';
 import { byLevel, Orbit, sideBySide } from '../picture.js';
 import { createReplay } from '../replay.js';
@@ -17,6 +17,8 @@ import { createReplay } from '../replay.js';
 const MEASURED = 4;
 /** Shortest time of a step, so that the eye can follow. */
 const STEP_MS = 33;
+/** Times the radius at which a few particles show how large a surface is. */
+const COARSER = 2;
 /** After the last step both come to rest. */
 const AT_REST = STEPS + 1;
 
@@ -72,6 +74,9 @@ class Pursuit {
     const lanes = [new FrontLane(motion), rival.make(motion)];
     this.#lanes = lanes;
     const { orbit, show, point } = this.#pictures();
+    const ends = await endsOf(motion);
+    if (isOver()) return;
+    orbit.fitTo(...ends);
     /** @type {[Snapshot<AtStep>[], Snapshot<AtStep>[]]} */
     const films = [[], []];
     this.shares.value = [];
@@ -144,12 +149,8 @@ class Pursuit {
 
   /** Lays both pictures anew. */
   #pictures() {
-    const { motion, rival } = this;
-    const { min, max } = surfaceAt(motion, 0).bounds;
-    const middle = min.map((low, k) => (low + max[k]) / 2);
-    const seen = (/** @type {readonly number[]} */ corner) =>
-      /** @type {[number, number, number]} */ (corner.map((c, k) => middle[k] + motion.seen * (c - middle[k])));
-    const orbit = new Orbit({ min: seen(min), max: seen(max) });
+    const { rival } = this;
+    const orbit = new Orbit();
     const { pictures, captions, figures, point } = sideBySide(orbit, ['A front that flows', rival.label]);
     fill(this.place, figures);
     return {
@@ -182,6 +183,19 @@ class Pursuit {
 function doStep(lane, step) {
   if (step === 0) return lane.begin(0);
   return step > STEPS ? lane.rest(STEPS) : lane.follow(step);
+}
+
+/** A few particles of the first surface and of the last one, to which the pictures are fitted. @param {Motion} motion */
+async function endsOf(motion) {
+  const lane = new FrontLane({ ...motion, radius: COARSER * motion.radius }, { isFresh: true });
+  try {
+    await lane.begin(0);
+    const first = lane.particles;
+    await lane.follow(STEPS);
+    return [first, lane.particles];
+  } finally {
+    lane.close();
+  }
 }
 
 /** The chart of both lanes. @param {Pursuit} pursuit @param {() => boolean} isOpen */

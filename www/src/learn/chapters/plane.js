@@ -104,7 +104,7 @@ class Exercise {
     this.#run = run;
     this.#body = body;
     this.#stops = stops;
-    const orbit = new Orbit(patch.surface.bounds);
+    const orbit = new Orbit();
     orbit.fitTo(run.placed);
     orbit.faceFront(run.placed);
     this.#picture = new Picture(orbit, { name: `${patch.name} with the particles that there are so far` });

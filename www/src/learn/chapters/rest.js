@@ -52,7 +52,7 @@ export async function seams({ lab, stops }) {
   const { placed: body } = await own.run({ seed: 1, relax_steps: 0 });
   const [met, { energy, valence }] = [await seamsOf(run), await own.measure(run.placed, false)];
   const widest = await widestHole(own);
-  const orbit = new Orbit(own.surface.bounds);
+  const orbit = new Orbit();
   orbit.fitTo(run.placed);
   orbit.faceFront(run.placed);
   const picture = new Picture(orbit, {
@@ -106,7 +106,7 @@ export async function rest({ lab, stops }) {
     states.push(await run.client.ask('seek', { event: first + events }));
   states.push(run.end);
   const colours = states.map((state) => byValue(nearestDistances(state), NEAR, FAR));
-  const orbit = new Orbit(own.surface.bounds);
+  const orbit = new Orbit();
   orbit.fitTo(run.end);
   orbit.faceFront(run.placed);
   const picture = new Picture(orbit, { name: 'The particles, coloured by the distance to the nearest one' });

@@ -36,7 +36,7 @@ function upTo(all, level) {
 /** @param {Context} context */
 async function growth({ lab }, /** @type {string} */ name) {
   const { placed } = await (await lab).run({}, { keep: true });
-  const orbit = new Orbit((await lab).surface.bounds);
+  const orbit = new Orbit();
   orbit.fitTo(placed);
   orbit.faceFront(placed);
   const counts = countsOf(placed);

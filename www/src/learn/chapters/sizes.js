@@ -13,7 +13,7 @@ import { byValue, Orbit, Picture } from '../picture.js';
 export async function sizes({ lab, stops }) {
   const own = await lab;
   const radius = await own.radiusFor(PARTICLES);
-  const orbit = new Orbit(own.surface.bounds);
+  const orbit = new Orbit();
   const picture = new Picture(orbit, {
     name: 'Particles of sizes that follow the curvature, coloured by their radius',
   });
