@@ -17,7 +17,7 @@ const folder = fileURLToPath(new URL('../learn/stills/', import.meta.url));
  * What is not of the picture. The bars of the costs are shown, since their still is for readers without JavaScript
  * alone.
  */
-const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, figcaption { display: none !important }
+const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, .quiet, figcaption { display: none !important }
   .told { min-height: 0 !important } .cost { display: table !important }`;
 
 const browser = await launch();
