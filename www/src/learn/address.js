@@ -43,6 +43,10 @@ export function writeAddress({ stop, parts }) {
   return pieces.length > 0 ? `#${pieces.join('&')}` : '';
 }
 
+/** The title of a stop, or its question. @param {Element | null} stop */
+export const titleOf = (stop) =>
+  stop?.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
+
 /**
  * Returns the stop that a name means: the one of this name, else the one whose name is nearest to it by the letters
  * that have to be changed; null for an empty name.

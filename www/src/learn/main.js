@@ -6,7 +6,7 @@ import { button } from '../ui/button.js';
 import { byId, query, queryAll } from '../ui/dom.js';
 import { storeSite } from '../ui/offline.js';
 import { surfaceWords } from '../ui/surface-link.js';
-import { BENCH, readAddress, writeAddress } from './address.js';
+import { readAddress, writeAddress } from './address.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
 import { createHandout } from './handout.js';
@@ -92,9 +92,8 @@ const { present } = mountStops({
     const { mountCollect } = await import('./collect.js');
     await mountCollect(byId('collect'));
   },
-  say: (words, stop) => {
-    // The words stand where the reader is led.
-    if (stop) (document.getElementById(stop) ?? byId(BENCH)).prepend(notice);
+  say: (words, place) => {
+    place?.prepend(notice);
     notice.textContent = words;
   },
 });

@@ -7,6 +7,7 @@ import { button } from '../ui/button.js';
 import { byId, h, queryAll } from '../ui/dom.js';
 import { formatCount } from '../ui/format.js';
 import { loadSheet } from '../ui/sheet.js';
+import { titleOf } from './address.js';
 import { createNotes } from './notes.js';
 import sheet from './present.css?url';
 
@@ -140,8 +141,7 @@ function showCard(card) {
 function wordsOf(id) {
   if (id === undefined) return null;
   const stop = byId(id);
-  const title = stop.querySelector(':is(.predict-question, .challenge-title, h2, caption)')?.textContent ?? '';
-  return { title, notes: stop.closest('.chapter')?.querySelector('.notes')?.textContent ?? '' };
+  return { title: titleOf(stop), notes: stop.closest('.chapter')?.querySelector('.notes')?.textContent ?? '' };
 }
 
 /**

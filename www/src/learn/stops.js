@@ -1,5 +1,5 @@
 /** Stops in the address: each chapter, question and comparison has its own. */
-import { BENCH, nearestStop, readAddress, writeAddress } from './address.js';
+import { BENCH, nearestStop, readAddress, titleOf, writeAddress } from './address.js';
 
 /** @import { Setup, StopsOptions } from './types.js' */
 
@@ -44,7 +44,8 @@ export function mountStops({ stops, others, questions, onBench, onCollect, say }
     if (!isPresenting) void loaded?.then(({ end }) => end());
     if (!found) return;
     if (!found.isExact) {
-      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`, found.stop);
+      const nearest = document.getElementById(found.stop) ?? document.getElementById(BENCH);
+      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${titleOf(nearest)}”.`, nearest);
       history.replaceState(history.state, '', writeAddress({ stop: found.stop, parts }));
     }
     const isBench = others.includes(found.stop);

@@ -247,5 +247,5 @@ export interface StopsOptions {
   /** opens the part of the page where work is collected */
   onCollect: () => Promise<void>;
   /** says something at a stop, or at the top of the page */
-  say: (words: string, stop?: string) => void;
+  say: (words: string, place?: Element | null) => void;
 }

@@ -225,7 +225,9 @@ test('what the text claims of the ellipsoid is what its runs say', async ({ page
 
 test('an unknown stop leads to the nearest one, and the page says so', async ({ page }) => {
   await openLesson(page, { hash: '#ringz' });
-  await expect(page.locator('#notice')).toContainText('There is no stop “ringz”');
+  await expect(page.locator('#notice')).toHaveText(
+    'There is no stop “ringz” in this lesson. This is the nearest, “Rings”.',
+  );
   await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
   await expect(page.locator('#rings h2')).toBeInViewport();
   await expect(page.locator('#notice')).toBeInViewport({ ratio: 1 });
