@@ -404,8 +404,10 @@ export class Painter {
       packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
     const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
     const rim = i === outline ? value : lit(shade * 0.78);
-    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise.
-    const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
+    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise, and a disc without a level
+    // is a piece of a body below particles.
+    const hasRim = px > RIM_FROM_PX && (isDot || levels[i] !== NO_LEVEL);
+    const coreSq = hasRim ? 0.81 * px * px : Infinity;
     if (px < POINT_PX) {
       const at = (sy | 0) * width + (sx | 0);
       if (sx >= 0 && sx < width && sy >= 0 && sy < height && near > depth[at]) {
