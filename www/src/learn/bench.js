@@ -169,5 +169,7 @@ export function mountCards(cards, lab) {
       button({ 'aria-expanded': () => String(isOpen.value), 'aria-label': `Show both: ${title}`, press }, 'Show both'),
       place,
     );
+    // A presentation may have come to this card first.
+    if (card.hasAttribute('data-current')) press();
   }
 }

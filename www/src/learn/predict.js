@@ -134,7 +134,10 @@ function showFigure(host) {
   const stage = stages.find(isBelow) ?? stages[0];
   const [seen, chart] = ['.picture, .drawing, .cost', '.chart:not([hidden])'].map((name) => stage?.querySelector(name));
   if (!seen) return;
-  const height = (chart ?? seen).getBoundingClientRect().bottom - seen.getBoundingClientRect().top;
+  const [answer, figure, last] = [host.querySelector('.predict-result') ?? host, seen, chart ?? seen].map((one) =>
+    one.getBoundingClientRect(),
+  );
+  const height = last.bottom - Math.min(answer.top, figure.top);
   const target = chart && height < innerHeight - HEAD_PX ? chart : seen;
   target.scrollIntoView({ block: 'nearest' });
 }

@@ -99,6 +99,13 @@ for (const [width, height, letters] of [
     clean();
   });
 
+test('an address of the last slide shows its first card with both pictures', async ({ page }) => {
+  await openLesson(page, { hash: '#differences&mode=present' });
+  const card = page.locator('.card:visible');
+  await expect(card).toHaveCount(1);
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+});
+
 test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
   await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
   await live(page, 'seams');
