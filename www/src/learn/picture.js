@@ -29,6 +29,8 @@ const DRAG_RAD = 3.4;
 const PRESS_PX = 5;
 /** The camera follows a level of which a smaller share faces it. */
 const IN_SIGHT = 0.35;
+/** Height of a picture on paper, over its width. */
+const PAPER = 0.6;
 /** Canvas pixels for a page pixel. */
 const FINENESS = 2;
 
@@ -196,13 +198,19 @@ export class Picture {
     this.scene.value = scene;
   }
 
+  /** The size that is drawn. The hand-out has pictures of one shape. */
+  #room() {
+    const { width, height } = this.#size.peek();
+    return { width, height: printing.peek() && height > 0 ? PAPER * width : height };
+  }
+
   #view() {
-    return this.orbit.view(this.#size.peek());
+    return this.orbit.view(this.#room());
   }
 
   #draw() {
     const scene = this.scene.peek();
-    const { width, height } = this.#size.peek();
+    const { width, height } = this.#room();
     if (!scene || !this.painter || width === 0 || height === 0) return;
     const { painter } = this;
     const { particles } = scene;
