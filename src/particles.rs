@@ -306,13 +306,15 @@ impl Particles {
     }
 
     /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
-    pub(crate) fn keep_within(&mut self, bounds: &Bounds) {
+    /// Returns the new row of each, as [`Self::keep`] does.
+    pub(crate) fn keep_within(&mut self, bounds: &Bounds) -> Vec<u32> {
         let is_inside: Vec<bool> = self.position.iter().map(|&p| bounds.contains(p)).collect();
-        self.keep(|i| is_inside[i]);
+        let place = self.keep(|i| is_inside[i]);
         for i in 0..self.len() {
             // Parents come before their children, so the new level is known.
             self.level[i] = self.level.get(self.parent[i] as usize).map_or(0, |level| level + 1);
         }
+        place
     }
 
     /// Keeps some of the particles, in their order. One whose parent is removed has none then. Returns the new row of each particle,
@@ -337,8 +339,23 @@ impl Particles {
             self.parent[kept] = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
             kept += 1;
         }
+        self.name_twins(&place);
         self.truncate(kept);
         place
+    }
+
+    /// Names the first row that is kept of every particle on a crease, where each row has got a new place.
+    fn name_twins(&mut self, place: &[u32]) {
+        let mut first = vec![Self::NO_PARENT; self.twins.len()];
+        let mut kept = Vec::with_capacity(self.twins.len());
+        for (&twin, &place) in self.twins.iter().zip(place).filter(|(_, place)| **place != Self::NO_PARENT) {
+            let first = &mut first[twin as usize];
+            *first = place.min(*first);
+            kept.push(*first);
+        }
+        self.twins = kept;
+        // A segment of which a row is removed is none of the first rows any more.
+        self.segments.iter_mut().flatten().for_each(|row| *row = first[*row as usize]);
     }
 
     /// Takes the first `len` particles of others in place of its own.

@@ -120,6 +120,12 @@ impl Bounds {
         DVec3::from_array(self.max)
     }
 
+    /// The corners of the largest box of single-precision numbers in this one.
+    pub(crate) fn single(&self) -> [Vec3; 2] {
+        let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+        [Vec3::from_array(self.min.map(at_least)), Vec3::from_array(self.max.map(|x| -at_least(-x)))]
+    }
+
     /// Lengths of the sides.
     #[must_use]
     pub fn size(&self) -> DVec3 {

@@ -339,8 +339,8 @@ impl Sampler {
                     *curvature = 0.0;
                 }
             }
-            let has_one_radius = settings.sampling == Sampling::Uniform;
-            let crease = if has_one_radius { self.creases.at_box() } else { self.creases.first() };
+            let is_adaptive = settings.sampling == Sampling::Adaptive;
+            let crease = if is_adaptive { self.creases.first() } else { None };
             self.counts.refusal = match (crease, self.creases.passed) {
                 (_, Some(at)) => Some(Refusal::Singular { at: at.as_vec3().into() }),
                 (Some(at), _) => Some(Refusal::Creased { at: at.into() }),

@@ -207,7 +207,11 @@ impl Sampler {
                 sizing.radius(place, &curvature[0])
             })
         };
-        let filled = self.creases.fill(probe, halvings, &mut radius);
+        // A coarse front grows beyond the box.
+        let wide = self.attempt.front_bounds(&self.bounds);
+        let is_refined = self.attempt.refining.is_some();
+        let beyond = is_refined.then(|| self.creases.beyond(probe, &self.bounds, &wide)).flatten();
+        let filled = beyond.as_ref().unwrap_or(&self.creases).fill(probe, halvings, &mut radius);
         let particles = &mut self.output.particles;
         let along = filled.add_rows(probe, particles);
         let match_share = 2.0 * self.settings.match_tolerance as f32;
@@ -216,7 +220,7 @@ impl Sampler {
             return false;
         }
         if let Some(refining) = &mut self.attempt.refining {
-            refining.ladder = Some(filled.into_ladder(particles));
+            refining.ladder = Some(filled.into_ladder(particles, beyond.is_some().then_some(&self.bounds)));
         }
         self.counts.seeds += self.creases.pieces() + (particles.twins.len() - along.len()) as u32;
         self.counts.seeding_evaluations += probe.evaluations() - before;

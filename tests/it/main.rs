@@ -11,6 +11,7 @@ mod branches;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;
+mod crease_box;
 mod crease_mesh;
 mod crease_quality;
 mod creased;

@@ -4,6 +4,7 @@ use super::cell::{FacePair, Image};
 use super::ladder::CreaseLadder;
 use super::meeting::{FADED, Meeting};
 use super::{Crease, Creases};
+use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use core::ops::Range;
@@ -232,8 +233,8 @@ impl CreaseParticles {
         along
     }
 
-    /// The particles on creases at every level of a refinement that begins with rows of these.
-    pub(in super::super) fn into_ladder(self, rows: &Particles) -> CreaseLadder {
-        CreaseLadder::new(rows, self.between)
+    /// The particles on creases at every level of a refinement that begins with rows of these; those in a box where creases run on beyond it.
+    pub(in super::super) fn into_ladder(self, rows: &Particles, bounds: Option<&Bounds>) -> CreaseLadder {
+        CreaseLadder::new(rows, self.between, bounds)
     }
 }

@@ -1,7 +1,7 @@
 //! Particles on creases and tips, level by level: at each level of a refinement another one halves the way between two that follow each
 //! other along a crease.
 
-use crate::math::sort_by_key;
+use crate::math::{Bounds, sort_by_key};
 use crate::particles::Particles;
 use glam::Vec3;
 
@@ -26,23 +26,43 @@ pub(in super::super) struct CreaseLadder {
     middles: Vec<([u32; 2], u32)>,
     /// Number of ends of segments at each row of the coarse front.
     ends: Vec<u32>,
+    /// Whether a crease runs on beyond the box from each of them.
+    is_at_box: Vec<bool>,
 }
 
 impl CreaseLadder {
-    /// The ladder over the rows of a coarse front, whose segments are divided by the points `between`, as many in each.
-    pub(super) fn new(rows: &Particles, between: Vec<Vec3>) -> Self {
-        let segments = rows.segments.clone();
-        let mut ends = vec![0; rows.twins.len()];
-        segments.as_flattened().iter().for_each(|&row| ends[row as usize] += 1);
-        let parts = between.len() / segments.len().max(1) + 1;
+    /// The ladder over the rows of a coarse front, whose segments are divided by the points `between`, as many in each. Where creases run on
+    /// beyond the box, segments that lie there are left out.
+    pub(super) fn new(rows: &Particles, mut between: Vec<Vec3>, bounds: Option<&Bounds>) -> Self {
+        let count = rows.twins.len();
+        let (mut segments, mut sides) = (Vec::new(), Vec::new());
+        let (mut ends, mut is_at_box) = (vec![0; count], vec![false; count]);
+        let inner = between.len() / rows.segments.len().max(1);
+        let parts = inner + 1;
+        let mut kept = 0;
+        for (k, (segment, own)) in rows.segments.iter().zip(&rows.sides).enumerate() {
+            let points = k * inner..(k + 1) * inner;
+            let is_beyond = |&middle: &Vec3| bounds.is_some_and(|bounds| !bounds.contains(middle));
+            if between[points.clone()].get(inner / 2).is_some_and(is_beyond) {
+                segment.iter().for_each(|&row| is_at_box[row as usize] = true);
+                continue;
+            }
+            segments.push(*segment);
+            sides.push(own.clone());
+            segment.iter().for_each(|&row| ends[row as usize] += 1);
+            between.copy_within(points, kept);
+            kept += inner;
+        }
+        between.truncate(kept);
         let mut ladder = Self {
             segments,
-            sides: rows.sides.clone(),
+            sides,
             parts,
-            rows: rows.twins.len() as u32,
+            rows: count as u32,
             between,
             middles: Vec::new(),
             ends,
+            is_at_box,
         };
         let mut half = parts / 2;
         while half > 0 {
@@ -76,6 +96,11 @@ impl CreaseLadder {
     /// Whether creases meet or end at a particle.
     pub(in super::super) fn is_corner(&self, number: u32) -> bool {
         self.ends.get(number as usize).is_some_and(|&ends| ends != 2)
+    }
+
+    /// Whether a crease ends at a particle because the box does.
+    pub(in super::super) fn is_at_box(&self, number: u32) -> bool {
+        self.is_at_box.get(number as usize).copied().unwrap_or(false)
     }
 
     /// The number and the position of the particle that halves the way between two; none if these do not follow each other along a crease

@@ -11,9 +11,11 @@
 //! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner. From there
 //!    the other creases of the corner are followed.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
-//!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once.
+//!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once, also beyond
+//!    the box where the creases run to it, and at its faces.
 
 mod cell;
+mod cut;
 mod fill;
 mod ladder;
 mod meeting;
@@ -189,7 +191,7 @@ impl Creases {
     }
 
     /// A point at which a crease runs to the box, if there is one.
-    pub(super) fn at_box(&self) -> Option<Vec3> {
+    fn at_box(&self) -> Option<Vec3> {
         let mut ends = self.curves.iter().filter(|curve| !curve.is_closed).flat_map(|curve| {
             let points = [curve.points.first(), curve.points.last()];
             points.into_iter().flatten().zip(curve.corners)

@@ -107,7 +107,7 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
     let filled = creases.fill(probe, 3, |_, _| 0.2);
     let mut rows = Particles::default();
     filled.add_rows(probe, &mut rows);
-    let ladder = filled.into_ladder(&rows);
+    let ladder = filled.into_ladder(&rows, None);
     // The circle of circumference 2π √¾ has room for 14 particles at a distance of 0.4.
     let mut place: BTreeMap<u32, Vec3> =
         (0..).zip(&rows.position).map(|(row, &p)| (rows.first_row(row) as u32, p)).collect();
@@ -127,4 +127,30 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
     }
     assert_eq!((ladder.len(), ladder.ambiguous()), (rows.len() + 14 * 7, None));
     assert!(ladder.pairs(0).all(|([a, b], _)| ladder.middle(a, b).is_none() && !ladder.is_corner(a)));
+}
+
+#[test]
+fn creases_beyond_the_box_are_cut_at_its_faces() {
+    for (text, half, [pieces, inside]) in [
+        ("abs(x)+z", 1.0, [3, 1]),
+        // A circle of radius √¾ around the x axis, which passes four faces twice.
+        ("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 0.8, [8, 4]),
+        // Its creases do not run to the box.
+        ("max(abs(x),abs(y),abs(z))-0.5", 0.8, [0, 0]),
+    ] {
+        let (mut field, own) = creases(text, half);
+        let mut memory = ProbeMemory::default();
+        let probe = &mut Probe::new(&mut field, &mut memory);
+        let bounds = Bounds::cube(half);
+        let cut = own.beyond(probe, &bounds, &Bounds::cube(2.0 * half)).unwrap_or_default();
+        let is_inside = |curve: &&Crease| bounds.holds(curve.points[curve.points.len() / 2]);
+        let kept: Vec<&Crease> = cut.curves.iter().filter(is_inside).collect();
+        assert_eq!([cut.curves.len(), kept.len()], [pieces, inside], "{text}");
+        for corner in kept.iter().flat_map(|curve| curve.corners) {
+            let Corner { position, .. } = cut.corners[corner.expect("an end on a face")];
+            assert_eq!(position.as_vec3().abs().max_element(), bounds.single()[1].x, "{text}: {position}");
+        }
+        let [all, whole] = [&cut.curves, &own.curves].map(|curves| curves.iter().map(length).sum::<f64>());
+        assert!(pieces == 0 || all > whole, "{text}: {all} after {whole}");
+    }
 }

@@ -144,8 +144,9 @@ fn split_fans(triangles: &mut [[u32; 3]], particles: &Particles) -> Vec<u32> {
 fn judge_creases(net: &Net, ladder: &CreaseLadder) -> Result<(), Refusal> {
     let is_open = |&h: &u32| {
         let [a, b] = [net.mesh.origin(h), net.mesh.target(h)];
-        let is_on_crease = net.walls.planes(a).common(net.walls.planes(b)).is_crease();
-        net.mesh.twin(h) == NONE && is_on_crease && net.middle_on_crease(ladder, a, b).is_none()
+        net.mesh.twin(h) == NONE
+            && net.common_planes(a, b).is_crease()
+            && net.middle_on_crease(ladder, a, b).is_none()
     };
     match net.mesh.edges().find(is_open) {
         Some(h) => Err(Refusal::Doubtful { at: net.position[net.mesh.origin(h) as usize].into() }),

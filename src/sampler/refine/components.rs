@@ -204,10 +204,24 @@ impl CoarseFronts {
             faces[number(triangle[0])].push(triangle.map(|row| parts.place[row as usize]));
         }
         for ((mut part, triangles), &patch) in parts.particles.into_iter().zip(&faces).zip(&patches) {
+            let is_in_box = |row: usize| {
+                let number = part.twins.get(row);
+                let is_at_box = number.is_some_and(|&number| ladder.is_at_box(number));
+                surface.bounds.contains(part.position[row]) && !is_at_box
+            };
+            // Beyond the box there may be others.
+            if !(0..part.len()).any(is_in_box) {
+                continue;
+            }
             let front = FrontPart { particles: &part, triangles, patch: Some(patch) };
             let refinement = Refinement::new(probe, surface, &front, target)?;
             let weight = refinement.area();
-            part.keep_within(&surface.bounds);
+            // Those are numbers in the ladder, and no rows.
+            let mut numbers = mem::take(&mut part.twins);
+            let place = part.keep_within(&surface.bounds);
+            let mut places = place.iter();
+            numbers.retain(|_| places.next() != Some(&Particles::NO_PARENT));
+            part.twins = numbers;
             self.components.push(AcceptedComponent { refinement, weight, particles: part });
         }
         Ok(())

@@ -10,7 +10,7 @@
 
 use super::net::{Ground, MovedBlock, Net};
 use super::recipe::Recipe;
-use super::walls::{Planes, Walls};
+use super::walls::Walls;
 use super::{Goals, Refinement, Refusal, SurfaceFacts, Target, Turn, border, coarse};
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE};
@@ -164,10 +164,7 @@ impl Net {
             if !self.mesh.has_vertex(v) || !self.mesh.is_border(v) {
                 continue;
             }
-            let p = self.position[v as usize];
-            let planes = (0..Planes::ALL)
-                .filter(|&plane| self.walls.depth(p, plane) == 0.0)
-                .fold(Planes::INNER, |planes, plane| planes.joined(Planes::of(plane)));
+            let planes = self.walls.planes_at(self.position[v as usize]);
             if planes.is_inner() {
                 return false;
             }

@@ -412,6 +412,7 @@ impl Net {
             position: self.position[v as usize],
             normal: self.normal[v as usize],
             planes: self.walls.planes(v),
+            number: self.on_crease.get(v as usize).copied().unwrap_or(NONE),
         }
     }
 
@@ -437,17 +438,13 @@ impl Net {
 
     /// The site of a particle that halves the edge between two others.
     pub(super) fn halfway(&self, a: u32, b: u32) -> Site {
-        Site {
-            position: self.middle(a, b),
-            normal: self.normal_between(a, b),
-            planes: self.planes_between(a, b),
-        }
+        Site::smooth(self.middle(a, b), self.normal_between(a, b), self.planes_between(a, b))
     }
 
     /// Whether a particle stays where it is, with the normal that it has: creases end there, or it is a tip, where f has no gradient.
     #[inline]
     fn is_pinned(&self, v: u32) -> bool {
-        self.walls.planes(v) == Planes::CREASE_END
+        self.walls.planes(v).is_crease_end()
     }
 
     /// Whether a particle is a tip, where the surface has no normal.
@@ -499,7 +496,7 @@ impl Net {
                 self.size.push(1.0);
             }
             if !self.on_crease.is_empty() {
-                self.on_crease.push(NONE);
+                self.on_crease.push(site.number);
             }
             if !self.is_born.is_empty() {
                 self.is_born.push(true);
@@ -508,22 +505,31 @@ impl Net {
         self.position[v as usize] = site.position;
         self.normal[v as usize] = site.normal;
         self.walls.set(v, site.planes);
+        if let Some(number) = self.on_crease.get_mut(v as usize) {
+            *number = site.number;
+        }
     }
 
     /// Lets the particles on creases, which have these numbers, stay where they are.
     pub(super) fn hold_creases(&mut self, ladder: &CreaseLadder, numbers: Vec<u32>) {
         self.walls.planes.resize(self.position.len(), Planes::INNER);
-        for (planes, &number) in
-            self.walls.planes.iter_mut().zip(&numbers).filter(|(_, number)| **number != NONE)
-        {
-            *planes = if ladder.is_corner(number) { Planes::CREASE_END } else { Planes::CREASE };
+        for (v, &number) in (0..).zip(&numbers).filter(|(_, number)| **number != NONE) {
+            let planes = if ladder.is_at_box(number) {
+                Planes::CREASE_END.joined(self.walls.planes_at(self.position[v as usize]))
+            } else if ladder.is_corner(number) {
+                Planes::CREASE_END
+            } else {
+                Planes::CREASE
+            };
+            self.walls.set(v, planes);
         }
         self.on_crease = numbers;
     }
 
     /// Whether the patch ends at creases.
     pub(super) fn is_creased(&self) -> bool {
-        self.on_crease.iter().zip(0..).any(|(&number, v)| number != NONE && self.mesh.is_border(v))
+        let is_at_end = |v: u32| self.mesh.has_vertex(v) && self.mesh.is_border(v);
+        self.on_crease.iter().zip(0..).any(|(&number, v)| number != NONE && is_at_end(v))
     }
 
     /// The number and the position of the particle that halves an edge along a crease; none for other edges.
@@ -542,14 +548,13 @@ impl Net {
             [a, b] => (coarse.halfway(a, b), Slots::default(), coarse.size_between(a, b)),
         };
         if let Some(ladder) = ladder {
-            let number = match ends {
-                [old, NONE] => coarse.on_crease[old as usize],
-                [a, b] => coarse.middle_on_crease(ladder, a, b).map_or(NONE, |(number, position)| {
-                    site = Site { position, planes: Planes::CREASE, ..site };
-                    number
-                }),
-            };
-            self.on_crease.push(number);
+            if let [a, b] = ends
+                && b != NONE
+                && let Some((number, position)) = coarse.middle_on_crease(ladder, a, b)
+            {
+                site = Site { position, planes: Planes::CREASE, number, ..site };
+            }
+            self.on_crease.push(site.number);
         }
         self.position.push(self.walls.pinned(site.position, site.planes));
         self.normal.push(site.normal);
@@ -559,9 +564,11 @@ impl Net {
     }
 
     /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
-    /// border is merged along the border only. One on a crease stays.
+    /// border is merged along the border only. One on a crease stays, and takes in one beside it on a face of the box.
     pub(super) fn can_merge(&self, h: u32) -> bool {
-        if !self.mesh.can_collapse(h) || self.walls.planes(self.mesh.origin(h)).is_crease() {
+        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));
+        let is_along_box = self.mesh.twin(h) == NONE && !m.common(n).of_box().is_inner();
+        if !self.mesh.can_collapse(h) || m.is_crease() && (n.is_crease() || !is_along_box) {
             return false;
         }
         // The corners across from the edge lose a neighbour.
@@ -569,7 +576,6 @@ impl Net {
         if across.map(|h| self.mesh.origin(previous(h))).any(|v| self.is_narrow_tip(v)) {
             return false;
         }
-        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.walls.planes(v));
         if m.is_inner() && n.is_inner() {
             return true;
         }

@@ -40,10 +40,9 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
-    /// The surface has creases, and radii are to differ or a crease runs to the box.
+    /// The surface has creases, and radii are to differ.
     #[error(
-        "The front stands, and is not refined: near {at} the surface has a crease. Such a surface is refined with one radius only, and in \
-         a box that holds its creases."
+        "The front stands, and is not refined: near {at} the surface has a crease. Such a surface is refined with one radius only."
     )]
     Creased {
         /// Position of a point of a crease.

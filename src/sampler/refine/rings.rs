@@ -41,7 +41,8 @@ impl Rings {
         };
         let last = net.on_crease.iter().filter(|&&number| number != NONE).max();
         let mut met = vec![NONE; last.map_or(0, |&last| last as usize + 1)];
-        for (v, &number) in (0..).zip(&net.on_crease).filter(|(_, number)| **number != NONE) {
+        let is_held = |&(v, &number): &(u32, &u32)| number != NONE && net.mesh.has_vertex(v);
+        for (v, &number) in (0..).zip(&net.on_crease).filter(is_held) {
             // Where a patch touches itself, a particle has a vertex for each of its fans. The nappes at a tip keep rows of their own.
             let new = rings.order.len() as u32;
             let first = &mut met[number as usize];

@@ -289,7 +289,7 @@ impl Surgeon {
                 let normal = normal.normalize_or(net.normal[corners[0] as usize]);
                 let size = corners.iter().map(|&v| net.size_of(v)).sum::<f32>() / 3.0;
                 let v = net.mesh.insert(h);
-                self.add(net, v, Site { position, normal, planes: Planes::INNER }, size);
+                self.add(net, v, Site::smooth(position, normal, Planes::INNER), size);
                 Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added: 1.0 }
             }
             Operation::Split(h) => {

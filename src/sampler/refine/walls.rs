@@ -1,6 +1,7 @@
 //! The box that cuts a net, and the planes of it on which the particles lie.
 
 use crate::math::Bounds;
+use crate::mesh::half_edge::NONE;
 use glam::Vec3;
 
 /// Particles may be beyond a plane by this share of the spacing before they are put back onto it: rounding and the last step of
@@ -17,7 +18,7 @@ impl Planes {
     pub(super) const INNER: Self = Self(0);
     /// A crease, on which a particle stays where it is.
     pub(super) const CREASE: Self = Self(1 << 6);
-    /// A point at which creases meet or end.
+    /// A point at which creases meet or end, with the planes of the box if they end there.
     pub(super) const CREASE_END: Self = Self(3 << 6);
     /// Number of planes of a box.
     pub(super) const ALL: usize = 6;
@@ -42,6 +43,16 @@ impl Planes {
     /// Whether the particle lies on a crease.
     pub(super) fn is_crease(self) -> bool {
         !self.common(Self::CREASE).is_inner()
+    }
+
+    /// Whether creases meet or end at the particle.
+    pub(super) fn is_crease_end(self) -> bool {
+        self.common(Self::CREASE_END) == Self::CREASE_END
+    }
+
+    /// The planes of the box alone.
+    pub(super) fn of_box(self) -> Self {
+        self.common(Self((1 << Self::ALL) - 1))
     }
 
     /// The planes that are in both sets.
@@ -73,6 +84,15 @@ pub(super) struct Site {
     pub(super) normal: Vec3,
     /// The planes of the box on which the particle lies.
     pub(super) planes: Planes,
+    /// Its number, if it lies on a crease: see [`Net::on_crease`](super::net::Net::on_crease).
+    pub(super) number: u32,
+}
+
+impl Site {
+    /// A site on no crease.
+    pub(super) fn smooth(position: Vec3, normal: Vec3, planes: Planes) -> Self {
+        Self { position, normal, planes, number: NONE }
+    }
 }
 
 /// The box of a net, and the planes on which its particles lie.
@@ -91,10 +111,7 @@ impl Walls {
     /// The walls around particles none of which lies on a plane yet. They have no effect if no particle is within a `spacing`
     /// of a plane, or beyond it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
-        let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
-        let at_most = |x: f64| -at_least(-x);
-        let (lo, hi) =
-            (Vec3::from_array(bounds.min.map(at_least)), Vec3::from_array(bounds.max.map(at_most)));
+        let [lo, hi] = bounds.single();
         let farthest = lo.abs().max(hi.abs()).max_element();
         let slack = SLACK * spacing + 4.0 * f32::EPSILON * farthest;
         let is_near = position.iter().any(|&p| (p - lo).min(hi - p).min_element() <= spacing);
@@ -138,6 +155,13 @@ impl Walls {
     pub(super) fn depth(&self, p: Vec3, plane: usize) -> f32 {
         let axis = plane / 2;
         if plane.is_multiple_of(2) { p[axis] - self.lo[axis] } else { self.hi[axis] - p[axis] }
+    }
+
+    /// The planes on which a point lies to the last bit.
+    pub(super) fn planes_at(&self, p: Vec3) -> Planes {
+        (0..Planes::ALL)
+            .filter(|&plane| self.depth(p, plane) == 0.0)
+            .fold(Planes::INNER, |planes, plane| planes.joined(Planes::of(plane)))
     }
 
     /// The point with the coordinates of the planes.

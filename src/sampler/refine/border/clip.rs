@@ -118,9 +118,7 @@ fn split(net: &mut Net, ground: &mut Ground, h: u32, crossing: EdgeSplit) -> Res
     let clear = (net.walls.lo - place).max(place - net.walls.hi).max_element();
     let site = match super::slide(ground, planes, place, reach) {
         Some(site) => site,
-        None if clear > reach => {
-            Site { position: place, normal: net.normal[net.mesh.origin(h) as usize], planes }
-        }
+        None if clear > reach => Site::smooth(place, net.normal[net.mesh.origin(h) as usize], planes),
         None => return Err(Refusal::Cut { at: place.into() }),
     };
     let size = net.size_between(net.mesh.origin(h), net.mesh.target(h));

@@ -48,7 +48,7 @@ fn slide(ground: &mut Ground, planes: Planes, start: Vec3, reach: f32) -> Option
             return None;
         }
         if step.length() <= AT_REST * reach {
-            return gradient.try_normalize().map(|normal| Site { position: p, normal, planes });
+            return gradient.try_normalize().map(|normal| Site::smooth(p, normal, planes));
         }
     }
     None
@@ -105,9 +105,15 @@ impl Net {
         fates
     }
 
+    /// What two particles have in common: the planes of the box, or a crease. Two at which creases run to one face of the box lie on that face.
+    pub(super) fn common_planes(&self, a: u32, b: u32) -> Planes {
+        let common = self.walls.planes(a).common(self.walls.planes(b));
+        if common.of_box().is_inner() { common } else { common.of_box() }
+    }
+
     /// The planes of the particle on the middle of an edge: those on which the edge runs along the border.
     pub(super) fn planes_between(&self, a: u32, b: u32) -> Planes {
-        let common = self.walls.planes(a).common(self.walls.planes(b));
+        let common = self.common_planes(a, b);
         if common.is_inner() {
             return common;
         }
@@ -163,7 +169,7 @@ impl Net {
         }
         let is_border = |&h: &u32| {
             let is_at_end = self.mesh.has_half_edge(h) && self.mesh.twin(h) == NONE;
-            is_at_end && !self.walls.planes(self.mesh.origin(h)).is_crease()
+            is_at_end && !self.common_planes(self.mesh.origin(h), self.mesh.target(h)).is_crease()
         };
         let length = |h: u32| self.length(h) / self.size_between(self.mesh.origin(h), self.mesh.target(h));
         (3 * faces.start..3 * faces.end).filter(is_border).map(|h| f64::from(length(h))).sum()
