@@ -19,7 +19,7 @@ pub struct Iterate {
     pub slope: f64,
 }
 
-/// Largest number of cells along a side of a section.
+/// Largest number of cells along a side of a section: more of them are no longer seen in a drawing of a few hundred pixels.
 const MAX_CELLS: u32 = 200;
 
 impl Lesson {

@@ -21,10 +21,11 @@ const MIN_CROSSING: f64 = 0.1;
 /// Largest ratio of |f| after a step of Newton's method to |f| before it; above it the bracketed search takes over.
 const MIN_DECREASE: f64 = 0.7;
 
-/// Intervals into which the bracketed search divides the arc.
+/// Intervals into which the bracketed search divides the arc: 6° each, in which a surface that a particle's size resolves crosses the circle
+/// no more than once.
 const ARC_SAMPLES: u32 = 32;
 
-/// Largest number of steps in a bracket.
+/// Largest number of steps in a bracket: as many halvings make it shorter than what single precision tells apart.
 const MAX_BRACKET: u32 = 40;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).

@@ -21,7 +21,7 @@ pub struct Push {
     pub energy: f64,
 }
 
-/// Particles of one size repel each other up to this distance, in σ.
+/// Particles of one size repel each other up to this distance, in σ, where the energy exp(−d²/2σ²) is 1 % of that at 0.
 const RANGE: f64 = 3.0;
 
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps.

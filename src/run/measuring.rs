@@ -10,7 +10,7 @@ use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
+/// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation. They take 5 MB.
 const MAX_KEPT: usize = 400_000;
 
 /// The measurements of a run.

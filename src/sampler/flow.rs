@@ -48,7 +48,7 @@ pub(crate) const BALANCE_EVERY: u32 = 4;
 /// nothing.
 const STEPS_AFTER_BALANCE: u32 = 2;
 
-/// Two particles nearer than this, over the sum of their radii, crowd each other.
+/// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a child so near to a particle for that particle.
 const CROWDED: f32 = 0.7;
 
 /// The energy, over the usual one, below which a particle gets a child if no neighbour has less, and above which it dies if none has more.
@@ -620,7 +620,7 @@ fn direction_angle(x: f32, y: f32) -> f32 {
 
 /// Whether most particles are near enough to the surface of a field to be transported to it: a few that are not may lie where it vanishes.
 pub(crate) fn is_near(field: &mut dyn Field, particles: &Particles) -> bool {
-    /// Particles that are looked at, spread over all.
+    /// Particles that are looked at, spread over all: a share of them is that of all to about 3 %.
     const LOOKS: usize = 256;
     let step = particles.len().div_ceil(LOOKS);
     let near = |i: &usize| {

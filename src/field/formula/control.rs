@@ -31,20 +31,22 @@ pub struct Grip {
 }
 
 /// Most steps towards the points, and the longest one, as a share of the range of a parameter: a surface that is pulled far then passes
-/// through what lies between.
+/// through what lies between. So many of the longest steps cross a range eight times.
 const MOST_STEPS: usize = 64;
 const LONGEST_STEP: f64 = 0.125;
 
-/// Most halvings of a step that does not bring the surface nearer to the points.
+/// Most halvings of a step that does not bring the surface nearer to the points. After them the parameters stay where they are.
 const MOST_HALVINGS: usize = 8;
 
-/// Distance from a point, over its distance from the origin or over 1, at which the surface passes through it.
+/// Distance from a point, over its distance from the origin or over 1, at which the surface passes through it: a hundredth of what single
+/// precision, in which particles are kept, rounds off.
 const NEAR: f64 = 1e-9;
 
 /// Multiple of the unit matrix that J Jᵀ gets, over its largest diagonal entry: half of the digits of double precision.
 const RIDGE: f64 = 1e-8;
 
-/// A parameter is idle if it moves the surface less than this share of what the strongest one does.
+/// A parameter is idle if it moves the surface less than this share of what the strongest one does: less than a pixel of a picture that the
+/// strongest one moves across.
 const IDLE: f64 = 1e-3;
 
 /// Steps of Newton's method to the place of a point.

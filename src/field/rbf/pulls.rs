@@ -11,7 +11,7 @@ use crate::math::{Bounds, Sym3};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Largest way of a pull, over its reach.
+/// Largest way of a pull, over its reach. Space folds from 0.58 on: one over the largest slope of (1 − s²)³, which is 1.717, at s = 1/√5.
 pub const LONGEST_PULL: f64 = 0.5;
 
 /// A pull on a surface.

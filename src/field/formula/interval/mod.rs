@@ -331,7 +331,7 @@ impl FactorProgram {
     }
 }
 
-/// Maximum number of operations of a program for second derivatives.
+/// Maximum number of operations of a program for second derivatives. Those of a formula that takes more are unbounded.
 const MAX_SECOND_OPERATIONS: usize = 8_192;
 
 /// Maximum number of factors. A product of more is taken as one function.
