@@ -9,7 +9,7 @@ use marching_particles::lesson::{self, ChapterKind, Lesson};
 use marching_particles::math::Bounds;
 use marching_particles::paper::Particle;
 use marching_particles::pointcloud::models;
-use marching_particles::quality::{self, Figures, Sizes};
+use marching_particles::quality::{self, Figures};
 use marching_particles::{LawKind, Phase, Run, Sampling, Settings, SizeMode};
 use std::time::Instant;
 
@@ -179,11 +179,8 @@ impl Job {
     }
 
     fn figures(&self, set: &Set) -> Figures {
-        let sizes = match self.sizes.sampling {
-            Sampling::Uniform => Sizes::None,
-            Sampling::Adaptive => Sizes::Given(&set.radius),
-        };
-        let options = quality::MeasureOptions { sizes, ..quality::MeasureOptions::default() };
+        let radii = (self.sizes.sampling == Sampling::Adaptive).then_some(&set.radius[..]);
+        let options = quality::MeasureOptions { radii, ..quality::MeasureOptions::default() };
         let field = &mut *self.surface.field();
         quality::measure(&set.position, &set.normal, field, Some(&self.surface.bounds), &options).figures
     }

@@ -43,7 +43,7 @@ mod spacing;
 mod triangles;
 
 pub use figures::Figures;
-pub use options::{MeasureOptions, Sizes};
+pub use options::MeasureOptions;
 pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
@@ -191,9 +191,9 @@ pub(crate) async fn in_slices(
     report.places = Places { pairs: pairs.reported(), holes };
     let is_first = |i: usize| options.rows.is_none_or(|rows| rows.first_row(i) == i);
     let nearest = report.nearest.iter().enumerate().filter(|&(i, _)| is_first(i));
-    report.histogram = Histogram::new(nearest.map(|(i, &distance)| (i, distance)), |i| match options.sizes {
-        Sizes::Given(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),
-        _ => figures.d_hex,
+    report.histogram = Histogram::new(nearest.map(|(i, &distance)| (i, distance)), |i| match options.radii {
+        Some(radii) => radii.get(i).map_or(f64::NAN, |&radius| 2.0 * f64::from(radius)),
+        None => figures.d_hex,
     });
     report
 }
@@ -255,11 +255,11 @@ async fn figures_of(
     let once: Vec<bool> = (0..n).map(|i| inner[i] && points.creases.is_first(i)).collect();
     figures.spacing = spacing::measure(points, &once, *duplicates, figures.d_hex);
     pause().await;
-    let wanted = WantedRadii::new(points, &inner, field, options.sizes, figures.area).await;
+    let wanted = options.radii.map(|radii| WantedRadii::new(points, radii, figures.area));
+    pause().await;
     measured.pairs = measure_neighbourhoods(points, &inner, wanted.as_ref(), &mut figures).await;
     measured.energy = energy::of_points(points, wanted.as_ref(), figures.d_hex).await;
-    (measured.component, measured.opening) =
-        measure_triangles(prepared, [&inner, &once], options.euler, &mut figures).await;
+    (measured.component, measured.opening) = measure_triangles(prepared, [&inner, &once], &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
@@ -330,7 +330,6 @@ async fn measure_neighbourhoods(
 async fn measure_triangles(
     prepared: &Prepared,
     [inner, once]: [&[bool]; 2],
-    euler: Option<i64>,
     figures: &mut Figures,
 ) -> (Vec<u32>, Option<Opening>) {
     let Prepared { points, spacing, triangles, mesh, .. } = prepared;
@@ -359,8 +358,7 @@ async fn measure_triangles(
     figures.connectivity.agree =
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());
     figures.connectivity.tri_ok = if figures.boundary_excluded == 0 {
-        triangles.kept().count() as f64
-            / (2 * points.count() as i64 - 2 * euler.unwrap_or(figures.connectivity.euler)) as f64
+        triangles.kept().count() as f64 / (2 * points.count() as i64 - 2 * figures.connectivity.euler) as f64
     } else {
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
         share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.rings.valence(i)).sum())

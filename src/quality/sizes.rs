@@ -1,21 +1,14 @@
 //! Figures relative to the wanted radius of each point.
 
 use super::moments::Moments;
-use super::options::Sizes;
 use super::places::Pairs;
 use super::points::MeasuredPoints;
-use crate::differential::exact_curvature;
-use crate::field::Field;
 use crate::math::SQRT_3;
-use crate::slices::{pause, ranges};
 
 /// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
 const CELL_AREA: f64 = 2.0 * SQRT_3;
 /// Radius of a hole in that lattice: the circumradius of a triangle of side 2.
 const HOLE: f64 = 2.0 / SQRT_3;
-
-/// Points whose radii are found in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const SLICE: usize = 64;
 
 /// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct WantedRadii {
@@ -26,54 +19,13 @@ pub(super) struct WantedRadii {
 }
 
 impl WantedRadii {
-    /// Finds the radii that `sizes` asks for, of points on a surface of this `area`.
-    pub(super) async fn new(
-        points: &MeasuredPoints,
-        inner: &[bool],
-        field: &mut dyn Field,
-        sizes: Sizes<'_>,
-        area: f64,
-    ) -> Option<Self> {
-        let n = points.tree.len();
-        let radius: Vec<f64> = match sizes {
-            Sizes::None => return None,
-            Sizes::Given(given) => {
-                let of = |&i: &u32| given.get(i as usize).map_or(f64::NAN, |&r| f64::from(r));
-                points.tree.origin.iter().map(of).collect()
-            }
-            Sizes::Local => {
-                let mut own = vec![Moments::default(); n];
-                for range in ranges(n, SLICE) {
-                    for i in range {
-                        for j in points.mutual(inner, i) {
-                            let half = 0.5 * points.distance(i, j);
-                            own[i].add(half);
-                            own[j].add(half);
-                        }
-                    }
-                    pause().await;
-                }
-                own.iter().map(Moments::mean).collect()
-            }
-            Sizes::Curvature { lowest, highest } => {
-                let mut of = |i: usize| {
-                    let p = points.tree.position[i];
-                    points.creases.select(field, i);
-                    let curvature = exact_curvature(&field.jet(p.as_dvec3())).max_abs();
-                    1.0 / curvature.max(lowest).min(highest)
-                };
-                let mut radius = Vec::with_capacity(n);
-                for range in ranges(n, SLICE) {
-                    radius.extend(range.map(&mut of));
-                    pause().await;
-                }
-                points.creases.release(field);
-                radius
-            }
-        };
-        let once = (0..n).filter(|&i| points.creases.is_first(i)).map(|i| radius[i]);
+    /// Takes the `radii` of points on a surface of this `area`, in the order of the particles.
+    pub(super) fn new(points: &MeasuredPoints, radii: &[f32], area: f64) -> Self {
+        let of = |&i: &u32| radii.get(i as usize).map_or(f64::NAN, |&r| f64::from(r));
+        let radius: Vec<f64> = points.tree.origin.iter().map(of).collect();
+        let once = (0..radius.len()).filter(|&i| points.creases.is_first(i)).map(|i| radius[i]);
         let cells: f64 = once.filter(|r| r.is_finite()).map(|r| CELL_AREA * r * r).sum();
-        Some(Self { radius, hole: HOLE * (area / cells).sqrt() })
+        Self { radius, hole: HOLE * (area / cells).sqrt() }
     }
 
     /// Returns the distance of two points over the sum of their radii.

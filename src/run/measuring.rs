@@ -64,12 +64,9 @@ pub(super) async fn measure(
     bounds: &Bounds,
     sampling: Sampling,
 ) -> quality::Measurements {
-    let sizes = match sampling {
-        Sampling::Uniform => quality::Sizes::None,
-        Sampling::Adaptive => quality::Sizes::Given(&particles.radius),
-    };
+    let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
     let (discs, rows) = (&particles.radius[..], Some(particles));
-    let options = quality::MeasureOptions { sizes, discs, rows, ..quality::MeasureOptions::default() };
+    let options = quality::MeasureOptions { radii, discs, rows, ..quality::MeasureOptions::default() };
     quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options).await
 }
 

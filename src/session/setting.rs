@@ -150,16 +150,6 @@ impl SettingValue {
             Self::Choice(_) => SettingKind::Choice,
         }
     }
-
-    /// The value of a number, whole or not.
-    #[must_use]
-    pub fn as_number(self) -> Option<f64> {
-        match self {
-            Self::Number(number) => Some(number),
-            Self::Integer(whole) => Some(whole as f64),
-            Self::Choice(_) => None,
-        }
-    }
 }
 
 impl From<f64> for SettingValue {

@@ -7,7 +7,7 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self, Sizes};
+use marching_particles::quality::{self};
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Sampler, Sampling, Settings, SizeMode, StopReason,
 };
@@ -29,7 +29,7 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
         let mut field = Formula::as_written(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
         let sampler = sampled(&mut field, &bounds, &settings, 100_000);
         let particles = sampler.particles();
-        let figures = figures(&mut field, &bounds, particles, Sizes::Given(&particles.radius));
+        let figures = figures(&mut field, &bounds, particles, Some(&particles.radius));
         assert!(figures.edges.overlap_min > 0.6, "{ripple}: {}", figures.edges.overlap_min);
         assert!(
             figures.spacing.crowded.is_some_and(|crowded| crowded <= most),
@@ -102,7 +102,7 @@ fn particles_cover_and_crowd_nothing() {
     for (surface, euler) in smooth() {
         let sampler = of_gallery(surface, &settings());
         let particles = sampler.particles();
-        let figures = gallery_figures(surface, particles, Sizes::Given(&particles.radius));
+        let figures = gallery_figures(surface, particles, Some(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert_eq!((figures.order.open, figures.connectivity.components), (0, 1), "{context}");
         assert!((figures.connectivity.euler - euler).abs() <= 1, "{context}");
@@ -119,7 +119,7 @@ fn ten_steps_even_the_sizes_out() {
     for (surface, _) in smooth() {
         let sampler = of_gallery(surface, &settings!(relax_steps: 10; ..settings()));
         let particles = sampler.particles();
-        let figures = gallery_figures(surface, particles, Sizes::Given(&particles.radius));
+        let figures = gallery_figures(surface, particles, Some(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert!(figures.edges.size_cv <= 0.12, "{context}");
         assert!(largest_hole(surface, particles) <= 1.6, "{context}: {}", largest_hole(surface, particles));
@@ -138,7 +138,7 @@ fn the_bunny_is_even_after_ten_steps() {
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
     let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);
     let particles = sampler.particles();
-    let figures = figures(&mut field, &fit.bounds, particles, Sizes::Given(&particles.radius));
+    let figures = figures(&mut field, &fit.bounds, particles, Some(&particles.radius));
     let context = format!("{} particles: {figures:?}", particles.len());
     assert!(figures.edges.size_cv <= 0.12, "{context}");
     assert!(figures.coverage.cover_local <= 1.6, "{context}");
@@ -176,7 +176,7 @@ fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
         assert!(radii.iter().all(|r| (r / radii[0] - 1.0).abs() < 1e-5), "{surface}");
         let uniform = of_gallery(surface, &settings!(sampling: Sampling::Uniform; ..equal));
         let [adaptive, uniform] = [&sampler, &uniform]
-            .map(|s| gallery_figures(surface, s.particles(), Sizes::Given(&s.particles().radius)));
+            .map(|s| gallery_figures(surface, s.particles(), Some(&s.particles().radius)));
         let context = format!("{surface}: {adaptive:?} {uniform:?}");
         assert!(adaptive.order.six >= 0.85 && adaptive.edges.size_cv <= 0.11, "{context}");
         assert!(adaptive.edges.size_cv <= uniform.edges.size_cv, "{context}");

@@ -7,7 +7,6 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
-use marching_particles::quality::Sizes;
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
 use marching_particles::topology::Topology;
 use proptest::prelude::*;
@@ -58,7 +57,7 @@ fn gyroid_and_schwarz_surface_come_out_in_order() {
         let (counts, particles) = (sampler.counts(), sampler.particles());
         assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
         assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
-        let f = figures(&mut field, &surface.bounds, particles, Sizes::None);
+        let f = figures(&mut field, &surface.bounds, particles, None);
         assert!(f.order.six >= 0.96, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(

@@ -8,7 +8,7 @@ use marching_particles::field::gallery;
 use marching_particles::lesson::{self, Event, Lesson};
 use marching_particles::paper::Particle;
 use marching_particles::particles::{Particles, SlotFate};
-use marching_particles::quality::{Figures, Sizes};
+use marching_particles::quality::Figures;
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
@@ -154,7 +154,7 @@ fn a_front_covers_smooth_surfaces_regularly() {
             &settings!(size_mode: SizeMode::Count, count: 14_000, relax_steps: 0; ..Settings::default()),
         );
         assert!(sampler.counts().gaps_filled > 0, "{surface}");
-        let figures = gallery_figures(surface, sampler.particles(), Sizes::None);
+        let figures = gallery_figures(surface, sampler.particles(), None);
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
         assert!(figures.coverage.cover <= 1.5, "{context}");
         assert_eq!(figures.order.open, 0, "{context}");
@@ -174,7 +174,7 @@ fn most_particles_of_a_front_have_six_neighbours() {
         let settings =
             settings!(size_mode: SizeMode::Count, count: 55_748, relax_steps: 0; ..Settings::default());
         let sampler = of_gallery(surface, &settings);
-        let figures = gallery_figures(surface, sampler.particles(), Sizes::None);
+        let figures = gallery_figures(surface, sampler.particles(), None);
         let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
         assert!(figures.order.six >= six, "{context}");
         assert!(figures.angles.ang_min_mean >= angle, "{context}");
@@ -191,8 +191,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         let count = filled.counts().gaps_filled as usize;
         assert_eq!(particles.len(), left.len() + count, "{surface}");
         assert_eq!(particles.position[..left.len()], left.position, "{surface}");
-        let (was, is) =
-            (gallery_figures(surface, left, Sizes::None), gallery_figures(surface, particles, Sizes::None));
+        let (was, is) = (gallery_figures(surface, left, None), gallery_figures(surface, particles, None));
         // The unit is 2r, because the hexagonal spacing changes with the count.
         let hole = |f: &Figures| f.coverage.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
         assert!(hole(&is) < hole(&was), "{surface}: {} to {}", hole(&was), hole(&is));

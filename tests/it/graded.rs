@@ -5,7 +5,7 @@ use crate::runs::{gallery_figures, of_gallery, sampled_in_any_steps};
 use marching_particles::differential::exact_curvature;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
-use marching_particles::quality::{Figures, Sizes};
+use marching_particles::quality::Figures;
 use marching_particles::sampler::{LawKind, Method, Refusal, Sampler, Sampling, Settings, SizeMode};
 
 fn graded(seed: u64) -> Settings {
@@ -22,7 +22,7 @@ fn counted(count: u32, seed: u64) -> Settings {
 /// A run, its figures and the surface that it is on.
 fn run(id: &str, settings: &Settings) -> (Sampler, Figures) {
     let sampler = of_gallery(id, settings);
-    let figures = gallery_figures(id, sampler.particles(), Sizes::Given(&sampler.particles().radius));
+    let figures = gallery_figures(id, sampler.particles(), Some(&sampler.particles().radius));
     (sampler, figures)
 }
 

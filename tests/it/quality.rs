@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
-use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, Sizes, measure, triangles};
+use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, measure, triangles};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -228,7 +228,7 @@ fn jittered_lattice_has_the_known_mean_angle() {
 fn fibonacci_sphere_is_a_closed_manifold() {
     let n = 2000;
     let points = fibonacci(n);
-    let options = MeasureOptions { area: Some(SPHERE_AREA), euler: Some(2), ..MeasureOptions::default() };
+    let options = MeasureOptions { area: Some(SPHERE_AREA), ..MeasureOptions::default() };
     let report = measure(&points, &points, &mut sphere(), None, &options);
     let f = report.figures;
     println!("{f:#?}");
@@ -296,7 +296,7 @@ fn white_noise_has_its_known_figures() {
     let mut random = Random::new(1);
     let n = 40_000;
     let points: Vec<Vec3> = (0..n).map(|_| random.on_sphere()).collect();
-    let options = MeasureOptions { area: Some(SPHERE_AREA), euler: Some(2), ..MeasureOptions::default() };
+    let options = MeasureOptions { area: Some(SPHERE_AREA), ..MeasureOptions::default() };
     let f = measure(&points, &points, &mut sphere(), None, &options).figures;
     println!("{f:#?}");
     close("six", f.order.six, 0.295, 0.008);
@@ -422,21 +422,19 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
 fn edges_are_compared_with_the_wanted_radii() {
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
-    let measured = |sizes: Sizes| {
-        let options = MeasureOptions { sizes, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
+    let measured = |radii: Option<&[f32]>| {
+        let options = MeasureOptions { radii, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
         measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.edges.size_cv
     };
     let equal = vec![0.5 * scale as f32; points.len()];
-    close("equal radii", measured(Sizes::Given(&equal)), 0.0, 1e-4);
-    close("local radii", measured(Sizes::Local), 0.0, 1e-4);
-    assert!(measured(Sizes::None).is_nan());
+    close("equal radii", measured(Some(&equal)), 0.0, 1e-4);
+    assert!(measured(None).is_nan());
     // The sum of radii is 6 in one half and 2 in the other, so |P − Q| / sum has the values s/6 and s/2.
     let unequal: Vec<f32> = points.iter().map(|p| if p.x > 0.0 { 3.0 } else { 1.0 }).collect();
-    close("two sizes", measured(Sizes::Given(&unequal)), 0.5, 0.03);
-    // With constant curvature, the variation is that of the edges themselves.
+    close("two sizes", measured(Some(&unequal)), 0.5, 0.03);
+    // With equal radii, the variation is that of the edges themselves.
     let points = fibonacci(2000);
-    let curvature = Sizes::Curvature { lowest: 0.1, highest: 10.0 };
-    let options = MeasureOptions { sizes: curvature, ..MeasureOptions::default() };
+    let options = MeasureOptions { radii: Some(&[1.0; 2000]), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut sphere(), None, &options).figures;
     close("size_cv", f.edges.size_cv, f.edges.edge_cv, 1e-6);
 }
@@ -467,8 +465,7 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     let step = 0.02;
     let (points, radii) = growing_lattice(step);
     let bounds = Bounds { min: [0.55, 0.55, -0.5], max: [1.35, 1.35, 0.5] };
-    let options =
-        MeasureOptions { area: Some(0.64), sizes: Sizes::Given(&radii), ..MeasureOptions::default() };
+    let options = MeasureOptions { area: Some(0.64), radii: Some(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
     println!("{} points: {f:#?}", points.len());
     // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2)) sums of radii away.
@@ -506,8 +503,7 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let kept = || all.iter().filter(|&&i| i != gone);
         let position: Vec<Vec3> = kept().map(|&i| points[i]).collect();
         let radius: Vec<f32> = kept().map(|&i| radii[i]).collect();
-        let options =
-            MeasureOptions { area: Some(0.64), sizes: Sizes::Given(&radius), ..MeasureOptions::default() };
+        let options = MeasureOptions { area: Some(0.64), radii: Some(&radius), ..MeasureOptions::default() };
         measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
     };
     // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of
@@ -529,7 +525,7 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
 fn equal_radii_make_the_local_hole_the_hole() {
     let points = fibonacci(3000);
     let radii = vec![0.7; points.len()];
-    let options = MeasureOptions { sizes: Sizes::Given(&radii), ..MeasureOptions::default() };
+    let options = MeasureOptions { radii: Some(&radii), ..MeasureOptions::default() };
     let f = measure(&points, &[], &mut sphere(), Some(&Bounds::cube(1.5)), &options).figures;
     close("cover_local", f.coverage.cover_local, f.coverage.cover, 1e-5);
     close("overlap_min", f.edges.overlap_min, f.spacing.nn_min * f.d_hex / 1.4, 1e-5);
@@ -589,14 +585,14 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
         .min_by(|&a, &b| whole[a].length_squared().total_cmp(&whole[b].length_squared()))
         .expect("a point");
     let radii = vec![1.0 / 64.0; whole.len()];
-    let energy_of = |points: &[Vec3], p: usize, sizes| {
-        let options = MeasureOptions { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+    let energy_of = |points: &[Vec3], p: usize, radii: Option<&[f32]>| {
+        let options = MeasureOptions { radii, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
         measure(points, &[], &mut plane(), Some(&bounds), &options).energy[p]
     };
     let neighbour = (0..whole.len())
         .find(|&i| i != middle && whole[i].distance(whole[middle]) < 1.1 / 32.0)
         .expect("a neighbour");
-    for sizes in [Sizes::None, Sizes::Given(&radii)] {
+    for sizes in [None, Some(&radii[..])] {
         close("lattice", f64::from(energy_of(&whole, middle, sizes)), 1.0, 1e-4);
         // Half a spacing nearer: exp(−1/2) instead of exp(−2) from one of six, and less from others.
         let mut crowd = whole.clone();
@@ -607,18 +603,18 @@ fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
     let mut gap = whole.clone();
     gap.remove(middle);
     let beside = neighbour - usize::from(neighbour > middle);
-    let energy = energy_of(&gap, beside, Sizes::None);
+    let energy = energy_of(&gap, beside, None);
     assert!((0.8..0.95).contains(&energy), "{energy}");
 }
 
 #[test]
 fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
-    let of = |points: &[Vec3], sizes| {
-        let options = MeasureOptions { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+    let of = |points: &[Vec3], radii: Option<&[f32]>| {
+        let options = MeasureOptions { radii, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
         measure(points, &[], &mut plane(), Some(&bounds), &options)
     };
-    let perfect = of(&whole, Sizes::None);
+    let perfect = of(&whole, None);
     assert_eq!((perfect.figures.spacing.crowded, perfect.figures.coverage.wide_holes), (Some(0), Some(0)));
     // Of a perfect lattice one place of each kind is told.
     assert_eq!((perfect.places.pairs.len(), perfect.places.holes.len()), (1, 1));
@@ -636,7 +632,7 @@ fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let kept: Vec<usize> = (0..points.len()).filter(|i| !gone.contains(i)).collect();
     let position: Vec<Vec3> = kept.iter().map(|&i| points[i]).collect();
     let radii = vec![1.0 / 64.0; position.len()];
-    for sizes in [Sizes::None, Sizes::Given(&radii)] {
+    for sizes in [None, Some(&radii[..])] {
         let report = of(&position, sizes);
         assert_eq!(
             (report.figures.spacing.crowded, report.figures.coverage.wide_holes),

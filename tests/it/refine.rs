@@ -5,7 +5,7 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self, Sizes};
+use marching_particles::quality::{self};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Search, Settings, SizeMode};
 use marching_particles::topology::Topology;
 
@@ -45,7 +45,7 @@ fn closed_surfaces_come_out_in_order() {
         let share = particles.len() as f64 / f64::from(count);
         assert!((share - 1.0).abs() <= 0.01, "{id}: {} particles of {count}", particles.len());
         assert_rings(particles);
-        let f = figures(&mut field, &surface.bounds, particles, Sizes::None);
+        let f = figures(&mut field, &surface.bounds, particles, None);
         assert!(f.order.six >= six, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(f.angles.ang_min >= smallest, "{id}: smallest angle {}", f.angles.ang_min);
@@ -92,7 +92,7 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
         assert!(sampler.step(&mut field, 0).stop_reason.is_some());
         let particles = sampler.particles();
         assert_rings(particles);
-        let f = figures(&mut field, &surface.bounds, particles, Sizes::None);
+        let f = figures(&mut field, &surface.bounds, particles, None);
         assert!(
             particles.len() > 100 && f.connectivity.euler == 2,
             "{} particles after {steps} steps",
@@ -163,7 +163,7 @@ fn each_component_is_refined_as_often_as_it_allows() {
         assert_rings(particles);
         let all = particles.len() as f64;
         assert!((all / f64::from(count) - 1.0).abs() <= 0.01, "{} of {count}", particles.len());
-        let f = figures(&mut field, &bounds, particles, Sizes::None);
+        let f = figures(&mut field, &bounds, particles, None);
         assert_eq!(f.connectivity.euler, 4, "{count}: {counts:?}");
         assert!(f.order.six >= six, "{count}: six {}", f.order.six);
         let share = on_small_sphere(particles) as f64 / all;
@@ -249,7 +249,7 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     sampler.cancel();
     sampler.step(&mut field, 0);
     assert_eq!(sampler.particles().len(), first);
-    let f = figures(&mut field, &surface.bounds, sampler.particles(), Sizes::None);
+    let f = figures(&mut field, &surface.bounds, sampler.particles(), None);
     assert!(f.angles.ang_min > 20.0, "the coarse level is in order: {}°", f.angles.ang_min);
 }
 
@@ -305,7 +305,7 @@ fn surfaces_that_bend_more_are_refined_once() {
         let sampler = sampled(&mut field, &surface.bounds, &refined(20_000, 0), 10_000);
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(1), None), "{id}");
-        let f = figures(&mut field, &surface.bounds, sampler.particles(), Sizes::None);
+        let f = figures(&mut field, &surface.bounds, sampler.particles(), None);
         assert!(f.order.six >= six, "{id}: six {}", f.order.six);
         assert!(f.angles.ang_min_mean >= mean, "{id}: mean smallest angle {}", f.angles.ang_min_mean);
         assert!(f.angles.ang_min >= 35.0 && f.angles.gt90 <= 1.5e-4, "{id}: {f:?}");
@@ -331,8 +331,8 @@ fn a_surface_that_bends_too_much_for_a_coarse_front_is_healed_at_full_resolution
         let counts = sampler.counts();
         assert_eq!((counts.refined_levels, counts.refusal), (Some(0), None), "{id}");
         assert!(sampler.particles().len().abs_diff(4_000) <= 40, "{id}: {}", sampler.particles().len());
-        let [before, f] = [&front, &sampler]
-            .map(|s| figures(&mut field.clone(), &surface.bounds, s.particles(), Sizes::None));
+        let [before, f] =
+            [&front, &sampler].map(|s| figures(&mut field.clone(), &surface.bounds, s.particles(), None));
         assert!(f.order.six >= before.order.six + 0.04, "{id}: six {} {}", before.order.six, f.order.six);
         assert!(f.angles.ang_min_mean >= before.angles.ang_min_mean + 2.0, "{id}: {f:?}");
         assert!(f.spacing.rho > before.spacing.rho, "{id}: pair {} {}", before.spacing.rho, f.spacing.rho);

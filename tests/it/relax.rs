@@ -6,7 +6,6 @@ use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::Particles;
-use marching_particles::quality::Sizes;
 use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode};
 
 /// The particles after the front and after the relaxation.
@@ -145,8 +144,8 @@ fn holes_and_crowded_pairs_shrink() {
         let settings = settings!(size_mode: SizeMode::Count, count: 14_000; ..Settings::default());
         let (before, sampler) = before_and_after(surface, &settings);
         let (was, is) = (
-            gallery_figures(surface.id, &before, Sizes::None),
-            gallery_figures(surface.id, sampler.particles(), Sizes::None),
+            gallery_figures(surface.id, &before, None),
+            gallery_figures(surface.id, sampler.particles(), None),
         );
         let context = format!("{id}, seed 0\nbefore {was:?}\nafter  {is:?}");
         assert!(is.coverage.cover < was.coverage.cover, "{context}");

@@ -5,7 +5,7 @@ use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::{Particles, SlotFate, Slots};
-use marching_particles::quality::{Figures, MeasureOptions, Sizes, measure};
+use marching_particles::quality::{Figures, MeasureOptions, measure};
 use marching_particles::sampler::{Sampler, Settings};
 use marching_particles::session::{FieldRequest, Session};
 
@@ -54,16 +54,16 @@ pub(crate) fn figures(
     field: &mut dyn Field,
     bounds: &Bounds,
     Particles { position, normal, .. }: &Particles,
-    sizes: Sizes,
+    radii: Option<&[f32]>,
 ) -> Figures {
-    measure(position, normal, field, Some(bounds), &MeasureOptions { sizes, ..MeasureOptions::default() })
+    measure(position, normal, field, Some(bounds), &MeasureOptions { radii, ..MeasureOptions::default() })
         .figures
 }
 
 /// Figures of particles on a surface of the gallery.
-pub(crate) fn gallery_figures(id: &str, particles: &Particles, sizes: Sizes) -> Figures {
+pub(crate) fn gallery_figures(id: &str, particles: &Particles, radii: Option<&[f32]>) -> Figures {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    figures(&mut surface.field(), &surface.bounds, particles, sizes)
+    figures(&mut surface.field(), &surface.bounds, particles, radii)
 }
 
 /// A session with a formula in a box.

@@ -5,7 +5,6 @@ use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::particles::Particles;
-use marching_particles::quality::Sizes;
 use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
 use marching_particles::spatial::CellGrid;
 
@@ -136,7 +135,7 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
     for id in ["ellipsoid", "torus", "tanglecube", "dupin-cyclide"] {
         let [front, relaxed] = [0, 10].map(|steps| {
             let sampler = of_gallery(id, &adaptive(14_000, steps));
-            gallery_figures(id, sampler.particles(), Sizes::Given(&sampler.particles().radius))
+            gallery_figures(id, sampler.particles(), Some(&sampler.particles().radius))
         });
         println!("{id}: {front:#?} {relaxed:#?}");
         for f in [&front, &relaxed] {

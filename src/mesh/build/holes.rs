@@ -15,13 +15,13 @@ const AT_BOX: f64 = 1.5;
 /// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46 unrelaxed random runs takes more
 /// than six; with twice as many it has 11 particles fewer in triangles.
 const ROUNDS: u32 = 12;
+/// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface.
+const LARGEST: usize = 24;
 /// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of it, to some 10 ms at this number.
 const LARGEST_AT_RIM: usize = 96;
 
 /// Rule that tells a hole of the mesh from a border of the surface.
 pub(super) struct Borders<'a> {
-    /// Largest number of edges of a hole.
-    pub(super) largest_hole: usize,
     /// The box that cuts the surface.
     pub(super) bounds: Option<&'a Bounds>,
     /// The rim of the surface.
@@ -48,19 +48,19 @@ impl Borders<'_> {
             let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
             self.bounds.is_some_and(|bounds| (p - bounds.lo()).min(bounds.hi() - p).min_element() <= reach)
         };
-        hole.len() > self.largest_hole && !self.rim.is_along(hole)
+        hole.len() > LARGEST && !self.rim.is_along(hole)
             || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len()
     }
 }
 
-/// Fills the holes; the number of rounds it took.
-pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> u32 {
+/// Fills the holes.
+pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
     let mut cutter = Cutter::default();
-    for round in 0..ROUNDS {
+    for _ in 0..ROUNDS {
         let mut resisting = Vec::new();
         for hole in borders.holes(patch) {
             pause().await;
-            if hole.len() > borders.largest_hole.max(LARGEST_AT_RIM) {
+            if hole.len() > LARGEST_AT_RIM {
                 continue;
             }
             if !cutter.cut(patch, &hole, faces_as_corners) && !cutter.cut(patch, &hole, faces_as_mean) {
@@ -79,10 +79,9 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> u32 {
             }
         }
         if !has_grown {
-            return round + 1;
+            return;
         }
     }
-    ROUNDS
 }
 
 /// The borders of the triangles: closed loops of vertices with the hole on the left. Where there is a rim, they are those of what

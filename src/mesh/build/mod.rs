@@ -41,10 +41,8 @@ use stars::Stars;
 const SLICE: usize = 2048;
 
 /// Options of the triangulation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MeshOptions<'a> {
-    /// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface.
-    pub largest_hole: usize,
     /// The box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be
     /// filled.
     pub bounds: Option<&'a Bounds>,
@@ -56,12 +54,6 @@ pub struct MeshOptions<'a> {
     pub tips: &'a [u32],
 }
 
-impl Default for MeshOptions<'_> {
-    fn default() -> Self {
-        Self { largest_hole: 24, bounds: None, rim: &[], tips: &[] }
-    }
-}
-
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
@@ -71,16 +63,12 @@ pub struct Triangulation {
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles: of rows, by the first row of their particle.
     pub topology: Topology,
-    /// Borders of at most [`MeshOptions::largest_hole`] edges that are not at the box: places where no manifold could be had.
+    /// Borders of at most 24 edges that are not at the box: places where no manifold could be had.
     /// Each starts at its smallest vertex and has the mesh on its left.
     pub unfilled: Vec<Vec<u32>>,
     /// Points in no triangle, in ascending order: those without a finite position or a normal, those at the place of another
     /// one, lone ones, and those that would spoil the manifold.
     pub left_out: Vec<u32>,
-    /// Number of triangles on which the stars of all three corners agreed.
-    pub agreed: usize,
-    /// Number of rounds in which holes were filled.
-    pub rounds: u32,
 }
 
 impl Triangulation {
@@ -88,9 +76,8 @@ impl Triangulation {
     /// whose borders are borders of the surface.
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
-        let agreed = triangles.len();
         let joints = particles.joints();
-        Joined { triangles, agreed, ..Joined::default() }.counted(particles.len(), &joints).await
+        Joined { triangles, ..Joined::default() }.counted(particles.len(), &joints).await
     }
 
     /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed units of the coordinates: the sum of
@@ -128,15 +115,13 @@ struct Joined {
     triangles: Vec<[u32; 3]>,
     /// Loops around holes that no manifold fills, with the hole on the left.
     unfilled: Vec<Vec<u32>>,
-    agreed: usize,
-    rounds: u32,
 }
 
 impl Joined {
     /// The triangulation over `point_count` points, of which the first ones may be the same vertex as earlier ones: `twins` has the first
     /// such point of each.
     async fn counted(self, point_count: usize, twins: &[u32]) -> Triangulation {
-        let Self { triangles, unfilled, agreed, rounds } = self;
+        let Self { triangles, unfilled } = self;
         let first = |v: u32| twins.get(v as usize).copied().unwrap_or(v);
         let mut is_met = vec![false; point_count];
         triangles.iter().flatten().for_each(|&v| is_met[first(v) as usize] = true);
@@ -162,7 +147,7 @@ impl Joined {
             sides.any(|side| edges.binary_search(&side).is_ok())
         };
         let unfilled = topology.borders.iter().filter(is_open).cloned().collect();
-        Triangulation { triangles, topology, unfilled, left_out, agreed, rounds }
+        Triangulation { triangles, topology, unfilled, left_out }
     }
 }
 
@@ -218,8 +203,6 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
         let row = |v: u32| rows[v as usize];
         whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
         whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
-        whole.agreed += joined.agreed;
-        whole.rounds = whole.rounds.max(joined.rounds);
     }
     for faces in &particles.opposite {
         pause().await;
@@ -284,11 +267,10 @@ impl JoinablePoints {
     async fn join(&self, stars: &Stars, options: &MeshOptions<'_>) -> Joined {
         let rim = self.rim(options.rim);
         let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
-        let agreed = patch.len();
-        let borders = Borders { largest_hole: options.largest_hole, bounds: options.bounds, rim: &rim };
+        let borders = Borders { bounds: options.bounds, rim: &rim };
         settle::settle(&mut patch).await;
         rim.clear(&mut patch).await;
-        let rounds = holes::fill(&mut patch, &borders).await;
+        holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
         for range in ranges(self.tree.len(), SLICE) {
             for v in range.start as u32..range.end as u32 {
@@ -308,6 +290,6 @@ impl JoinablePoints {
         let mut unfilled = borders.holes(&patch);
         unfilled.retain(|hole| !borders.is_open(&patch, hole));
         unfilled.iter_mut().flatten().for_each(|v| *v = origin(*v));
-        Joined { triangles, unfilled, agreed, rounds }
+        Joined { triangles, unfilled }
     }
 }

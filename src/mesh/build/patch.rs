@@ -88,11 +88,6 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Number of triangles.
-    pub(super) fn len(&self) -> usize {
-        self.triangles.iter().filter(|&&triangle| triangle != REMOVED).count()
-    }
-
     /// The triangles.
     pub(super) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         self.triangles.iter().copied().filter(|&triangle| triangle != REMOVED)
