@@ -225,9 +225,7 @@ fn examples(project: &Project, messages: &str) -> Result<()> {
 
 fn parity(project: &Project) -> Result<()> {
     bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson], Purpose::Site)?;
-    for script in
-        ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/lesson.mjs", "tests/wasm/front.mjs"]
-    {
+    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/lesson.mjs"] {
         let mut command = Command::new(node::node()?);
         command.current_dir(&project.root).arg(script);
         step::run(&format!("the same digests in WebAssembly as natively ({script})"), &mut command, "")?;
