@@ -15,7 +15,10 @@ const MARGIN = 1.04;
  * alone, so that a body keeps its size while it turns.
  */
 export class Fit {
-  /** Distances from the axis and from the middle along it, and the radius of each disc. @type {[number, number, number][]} */
+  /**
+   * Distances from the axis and from the middle along it, and the radius of each disc.
+   * @type {[number, number, number][]}
+   */
   #discs;
   /** A ball around all. @type {Ball} */
   #ball;

@@ -12,8 +12,8 @@ import { anglesOf } from '../engine/view/facing.js';
 /** The first view shows the discs of so many levels around the seed. */
 export const FIRST_LEVELS = 5;
 /**
- * Size and depth of the discs of the body, in radii. They close holes up to 1.6 times those of a lattice, as placing leaves
- * them, so that the body gives none away. At this depth they stay below the particles up to a bend · r of 0.19.
+ * Size and depth of the discs of the body, in radii. They close holes up to 1.6 times those of a lattice, as placing
+ * leaves them, so that the body gives none away. At this depth they stay below the particles up to a bend · r of 0.19.
  */
 const COVERING = 1.9;
 const DEPTH = 0.35;

@@ -48,7 +48,7 @@ addEventListener('afterprint', () => {
   printing.value = false;
 });
 
-/** A camera that one or several pictures share. Its rays are parallel: discs of one size are so in the whole picture. */
+/** A camera that one or several pictures share. Its rays are parallel, so that a disc is as large wherever it is. */
 export class Orbit {
   #camera = new Camera();
   #home = { yaw: 0, pitch: 0 };

@@ -61,8 +61,8 @@ function eyeAxes(m) {
 }
 
 /**
- * Returns the view of an eye far away in the place of one with parallel rays, whose divisor w is 1 everywhere and so tells no
- * depth. Other views are returned as they are.
+ * Returns the view of an eye far away in the place of one with parallel rays, whose divisor w is 1 everywhere and so
+ * tells no depth. Other views are returned as they are.
  * @param {Float32Array} m  a packed view
  */
 function seenFromFar(m) {
@@ -404,8 +404,8 @@ export class Painter {
       packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
     const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
     const rim = i === outline ? value : lit(shade * 0.78);
-    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise, and a disc without a level
-    // is a piece of a body below particles.
+    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise, and a disc
+    // without a level is a piece of a body below particles.
     const hasRim = px > RIM_FROM_PX && (isDot || levels[i] !== NO_LEVEL);
     const coreSq = hasRim ? 0.81 * px * px : Infinity;
     if (px < POINT_PX) {

@@ -185,7 +185,7 @@ function doStep(lane, step) {
   return step > STEPS ? lane.rest(STEPS) : lane.follow(step);
 }
 
-/** A few particles of the first surface and of the last one, to which the pictures are fitted. @param {Motion} motion */
+/** A few particles of the first surface and of the last, to which pictures are fitted. @param {Motion} motion */
 async function endsOf(motion) {
   const lane = new FrontLane({ ...motion, radius: COARSER * motion.radius }, { isFresh: true });
   try {
