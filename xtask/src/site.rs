@@ -21,13 +21,13 @@ use crate::project::Project;
 const FIRST_PAINT_BUDGET_KB: f64 = 83.0;
 
 /// The same of the lesson's page, whose figures come to life after that.
-const LESSON_PAGE_BUDGET_KB: f64 = 60.0;
+const LESSON_PAGE_BUDGET_KB: f64 = 61.0;
 
 /// The largest gzip size of a bundle, in kB: its module and its JavaScript. What [`FIRST_PAINT_BUDGET_KB`] says of budgets
 /// holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        Bundle::Core => 690.0,
+        Bundle::Core => 695.0,
         Bundle::Points => 143.0,
         Bundle::Lesson => 173.0,
         Bundle::Webgpu => 90.0,
