@@ -255,10 +255,10 @@ test('particles that have followed stay, if they are to', async ({ page }) => {
   await page.keyboard.down('Shift');
   await drag(page, right, { x: right.x + 16, y: right.y });
   await page.keyboard.up('Shift');
+  const told = async () => (await report(page))?.warnings.join();
+  await expect.poll(told).toContain('followed the surface while it moved');
   await settled(page);
-  const moved = await report(page);
-  expect(moved.warnings.join()).toContain('followed the surface while it moved');
-  expect(moved.count).toBeGreaterThan(1000);
+  expect((await report(page)).count).toBeGreaterThan(1000);
   // What a run has made is in order again, and its link makes it again.
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await settled(page);
