@@ -3,11 +3,12 @@
  *
  * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models
  * from points), readme/meshes-{light,dark}.webp (refined runs as meshes), readme/solids-{light,dark}.webp (sharp edges),
- * readme/moved-{light,dark}.webp (particles that follow a surface) and readme/levels-{light,dark}.webp (generation levels
- * growing).
+ * readme/moved-{light,dark}.webp (a film of particles that follow a surface) and readme/levels-{light,dark}.webp (generation
+ * levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
+import { animation } from './animation.js';
 import { launch } from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
@@ -83,26 +84,11 @@ const SOLIDS = [
   },
 }));
 
-/** What the strip of moving surfaces shows: a parameter that grows from its first value, and a pull. */
-const MOVED = [
-  ...[11, 12.4, 13.5].map((c) => ({
-    surface: 'tanglecube',
-    parameters: { c: 11 },
-    settings: { size_mode: 'count', count: 2500 },
-    view: { colour: 'level', flow: true },
-    moves: { c },
-    zoom: 1,
-  })),
-  ...[[], [{ at: [0.031634, -0.233082, 1.01128], by: [-0.08, 0.17, 0.31], reach: 0.8 }]].map((pulls) => ({
-    surface: 'bunny',
-    pulls,
-    settings: { size_mode: 'count', count: 2500 },
-    view: { colour: 'level', points: false },
-    zoom: 0.9,
-  })),
-];
-/** Frames of a motion. */
-const FRAMES = 40;
+/** Pictures of the film, and the time for which each of them is shown: it plays for six seconds. */
+const FILM = { pictures: 60, ms: 100 };
+/** Frames in which the surface moves between two pictures of the film, so that it moves as far at a time as on the page. */
+const STEPS = 4;
+const FILM_QUALITY = 0.75;
 
 /** A frame of the strip, and device pixels per pixel of it. */
 const LEVEL_PX = { width: 300, height: 240 };
@@ -159,7 +145,7 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await page.close();
 }
 
-/** Leaves nothing of the page but the picture. @param {Page} page */
+/** Leaves nothing of the page but the picture, and the pins on it. @param {Page} page */
 const onlyThePicture = (page) =>
   page.evaluate(() => {
     for (
@@ -168,7 +154,7 @@ const onlyThePicture = (page) =>
       kept = kept.parentElement
     ) {
       for (const other of kept.parentElement?.children ?? [])
-        if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
+        if (other !== kept && other instanceof HTMLElement && !other.matches('.marks')) other.style.display = 'none';
     }
   });
 
@@ -176,9 +162,8 @@ const onlyThePicture = (page) =>
  * Draws surfaces side by side in both themes.
  * @param {string} name of the files
  * @param {{
- *   zoom: number, surface?: string, formula?: string, parameters?: Record<string, number>, pulls?: object[],
- *   settings: object, view: { colour: string, camera?: object }, moves?: Record<string, number>,
- * }[]} states  `moves`: the values to which the parameters move, with the particles
+ *   zoom: number, surface?: string, formula?: string, settings: object, view: { colour: string, camera?: object },
+ * }[]} states
  * @param {number} [columns]  surfaces in a row
  */
 async function strip(name, states, columns) {
@@ -188,25 +173,17 @@ async function strip(name, states, columns) {
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
     await onlyThePicture(page);
     const frames = [];
-    for (const { zoom, moves, ...state } of states) {
+    for (const { zoom, ...state } of states) {
       await page.evaluate(
-        async ({ wanted, zoom, moves, frames }) => {
+        async ({ wanted, zoom }) => {
           const mp = /** @type {any} */ (window).marchingParticles;
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
           const camera = { ...mp.state.view.camera, fit: true, ...wanted.view.camera };
           await mp.set({ ...wanted, view: { ...wanted.view, camera } });
           mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
           mp.engine.zoom(zoom);
-          for (let k = 1; moves && k <= frames; k += 1) {
-            for (const [name, to] of Object.entries(moves)) {
-              const from = wanted.parameters?.[name] ?? 0;
-              mp.engine.setParameter(name, from + ((to - from) * k) / frames);
-            }
-            do await new Promise((go) => setTimeout(go, 10));
-            while (mp.engine.busy.value);
-          }
         },
-        { wanted: state, zoom, moves, frames: FRAMES },
+        { wanted: state, zoom },
       );
       await page.waitForTimeout(1500);
       frames.push(await page.screenshot());
@@ -216,10 +193,120 @@ async function strip(name, states, columns) {
   }
 }
 
+/** A share of the film to a share of the way: there and back, slow at both ends. @param {number} share */
+const swing = (share) => (1 - Math.cos(2 * Math.PI * share)) / 2;
+
+/** Waits until the particles have followed and the picture is drawn. @param {Page} page */
+const followed = (page) =>
+  page.evaluate(async () => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    do await new Promise((go) => requestAnimationFrame(go));
+    while (engine.busy.value);
+    await new Promise((go) => requestAnimationFrame(go));
+  });
+
+/**
+ * Opens a surface of the film in a picture that stays as large as it is.
+ * @param {Page} page @param {object} surface @param {number} zoom
+ */
+async function opened(page, surface, zoom) {
+  await page.evaluate(
+    async ({ surface, zoom }) => {
+      const mp = /** @type {any} */ (window).marchingParticles;
+      const camera = { ...mp.state.view.camera, fit: true };
+      const view = { colour: 'level', flow: true, camera };
+      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      await mp.set({ ...surface, settings: { size_mode: 'count', count: 2500 }, view });
+      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      mp.engine.zoom(zoom);
+    },
+    { surface, zoom },
+  );
+  await page.waitForTimeout(1500);
+}
+
+/** The tanglecube falls into eight pieces, and they join again. @param {Page} page */
+async function tanglecubeSplits(page) {
+  const [from, to] = [11, 13.6];
+  await opened(page, { surface: 'tanglecube', parameters: { c: from } }, 1);
+  return (/** @type {number} */ share) =>
+    page.evaluate(
+      (c) => /** @type {any} */ (window).marchingParticles.engine.setParameter('c', c),
+      from + (to - from) * swing(share),
+    );
+}
+
+/** The ellipsoid is pulled by one of its particles, with the pointer. @param {Page} page */
+async function ellipsoidIsPulled(page) {
+  await opened(page, { surface: 'ellipsoid' }, 0.8);
+  const at = await page.evaluate(() => {
+    const mp = /** @type {any} */ (window).marchingParticles;
+    const { columns } = mp.engine;
+    let right = { x: 0, y: 0 };
+    for (let i = 0; i < columns.count; i += 1) {
+      const place = mp.engine.project(columns.shown.subarray(3 * i, 3 * i + 3));
+      if (place.x > right.x && mp.engine.pick(place.x, place.y) === i) right = place;
+    }
+    const { left, top } = document.querySelector('canvas')?.getBoundingClientRect() ?? new DOMRect();
+    return { x: left + right.x, y: top + right.y };
+  });
+  await page.keyboard.down('Shift');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  // A circle that begins and ends at the particle, so that it is drawn out, up, back and down.
+  const reach = 0.09 * LEVEL_PX.width;
+  return (/** @type {number} */ share) => {
+    const turn = 2 * Math.PI * share;
+    return page.mouse.move(at.x + reach * (1 - Math.cos(turn)), at.y - reach * Math.sin(turn));
+  };
+}
+
+/**
+ * Makes a film of surfaces that move, side by side, in both themes.
+ * @param {string} name of the files
+ * @param {((page: Page) => Promise<(share: number) => Promise<unknown>>)[]} scenes  each opens a surface, and gives what
+ *   brings it to a share of the film
+ */
+async function film(name, scenes) {
+  for (const theme of /** @type {const} */ (['light', 'dark'])) {
+    /** @type {Buffer[][]} */
+    const taken = [];
+    for (const scene of scenes) {
+      const page = await browser.newPage({ viewport: LEVEL_PX, colorScheme: theme });
+      await page.goto(base);
+      await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+      await onlyThePicture(page);
+      const moveTo = await scene(page);
+      const pictures = [];
+      for (let k = 0; k < FILM.pictures; k += 1) {
+        for (let step = 1; step <= STEPS; step += 1) {
+          await moveTo((k + step / STEPS) / FILM.pictures);
+          await followed(page);
+        }
+        pictures.push(await page.screenshot());
+      }
+      taken.push(pictures);
+      await page.close();
+    }
+    const pictures = [];
+    for (let k = 0; k < FILM.pictures; k += 1)
+      pictures.push(
+        Buffer.from(
+          await webp(
+            taken.map((scene) => scene[k]),
+            FILM_QUALITY,
+          ),
+        ),
+      );
+    const size = { width: scenes.length * LEVEL_PX.width, height: LEVEL_PX.height };
+    await write(`${name}-${theme}.webp`, animation({ pictures, ...size, ms: FILM.ms }));
+  }
+}
+
 await strip('sizes', SIZES);
 await strip('meshes', MESHES);
 await strip('solids', SOLIDS, 4);
-await strip('moved', MOVED);
+await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({
   zoom: 1.15,
