@@ -104,7 +104,8 @@ pub trait Field: Send {
     /// f and ∇f at `p` in double precision.
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3);
 
-    /// f, ∇f and ∇∇f at `p` in double precision, which set-up, proofs and measurements use. By default the second derivatives are central differences of the gradient.
+    /// f, ∇f and ∇∇f at `p` in double precision, which set-up, proofs and measurements use. By default the second derivatives are
+    /// central differences of the gradient.
     fn jet(&mut self, p: DVec3) -> Jet {
         jet_by_differences(self, p)
     }

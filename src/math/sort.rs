@@ -1,7 +1,7 @@
 //! Sorting by keys that are whole numbers.
 //!
 //! The standard library compiles its sorting algorithm anew for each type and each comparison, some 10 kB of WebAssembly a copy. So
-//! everything is sorted as `u64` (keys with `sort_unstable`) or, with the place of each item below its key, as `u128`.
+//! items are sorted as `u64` keys or, with the place of each item below its key, as `u128`. Lists of indices are sorted as they are.
 
 /// Packs a number that is not negative and an index into a key, which is ordered by the number, and at equal numbers by index.
 #[inline]

@@ -6,8 +6,8 @@ use serde::Serialize;
 /// A figure that is not defined, or not yet measured.
 const NONE: f64 = f64::NAN;
 
-/// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
-/// side by side.
+/// The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex
+/// unless said otherwise. JSON has all figures side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figures {

@@ -7,8 +7,7 @@ use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
-use marching_particles::{Format, gallery};
-use marching_particles::{Placement, Unit, UpAxis};
+use marching_particles::{Format, Placement, Unit, UpAxis, gallery};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles

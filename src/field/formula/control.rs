@@ -30,12 +30,13 @@ pub struct Grip {
     pub idle: Vec<String>,
 }
 
-/// Most steps towards the points, and the longest one, as a share of the range of a parameter: a surface that is pulled far then passes
-/// through what lies between. So many of the longest steps cross a range eight times.
+/// The parameters take at most this many steps towards the points. So many of the longest steps cross a range eight times.
 const MOST_STEPS: usize = 64;
+
+/// A step changes a parameter by at most this share of its range, so that a surface that is pulled far passes through what lies between.
 const LONGEST_STEP: f64 = 0.125;
 
-/// Most halvings of a step that does not bring the surface nearer to the points. After them the parameters stay where they are.
+/// A step that does not bring the surface nearer to the points is halved at most this often. Then the parameters stay where they are.
 const MOST_HALVINGS: usize = 8;
 
 /// Distance from a point, over its distance from the origin or over 1, at which the surface passes through it: a hundredth of what single

@@ -63,7 +63,7 @@ pub struct Triangulation {
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles: of rows, by the first row of their particle.
     pub topology: Topology,
-    /// Borders of at most 24 edges that are not at the box: places where no manifold could be had.
+    /// Short borders that are not at the box: places where no manifold could be had. Longer ones are where the surface ends.
     /// Each starts at its smallest vertex and has the mesh on its left.
     pub unfilled: Vec<Vec<u32>>,
     /// Points in no triangle, in ascending order: those without a finite position or a normal, those at the place of another

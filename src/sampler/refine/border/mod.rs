@@ -105,7 +105,7 @@ impl Net {
         fates
     }
 
-    /// What two particles have in common: the planes of the box, or a crease. Two at which creases run to one face of the box lie on that face.
+    /// The planes on which both particles lie: those of the box, or of a crease. Two ends of creases on one face of the box lie on that face.
     pub(super) fn common_planes(&self, a: u32, b: u32) -> Planes {
         let common = self.walls.planes(a).common(self.walls.planes(b));
         if common.of_box().is_inner() { common } else { common.of_box() }
