@@ -1,8 +1,12 @@
 //! Newton's method along the gradient, in single precision: from points near a surface to points on it, a batch at a time.
 //!
-//! Whoever moves points to a surface does it here, each with limits of its own: seeds, the relaxation and the figures. Two others
-//! are of another kind: `sampler::discovery::sheets` lands one point on one factor of f in double precision, for a proof, and
-//! `sampler::discovery::nearness` looks at the second derivative at each step.
+//! Seeds, the relaxation and the figures move their points here, each with limits of its own. The others move one point:
+//!
+//! * [`newton`](super::newton) moves it in double precision.
+//! * `sampler::discovery::nearness` does, too, and looks at the second derivative at each step.
+//! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an angle along a circle.
+//! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after each step whether there is one sheet;
+//!   both take the [`step`] of this file.
 
 use super::Field;
 use glam::Vec3;
@@ -17,6 +21,12 @@ const FAINT: f32 = 1e-18;
 /// The unit normal ∇f/|∇f|.
 pub(crate) fn unit(gradient: Vec3, slope: f32) -> Vec3 {
     if slope < FAINT { (gradient / FAINT).normalize_or_zero() } else { gradient / slope }
+}
+
+/// The step of least length after which f is zero to first order, to be subtracted from the point.
+#[inline]
+pub(crate) fn step(value: f32, gradient: Vec3) -> Vec3 {
+    gradient * (value / gradient.length_squared())
 }
 
 /// Limits of the way of a point along the gradient; the default sets none.

@@ -8,6 +8,7 @@ pub mod formula;
 mod function;
 pub mod gallery;
 pub mod model;
+pub(crate) mod newton;
 pub mod rbf;
 pub(crate) mod scaled;
 

@@ -2,7 +2,7 @@
 //! [along the gradient](crate::field::descent) (for seeds and the relaxation). Points are projected in batches, so that the field
 //! is evaluated in SIMD lanes.
 
-use crate::field::descent::{Descents, descend, unit};
+use crate::field::descent::{self, Descents, descend, unit};
 use crate::math::sort_few;
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
@@ -208,7 +208,7 @@ impl Probe<'_> {
             for _ in 0..LANDINGS {
                 let (value, gradient) = self.gradient(p);
                 let within = plane(gradient);
-                p -= within * (value / within.length_squared());
+                p -= descent::step(value, within);
                 n = within.normalize_or_zero();
             }
             if n == Vec3::ZERO || !p.is_finite() || n.dot(before) <= 0.0 {

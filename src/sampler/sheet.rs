@@ -18,6 +18,7 @@
 //! distance. Between two sheets at a distance g the lift is about g. Two sheets that face the same way always have a third one
 //! between them that faces the other way.
 
+use crate::field::descent;
 use crate::math::Forest;
 use crate::particles::Particles;
 use crate::sampler::neighbours::grids::RadiusRange;
@@ -251,7 +252,7 @@ fn is_one_sheet_between(
         return true;
     }
     let (mut middle, mut slope) = (way[1], gradient[1]);
-    let mut step = slope * (value[1] / slope.length_squared());
+    let mut step = descent::step(value[1], slope);
     let longest = LONGEST * pair.offset.length();
     for _ in 0..STEPS {
         // False for NaN.
@@ -262,7 +263,7 @@ fn is_one_sheet_between(
         middle -= step;
         let (value, gradient) = probe.gradient(middle);
         slope = gradient;
-        step = gradient * (value / gradient.length_squared());
+        step = descent::step(value, gradient);
         if step.length_squared() <= 0.0625 * least * least {
             let middle = OrientedPoint { position: middle, normal: gradient.normalize_or_zero() };
             return middle.normal.dot(facing) > 0.0

@@ -12,6 +12,7 @@
 use super::graph::{Graph, Id, Node};
 use super::{Formula, Parameter, scalar};
 use crate::field::Field;
+use crate::field::newton::{self, Limits, step_to_surface};
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -51,7 +52,7 @@ const RIDGE: f64 = 1e-8;
 const IDLE: f64 = 1e-3;
 
 /// Steps of Newton's method to the place of a point.
-const MOST_PLACE_STEPS: usize = 20;
+const MOST_PLACE_STEPS: u32 = 20;
 
 /// f as a function of the parameters, three at a time.
 struct ByParameters {
@@ -274,19 +275,11 @@ impl Formula {
 
     /// A point of the surface near a point, both in the coordinates of the formula; the point itself if none is found.
     fn place_near(&mut self, p: DVec3) -> DVec3 {
-        let mut place = p - self.origin;
-        for _ in 0..MOST_PLACE_STEPS {
-            let (value, gradient) = self.value_and_gradient(place);
-            let step = gradient * (value / gradient.length_squared());
-            if !step.is_finite() {
-                return p;
-            }
-            place -= step;
-            if step.length() <= NEAR * p.length().max(1.0) {
-                return self.origin + place;
-            }
-        }
-        p
+        let at_rest = NEAR * p.length().max(1.0);
+        let limits = Limits { at_rest, ..Limits::steps(MOST_PLACE_STEPS) };
+        let origin = self.origin;
+        let step_at = |place| Some((step_to_surface(self.value_and_gradient(place)), ()));
+        newton::land(p - origin, limits, step_at).map_or(p, |(place, ())| origin + place)
     }
 }
 

@@ -12,6 +12,7 @@ use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::{interval, scalar};
+use crate::field::newton::step_to_curve;
 use crate::math::Bounds;
 use crate::slices::pause;
 use glam::DVec3;
@@ -380,19 +381,17 @@ impl TieSearch<'_> {
             let mut p = start;
             for _ in 0..STEPS {
                 let ((f, g), (t, h)) = at(p);
-                let (gg, gh, hh) = (g.dot(g), g.dot(h), h.dot(h));
-                let determinant = gg * hh - gh * gh;
-                // Gradients that are parallel to three digits.
-                if determinant.is_nan() || determinant <= 1e-6 * gg * hh {
+                let (gg, hh) = (g.length_squared(), h.length_squared());
+                let (step, along) = step_to_curve([(f, g), (t, h)]);
+                // Written so that NaN fails: gradients that are not parallel to three digits.
+                let is_angle = along.length_squared() > 1e-6 * gg * hh;
+                if !is_angle {
                     let is_near = |value: f64, slope_sq: f64| value * value <= slope_sq * size * size * STEP;
                     if is_near(f, gg) && is_near(t, hh) {
                         return Some(self.kind_in_doubt(id));
                     }
                     break;
                 }
-                // The shortest step to f = 0 and t = 0 to first order.
-                let (a, b) = ((f * hh - t * gh) / determinant, (t * gg - f * gh) / determinant);
-                let step = a * g + b * h;
                 if step.length() > reach {
                     break;
                 }

@@ -1,7 +1,8 @@
 //! Points where branches of f are zero together.
 
+use crate::field::newton::{self, Limits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// Steps of Newton's method. From a cell that a crease crosses five are enough; where two branches touch without an angle each step
 /// halves the distance.
@@ -25,6 +26,11 @@ pub(super) struct Meeting {
     pub(super) tangent: DVec3,
 }
 
+/// Limits of a search within `reach`.
+fn limits(reach: f64) -> Limits {
+    Limits { reach, at_rest: AT_REST * reach, ..Limits::steps(STEPS) }
+}
+
 /// Value and gradient of a branch at a point.
 fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
     probe.select(Some(branch));
@@ -37,8 +43,7 @@ pub(super) fn touching_point(probe: &mut Probe, [first, _]: [u32; 2], start: DVe
     let mut p = start;
     // Each step doubles the digits, of which the start has some.
     for _ in 0..4 {
-        let (value, gradient) = branch(probe, first, p);
-        p -= gradient * (value / gradient.length_squared());
+        p -= step_to_surface(branch(probe, first, p));
     }
     if p.is_finite() { p } else { start }
 }
@@ -53,25 +58,15 @@ impl Meeting {
         reach: f64,
         least_sine: f64,
     ) -> Option<Self> {
-        let mut p = start;
-        for _ in 0..STEPS {
-            let [(f, u), (g, v)] = branches.map(|b| branch(probe, b, p));
-            // The shortest step to the line in which both tangent planes meet.
-            let across = u.cross(v);
-            let size = across.length_squared();
-            let step = (v.cross(across) * f + across.cross(u) * g) / size;
-            p -= step;
-            // Written so that NaN fails.
-            let is_steep = size > (least_sine * least_sine) * u.length_squared() * v.length_squared();
-            let is_near = p.distance(start) <= reach;
-            if !is_steep || !is_near {
-                return None;
-            }
-            if step.length() <= AT_REST * reach {
-                return Some(Self { position: p, branches, tangent: across / size.sqrt() });
-            }
-        }
-        None
+        let step_at = |p| {
+            let slopes = branches.map(|b| branch(probe, b, p));
+            let (step, tangent) = step_to_curve(slopes);
+            let [(_, u), (_, v)] = slopes;
+            let least_sq = (least_sine * least_sine) * u.length_squared() * v.length_squared();
+            (tangent.length_squared() > least_sq).then_some((step, tangent))
+        };
+        let (position, tangent) = newton::land(start, limits(reach), step_at)?;
+        Some(Self { position, branches, tangent: tangent / tangent.length() })
     }
 
     /// Whether the patches of these branches are on the left of the crease, in the direction of its tangent and seen from outside. There is
@@ -124,28 +119,16 @@ pub(super) fn common_point(
     start: DVec3,
     reach: f64,
 ) -> Option<DVec3> {
-    let mut p = start;
-    for _ in 0..STEPS {
-        let [(f, u), (g, v)] = branches.map(|b| branch(probe, b, p));
-        let (h, w) = match third {
+    let step_at = |p| {
+        let [first, second] = branches.map(|b| branch(probe, b, p));
+        let third = match third {
             Third::Branch(b) => branch(probe, b, p),
             Third::Plane { normal, offset } => (normal.dot(p) - offset, normal),
         };
-        let scale = [u, v, w].map(DVec3::length);
-        let rows = DMat3::from_cols(u / scale[0], v / scale[1], w / scale[2]).transpose();
-        let step = rows.inverse() * DVec3::new(f / scale[0], g / scale[1], h / scale[2]);
-        p -= step;
-        // Written so that NaN fails.
-        let is_regular = rows.determinant().abs() > FADED * FADED;
-        let is_near = p.distance(start) <= reach;
-        if !is_regular || !is_near {
-            return None;
-        }
-        if step.length() <= AT_REST * reach {
-            return Some(p);
-        }
-    }
-    None
+        let (step, volume) = step_to_corner([first, second, third]);
+        (volume > FADED * FADED).then_some((step, ()))
+    };
+    newton::land(start, limits(reach), step_at).map(|(p, ())| p)
 }
 
 /// The third function that is zero at a corner, beside two branches.

@@ -4,6 +4,7 @@
 //! witness is connected with a particle anew, by proof. Where that fails and no particle near it even seems to be on its sheet,
 //! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
 
+use crate::field::newton::step_to_surface;
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval, Sym3, sort_few};
 use crate::particles::Particles;
@@ -270,7 +271,7 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
             for k in 0..PATHS {
                 let (value, gradient) = known[k].middle();
                 let within = gradient - across[k] * gradient.dot(across[k]);
-                let correction = within * (value / within.length_squared());
+                let correction = step_to_surface((value, within));
                 if correction.is_finite() {
                     next[k] -= correction.clamp_length_max(step);
                 }

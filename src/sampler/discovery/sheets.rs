@@ -1,6 +1,7 @@
 //! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects them. What only seems so is told
 //! by the rules of [`sheet`](crate::sampler::sheet).
 
+use crate::field::newton::{self, Limits, step_to_surface};
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, Interval};
 use crate::sampler::discovery::cell::rise;
@@ -124,18 +125,10 @@ impl Prover<'_> {
     }
 
     /// The point of the surface that Newton's method along the gradient finds from `p`, to the precision of a number.
-    fn land(&mut self, mut p: DVec3) -> Option<ExactPoint> {
-        for _ in 0..MAX_NEWTON_STEPS {
-            let (step, gradient) = self.newton_step(p);
-            if !step.is_finite() {
-                return None;
-            }
-            p -= step;
-            if step.length_squared() <= 1e-24 * p.length_squared() {
-                return gradient.try_normalize().map(|normal| ExactPoint { position: p, normal });
-            }
-        }
-        None
+    fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
+        let limits = Limits { share_at_rest: 1e-12, ..Limits::steps(MAX_NEWTON_STEPS) };
+        let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
+        gradient.try_normalize().map(|normal| ExactPoint { position, normal })
     }
 
     /// A point of the surface in the region, found from `p` by Newton's method: a point outside is moved inside.
@@ -168,8 +161,8 @@ impl Prover<'_> {
 
     /// The step of Newton's method along the gradient, to be subtracted from `p`, and the gradient at `p`.
     fn newton_step(&mut self, p: DVec3) -> (DVec3, DVec3) {
-        let (value, gradient) = value_at(self.field, self.factor, p);
-        (gradient * (value / gradient.length_squared()), gradient)
+        let slope = value_at(self.field, self.factor, p);
+        (step_to_surface(slope), slope.1)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The box that cuts a net, and the planes of it on which the particles lie.
 
+use crate::field::descent;
 use crate::math::Bounds;
 use crate::mesh::half_edge::NONE;
 use glam::Vec3;
@@ -197,8 +198,7 @@ impl Walls {
             let inverse_slope = 1.0 / gradient.length();
             gradient * inverse_slope * (value * inverse_slope)
         } else {
-            let slope = gradient * planes.free();
-            slope * (value / slope.length_squared())
+            descent::step(value, gradient * planes.free())
         };
         let q = self.pinned(p - step, planes);
         let inside = if may_leave { q } else { q.clamp(self.lo, self.hi) };

@@ -15,6 +15,7 @@ pub(crate) use clip::grown;
 use super::net::{Ground, Net};
 use super::refusal::Refusal;
 use super::walls::{Planes, Site, Walls};
+use crate::field::descent;
 use crate::mesh::half_edge::{NONE, next, previous};
 use crate::particles::{SlotFate, Slots};
 use core::ops::Range;
@@ -39,8 +40,7 @@ fn slide(ground: &mut Ground, planes: Planes, start: Vec3, reach: f32) -> Option
     let (mut p, free) = (start, planes.free());
     for _ in 0..STEPS {
         let (value, gradient) = ground.probe.gradient(p);
-        let slope = gradient * free;
-        let step = slope * (value / slope.length_squared());
+        let step = descent::step(value, gradient * free);
         p -= step;
         // Written so that NaN fails.
         let is_within = p.distance(start) <= reach;

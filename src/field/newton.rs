@@ -1,0 +1,75 @@
+//! Newton's method for one point in double precision: to a surface, to the curve in which two meet, or to the point in which three do.
+//!
+//! Each step is the shortest after which the functions are zero to first order. [`descent`](super::descent) moves batches of points in
+//! single precision.
+
+use glam::{DMat3, DVec3};
+
+/// Value and gradient of a function at a point.
+pub(crate) type Slope = (f64, DVec3);
+
+/// The step to the zeros of one function, to be subtracted from the point.
+pub(crate) fn step_to_surface((f, u): Slope) -> DVec3 {
+    u * (f / u.length_squared())
+}
+
+/// The step to the common zeros of two functions, to be subtracted from the point, and the cross product of their gradients, which is
+/// tangent to the curve.
+pub(crate) fn step_to_curve([(f, u), (g, v)]: [Slope; 2]) -> (DVec3, DVec3) {
+    let tangent = u.cross(v);
+    ((v.cross(tangent) * f + tangent.cross(u) * g) / tangent.length_squared(), tangent)
+}
+
+/// The step to the common zero of three functions, to be subtracted from the point, and the volume that the unit vectors along their
+/// gradients span.
+pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
+    let [(f, u), (g, v), (h, w)] = slopes.map(|(value, gradient)| {
+        let slope = gradient.length();
+        (value / slope, gradient / slope)
+    });
+    let rows = DMat3::from_cols(u, v, w).transpose();
+    (rows.inverse() * DVec3::new(f, g, h), rows.determinant().abs())
+}
+
+/// Limits of the way of a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Largest number of steps.
+    pub(crate) steps: u32,
+    /// Largest distance from the start.
+    pub(crate) reach: f64,
+    /// Length of a step after which the point is at rest.
+    pub(crate) at_rest: f64,
+    /// The same as a share of the point's distance from the origin; the larger of both counts.
+    pub(crate) share_at_rest: f64,
+}
+
+impl Limits {
+    /// No limit but a number of steps.
+    pub(crate) const fn steps(steps: u32) -> Self {
+        Self { steps, reach: f64::MAX, at_rest: 0.0, share_at_rest: 0.0 }
+    }
+}
+
+/// The point at which the steps from `start` come to rest within these limits, and what `step_at` has returned beside the last step. None
+/// also where `step_at` has no step, or one that is no number.
+pub(crate) fn land<T>(
+    start: DVec3,
+    limits: Limits,
+    mut step_at: impl FnMut(DVec3) -> Option<(DVec3, T)>,
+) -> Option<(DVec3, T)> {
+    let mut p = start;
+    for _ in 0..limits.steps {
+        let (step, found) = step_at(p)?;
+        p -= step;
+        // Written so that NaN fails.
+        let is_near = p.distance(start) <= limits.reach;
+        if !is_near {
+            return None;
+        }
+        if step.length() <= limits.at_rest.max(limits.share_at_rest * p.length()) {
+            return Some((p, found));
+        }
+    }
+    None
+}
