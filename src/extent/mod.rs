@@ -68,6 +68,14 @@ pub struct Extent {
 }
 
 impl Extent {
+    /// The box with room for particles of which the largest radius is this share of the diagonal of the box, which may depend on the box.
+    #[must_use]
+    pub fn with_room_for(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
+        /// Rounds in which the box and the room for the largest particles in it follow each other.
+        const ROUNDS: u32 = 4;
+        (0..ROUNDS).fold(self.bounds, |bounds, _| self.with_room(share_in(&bounds)))
+    }
+
     /// The box with room for particles, whose radius is at most this share of its diagonal: 5 % on every side, and three radii. A
     /// box that cuts the surface has room already.
     #[must_use]

@@ -40,7 +40,7 @@ pub(crate) struct Limits {
     pub(crate) reach: f64,
     /// Length of a step after which the point is at rest.
     pub(crate) at_rest: f64,
-    /// The same as a share of the point's distance from the origin; the larger of both counts.
+    /// Length of such a step over the point's distance from the origin. The larger of both lengths counts.
     pub(crate) share_at_rest: f64,
 }
 
@@ -72,4 +72,41 @@ pub(crate) fn land<T>(
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere around a point, as a function that is zero on it.
+    fn sphere(centre: DVec3, p: DVec3) -> Slope {
+        ((p - centre).length_squared() - 1.0, 2.0 * (p - centre))
+    }
+
+    const CENTRES: [DVec3; 3] = [DVec3::ZERO, DVec3::new(0.6, 0.0, 0.0), DVec3::new(0.0, 0.6, 0.0)];
+    const START: DVec3 = DVec3::new(0.35, 0.2, 0.8);
+
+    #[test]
+    fn points_come_to_rest_on_one_sphere_on_two_and_on_three() {
+        let limits = Limits { at_rest: 1e-12, ..Limits::steps(12) };
+        let of = |p| CENTRES.map(|centre| sphere(centre, p));
+        let on = [
+            land(START, limits, |p| Some((step_to_surface(of(p)[0]), ()))),
+            land(START, limits, |p| Some((step_to_curve([of(p)[0], of(p)[1]]).0, ()))),
+            land(START, limits, |p| Some((step_to_corner(of(p)).0, ()))),
+        ];
+        for (k, landed) in on.into_iter().enumerate() {
+            let (p, ()) = landed.expect("the start is near");
+            assert!(of(p)[..=k].iter().all(|(value, _)| value.abs() < 1e-12), "{} spheres: {p}", k + 1);
+        }
+    }
+
+    #[test]
+    fn points_that_go_too_far_or_nowhere_do_not_land() {
+        let step_at = |p| Some((step_to_surface(sphere(DVec3::ZERO, p)), ()));
+        let limits = Limits { at_rest: 1e-12, ..Limits::steps(12) };
+        assert_eq!(land(3.0 * START, Limits { reach: 0.5, ..limits }, step_at), None);
+        assert_eq!(land(3.0 * START, Limits::steps(2), step_at), None);
+        assert_eq!(land(DVec3::ZERO, limits, step_at), None, "the gradient is zero there");
+    }
 }

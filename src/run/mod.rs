@@ -135,15 +135,12 @@ impl<F: Field> Run<F> {
     ///
     /// The errors of [`Run::start`].
     pub fn start_with(mut field: F, settings_in: impl Fn(&Bounds) -> Settings) -> Result<Self, Error> {
-        /// Rounds in which a fitted box and the room for the largest particles in it follow each other.
-        const ROUNDS: u32 = 4;
         let anywhere = Bounds::cube(1.0);
         let (bounds, reach) = match settings_in(&anywhere).bounds {
             Some(bounds) => (bounds, None),
             None => {
                 let extent = extent::find(&mut field);
-                let bounds = (0..ROUNDS)
-                    .fold(extent.bounds, |bounds, _| extent.with_room(settings_in(&bounds).largest_share()));
+                let bounds = extent.with_room_for(|bounds| settings_in(bounds).largest_share());
                 (bounds, Some(extent.reach))
             }
         };

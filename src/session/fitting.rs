@@ -100,6 +100,21 @@ impl SolidSettings {
         }
     }
 
+    /// The box that closes the solid which is made of the surface of `field`: these bounds, or the unit cell there, whose place is chosen if it
+    /// `is_free`. None if the solid stays open.
+    #[must_use]
+    pub fn faces(&self, field: &Formula, bounds: Bounds, is_free: bool) -> Option<Bounds> {
+        if self.box_faces == BoxFaces::Open {
+            return None;
+        }
+        if self.box_cell == BoxCell::Lone || !is_free {
+            return Some(bounds);
+        }
+        let mut solid = self.made_of(field.clone(), None);
+        solid.set_origin(DVec3::ZERO);
+        Some(extent::unit_cell(&mut solid, field.surface_periods(), &bounds))
+    }
+
     /// The own box of a surface of the gallery. Around a surface that is closed without it, there is room for the sheet.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
@@ -200,16 +215,11 @@ impl Session {
             (clip, reach) = (found.with_room(room), Some(found.reach));
             clip = before.map_or(clip, |before| clip.joined(&before));
         }
-        let is_closed = choice.box_faces == BoxFaces::Closed;
-        let is_cell = is_closed && choice.box_cell == BoxCell::Periodic;
-        if let Some(field) = field.filter(|_| is_cell && self.is_to_choose()) {
-            let mut solid = choice.made_of(field.clone(), None);
-            solid.set_origin(DVec3::ZERO);
-            clip = extent::unit_cell(&mut solid, field.surface_periods(), &clip);
-        }
+        let closing = field.and_then(|field| choice.faces(field, clip, self.is_to_choose()));
+        clip = closing.unwrap_or(clip);
         let (mut bounds, mut reach_in) = (clip, reach);
         if let Some(field) = field {
-            let closing = Some(clip).filter(|_| is_closed);
+            let is_cell = closing.is_some() && choice.box_cell == BoxCell::Periodic;
             let present = (field.thickness(), field.closing_box(), field.unit_cell().is_some());
             if present != (choice.sheet(), closing, is_cell) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());

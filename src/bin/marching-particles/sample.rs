@@ -14,7 +14,7 @@ use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
+use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
     Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFile, MeshFormat, Method, Parameter,
     ParticleFile, Phase, Reach, RecordText, Run, Settings, StopReason, Warning, gallery,
@@ -308,17 +308,15 @@ fn solid(
         return Ok((formula, bounds, None));
     }
     let is_like = arguments.faces.is_some();
-    let mut faces = arguments.faces.or(bounds).unwrap_or_else(|| extent::find(&mut formula).bounds);
+    let around = arguments.faces.or(bounds).unwrap_or_else(|| extent::find(&mut formula).bounds);
     let periods = formula.surface_periods();
-    let is_fitted = !is_like && !matches!(arguments.bounds, Some(BoxChoice::Fixed | BoxChoice::Given(_)));
-    if solid.box_cell == BoxCell::Periodic && is_fitted {
-        faces = extent::unit_cell(&mut formula, periods, &faces);
-    }
-    let formula = solid.made_of(formula, Some(&faces));
+    let is_free = !is_like && !matches!(arguments.bounds, Some(BoxChoice::Fixed | BoxChoice::Given(_)));
+    let faces = solid.faces(&formula, around, is_free);
+    let formula = solid.made_of(formula, faces.as_ref());
     if formula.unit_cell().is_some_and(|cell| cell.repeats == [false; 3]) {
         return Err(Failure::Usage(not_periodic(periods)));
     }
-    Ok((formula, bounds.filter(|_| is_like), Some(faces)))
+    Ok((formula, bounds.filter(|_| is_like), faces))
 }
 
 /// Why no two faces of a box are the same, for a surface of these periods.

@@ -126,8 +126,7 @@ fn box_of(arguments: &mut SweepArguments) -> Result<Bounds, Failure> {
             return Ok(bounds);
         }
         let extent = extent::find(&mut chosen.field);
-        let room = |bounds: &Bounds| extent.with_room(arguments.sampling.settings(bounds).largest_share());
-        let fitted = room(&room(&extent.bounds));
+        let fitted = extent.with_room_for(|bounds| arguments.sampling.settings(bounds).largest_share());
         all = Some(all.map_or(fitted, |all| all.joined(&fitted)));
     }
     Ok(all.unwrap_or(Bounds::cube(1.0)))
