@@ -8,7 +8,6 @@ pub mod formula;
 mod function;
 pub mod gallery;
 pub mod model;
-pub(crate) mod newton;
 pub mod rbf;
 pub(crate) mod scaled;
 

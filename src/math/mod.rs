@@ -5,6 +5,7 @@ mod forest;
 pub mod functions;
 pub(crate) mod interval;
 mod lanes;
+pub(crate) mod newton;
 mod real;
 mod sort;
 mod table;

@@ -12,7 +12,7 @@
 use super::graph::{Graph, Id, Node};
 use super::{Formula, Parameter, scalar};
 use crate::field::Field;
-use crate::field::newton::{self, Limits, step_to_surface};
+use crate::math::newton::{self, Limits, step_to_surface};
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -12,8 +12,8 @@ use super::compiled::Compiled;
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::{interval, scalar};
-use crate::field::newton::step_to_curve;
 use crate::math::Bounds;
+use crate::math::newton::step_to_curve;
 use crate::slices::pause;
 use glam::DVec3;
 

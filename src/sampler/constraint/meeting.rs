@@ -1,6 +1,6 @@
 //! Points where branches of f are zero together.
 
-use crate::field::newton::{self, Limits, step_to_corner, step_to_curve, step_to_surface};
+use crate::math::newton::{self, Limits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 

@@ -4,8 +4,8 @@
 //! witness is connected with a particle anew, by proof. Where that fails and no particle near it even seems to be on its sheet,
 //! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
 
-use crate::field::newton::step_to_surface;
 use crate::field::{Bounded, Enclosure};
+use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, Interval, Sym3, sort_few};
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;

@@ -1,8 +1,8 @@
 //! Proves by bounds of the gradient that two points lie on one sheet: that the surface connects them. What only seems so is told
 //! by the rules of [`sheet`](crate::sampler::sheet).
 
-use crate::field::newton::{self, Limits, step_to_surface};
 use crate::field::{Bounded, Enclosure};
+use crate::math::newton::{self, Limits, step_to_surface};
 use crate::math::{Bounds, Interval};
 use crate::sampler::discovery::cell::rise;
 use crate::sampler::discovery::octree::Region;

@@ -1,7 +1,7 @@
 //! Newton's method for one point in double precision: to a surface, to the curve in which two meet, or to the point in which three do.
 //!
-//! Each step is the shortest after which the functions are zero to first order. [`descent`](super::descent) moves batches of points in
-//! single precision.
+//! Each step is the shortest after which the functions are zero to first order. `field::descent` moves batches of points in single
+//! precision.
 
 use glam::{DMat3, DVec3};
 
