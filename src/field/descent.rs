@@ -2,7 +2,7 @@
 //!
 //! Seeds, the relaxation and the figures move their points here, each with limits of its own. The others move one point:
 //!
-//! * [`newton`](super::newton) moves it in double precision.
+//! * [`newton`](crate::math::newton) moves it in double precision.
 //! * `sampler::discovery::nearness` does, too, and looks at the second derivative at each step.
 //! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an angle along a circle.
 //! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after each step whether there is one sheet;

@@ -2,7 +2,7 @@
 
 use super::fit::{Fit, FitError, approximate};
 use super::models;
-use super::normals::{Settled, settle};
+use super::normals::{Changes, settle};
 use super::read::{ReadError, Reader};
 use super::thin::{check_spread, merge, spread, thin};
 use super::{Cloud, CloudError, ModelInfo};
@@ -302,7 +302,7 @@ async fn of_file(
     // The points of a mesh belong together by its faces, which tell their normals too.
     if cloud.normal.is_empty() || !has_faces {
         let part = if cloud.normal.is_empty() { &ESTIMATING } else { &COMPARING };
-        let Settled { outliers, warnings } = settle(&mut cloud, status.begin(part)).await?;
+        let Changes { outliers, warnings } = settle(&mut cloud, status.begin(part)).await?;
         given.retain(|p| !outliers.contains(p));
         info.warnings.extend(warnings);
     }

@@ -62,7 +62,7 @@ const WARN_SHARE: f64 = 0.01;
 
 /// The changes that were made to a cloud of points, for the user.
 #[derive(Clone, Debug, Default)]
-pub struct Settled {
+pub struct Changes {
     /// Points that were left out because they are far from all others.
     pub outliers: Vec<DVec3>,
     /// Warnings for the user.
@@ -75,8 +75,8 @@ pub struct Settled {
 /// # Errors
 ///
 /// If there is not enough memory.
-pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Settled, CloudError> {
-    let mut settled = Settled::default();
+pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Changes, CloudError> {
+    let mut settled = Changes::default();
     let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
     let is_outlier = graph.outliers();
     let count = is_outlier.iter().filter(|&&is_outlier| is_outlier).count();

@@ -125,14 +125,14 @@ impl SolidSettings {
 
 /// Search for the box around one field, in slices.
 #[derive(Default)]
-struct Around {
+struct BoxSearch {
     /// The search, while it is under way.
     search: Option<BoxFit>,
     /// Its result.
     found: Option<Extent>,
 }
 
-impl Around {
+impl BoxSearch {
     /// Does up to `budget` slices of the search around the surface of a field: its extent, once it is known.
     fn step(&mut self, field: impl FnOnce() -> Formula, budget: u32) -> Option<Extent> {
         if self.found.is_none() {
@@ -158,9 +158,9 @@ pub(super) struct Fitting {
     /// Whether the clip box was given with the field.
     pub(super) is_given: bool,
     /// The box around the surface that no box closes.
-    unclosed: Around,
+    unclosed: BoxSearch,
     /// The box around the solid that the clip box closes.
-    closed: Around,
+    closed: BoxSearch,
     /// The search for the creases of the surface in the box, while it is under way.
     creases: Option<(Bounds, CreaseSearch)>,
     /// Whether the box is that of the next run.
@@ -178,7 +178,7 @@ impl Fitting {
 
     /// Forgets what belongs to another field or another choice of the box; the box itself stays until the next is known.
     pub(super) fn restart(&mut self) {
-        (self.unclosed, self.closed, self.is_settled) = (Around::default(), Around::default(), false);
+        (self.unclosed, self.closed, self.is_settled) = (BoxSearch::default(), BoxSearch::default(), false);
         self.creases = None;
     }
 }
@@ -223,7 +223,7 @@ impl Session {
             let present = (field.thickness(), field.closing_box(), field.unit_cell().is_some());
             if present != (choice.sheet(), closing, is_cell) {
                 let solid = choice.made_of(field.clone(), closing.as_ref());
-                self.fitting.closed = Around::default();
+                self.fitting.closed = BoxSearch::default();
                 self.fitting.creases = None;
                 self.run.set_field(Source::Formula(solid), false);
             }
