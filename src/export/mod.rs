@@ -238,9 +238,9 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iter
     })
 }
 
-/// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them: where it is empty, its columns are left
-/// out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the
-/// same bits. PLY and CSV carry the `record`, in a comment.
+/// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them:
+/// where it is empty, its columns are left out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in
+/// text are the shortest that read back to the same bits. PLY and CSV carry the `record`, in a comment.
 ///
 /// # Errors
 ///

@@ -39,7 +39,7 @@ const MOST_MARGIN: f64 = 0.5;
 /// Cells visited at most for a short formula: 20 to 50 milliseconds. With half as many 19 of 68 random surfaces have another box, mostly a
 /// wider one, with twice as many 13, mostly a tighter one.
 const MOST_CELLS: usize = 32_768;
-/// Operations of such a formula. A longer one may have fewer cells, in inverse proportion.
+/// Largest number of operations of a formula that may have [`MOST_CELLS`]. A longer one may have fewer cells, in inverse proportion.
 const SHORT: usize = 64;
 
 /// Whether a surface is bounded.
@@ -53,7 +53,7 @@ pub enum Reach {
     Endless,
     /// There is no surface within ±10⁴.
     Nowhere,
-    /// It is not known: neither intervals nor a grid decide it.
+    /// Neither intervals nor a grid decide whether the surface is bounded.
     #[default]
     Unknown,
 }

@@ -1,7 +1,7 @@
 //! A run: one field, sampled in one box, from the first survey to particles, report and mesh.
 //!
-//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in steps, for a caller that shows progress, cancels, relaxes
-//! further or measures in slices. What either leads to is a [`Sample`].
+//! This is the door of the crate. [`sample`] is the whole job in one call. A [`Run`] is the same in steps, for a caller that
+//! shows progress, cancels, relaxes further or measures in slices. What either leads to is a [`Sample`].
 
 mod check;
 mod measuring;

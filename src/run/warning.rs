@@ -153,7 +153,7 @@ pub enum Warning {
         /// Radius of the run.
         length: f64,
     },
-    /// It is not proven that every component has been found.
+    /// The search has not proven that every component of the surface has been found.
     Unproven {
         /// The reason. Its position is in the coordinates of the field.
         doubt: Doubt,

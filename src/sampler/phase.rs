@@ -52,11 +52,11 @@ pub enum StopReason {
 /// What particles do on a surface that has moved.
 #[derive(Clone, Debug)]
 pub(super) enum FlowStage {
-    /// They move with the mesh of a refined run.
+    /// The particles move with the mesh of a refined run.
     Mesh(Box<MovingMesh>),
-    /// They are transported to it.
+    /// The particles are transported to the surface.
     Transport,
-    /// They make one of so many steps on it.
+    /// The particles make one of so many steps on the surface.
     Step(u32),
 }
 

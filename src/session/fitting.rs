@@ -42,7 +42,7 @@ pub enum BoxCell {
     /// Nothing: each face is sampled by itself.
     #[default]
     Lone,
-    /// The same particles and triangles, along every axis on which the surface repeats: see [`Formula::repeated_in`].
+    /// Opposite faces have the same particles and triangles along every axis on which the surface repeats: see [`Formula::repeated_in`].
     Periodic,
 }
 
@@ -115,7 +115,7 @@ impl SolidSettings {
         Some(extent::unit_cell(&mut solid, field.surface_periods(), &bounds))
     }
 
-    /// The own box of a surface of the gallery. Around a surface that is closed without it, there is room for the sheet.
+    /// The box that a surface of the gallery brings with it. Around a surface that is closed without it, there is room for the sheet.
     #[must_use]
     pub fn own_box(&self, surface: &Surface) -> Bounds {
         let room = if surface.closed { DVec3::splat(0.5 * self.thickness) } else { DVec3::ZERO };

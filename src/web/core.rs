@@ -75,7 +75,8 @@ impl Core {
     }
 
     /// Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
-    /// `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    /// `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an
+    /// error the last good field stays.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
     pub fn set_points(
         &mut self,
@@ -90,8 +91,8 @@ impl Core {
         }))
     }
 
-    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
-    /// it is known, nothing before. While a slider moves the box `only_grows`.
+    /// Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an
+    /// `Answer` with `FieldAnswer` once it is known, nothing before. While a slider moves the box `only_grows`.
     #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
     pub fn fit(
         &mut self,

@@ -145,8 +145,8 @@ pub(crate) struct SampleArguments {
     pub(crate) out: Vec<PathBuf>,
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
-    /// colours), 3mf (with its unit), stl, obj or ply (with what --out writes). May be given again; replaces what is there. Unless --method or --relax is
-    /// given, the method is refined, whose triangles are better
+    /// colours), 3mf (with its unit), stl, obj or ply (with what --out writes). May be given again; replaces what is there.
+    /// Unless --method or --relax is given, the method is refined, whose triangles are better
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
@@ -219,7 +219,7 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, conflicts_with = "points", help_heading = "Surface")]
     pub(crate) closed: bool,
 
-    /// The same particles and triangles on opposite faces of the box of --closed, bit for bit but for the shift, along every axis on
+    /// Give opposite faces of the box of --closed the same particles and triangles, bit for bit but for the shift, along every axis on
     /// which it is a whole number of periods wide. Without --box, it is one period wide. The column `periodic` of ply and csv has the
     /// pairs
     #[arg(long, requires = "closed", help_heading = "Surface")]

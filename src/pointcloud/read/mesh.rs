@@ -83,8 +83,8 @@ impl FileMesh {
         Ok((cloud, self.warnings))
     }
 
-    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the faces. A surface that the corners alone decide need not
-    /// follow a large face. A face with less than a thousandth of the area has none.
+    /// Points inside of faces, evenly by their share of the `total` area, with the normals of the faces. A surface that the
+    /// corners alone decide need not follow a large face. A face with less than a thousandth of the area has none.
     pub async fn on_faces(&self, total: f64) -> Cloud {
         /// Steps of the two coordinates of evenly spread points: 1/p and 1/p² with p³ = p + 1 (M. Roberts, "The unreasonable
         /// effectiveness of quasirandom sequences", 2018).

@@ -25,7 +25,7 @@ pub(in super::super) struct FacePair {
     at: [f64; 2],
 }
 
-/// That a crease or a corner repeats another one.
+/// A crease or a corner as the image of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Image {
     /// Number of the other one, which comes before.

@@ -23,7 +23,7 @@ const MOST_STEPS: usize = 20_000;
 
 /// How a walk along a crease ended.
 enum WalkEnd {
-    /// It has come back to its start.
+    /// The walk has come back to its start.
     Closed,
     /// At the box.
     Open,

@@ -38,8 +38,8 @@ const MOST_STEPS: u32 = 24;
 /// cusp each step only halves the distance.
 const ENDS: [f64; 2] = [1e-12, 1e-7];
 /// Largest |f| that counts as zero at a saddle of f, in units of |H| d², where H is the Hessian and d the search distance. It
-/// is far above rounding: cone points open where coefficients are rounded. A hundredth of it finds none of the 29 points of 46 random surfaces, a hundred times as much 77, some of them
-/// necks.
+/// is far above rounding: cone points open where coefficients are rounded. A hundredth of it finds none of the 29 points of 46
+/// random surfaces, a hundred times as much 77, some of them necks.
 const LARGEST_VALUE: f64 = 1e-8;
 /// Largest |f|, in units of |H| d², at the middle of the narrow neck that a cone point leaves when it opens, which the search
 /// treats as a singular point. Without, 5 of 24 random surfaces whose cone points have opened are no longer proven; ten times as much

@@ -64,7 +64,8 @@ pub(super) struct Tuning {
     last: Plan,
     /// Rounds of surgery at a first level at full resolution, which then comes to rest by the plan of the last one. No trial may lose.
     whole_rounds: usize,
-    /// Rounds of surgery at any other level, with a sweep after each. On the last level but one, which costs most, the first half of them is left out.
+    /// Rounds of surgery at any other level, with a sweep after each. On the last level but one, which costs most, the first
+    /// half of them is left out.
     rounds: usize,
     /// Share by which edges are too short or too long where surgery is tried on a particle without a defect, at a level and in a frame of a
     /// moving mesh.

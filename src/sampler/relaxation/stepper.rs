@@ -178,8 +178,8 @@ impl Stepper {
     /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
     /// normals and radii there. Those that have come there are the ones that are `ok` in `landing` then.
     ///
-    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the box or of its patch, where the field ends, at a fold, across
-    /// which its normal would turn by more than 90°, and where only another sheet is near.
+    /// A particle stays where it is if it lies on a crease, or cannot go: beyond the border of the box or of its patch, where
+    /// the field ends, at a fold, across which its normal would turn by more than 90°, and where only another sheet is near.
     pub(super) fn land<L: Repulsion>(
         &mut self,
         law: &L,

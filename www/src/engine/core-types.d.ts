@@ -191,8 +191,8 @@ export type FieldRequest = {
   pulls: Array<Pull>,
 };
 
-/** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. JSON has all figures
-* side by side. */
+/** The figures of a set of particles, one number per property; NaN (null in JSON) where undefined. Lengths are over d_hex
+* unless said otherwise. JSON has all figures side by side. */
 export type Figures = {
   /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units. */
   d_hex: number,
