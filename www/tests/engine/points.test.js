@@ -1,6 +1,7 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
+import { LOADING_MS, SILENCE_MS } from '../../src/engine/bundle/load.js';
 import { FILE_SURFACE } from '../../src/engine/constants.js';
-import { LOADING_MS, PointsClient, SILENCE_MS } from '../../src/engine/points/client.js';
+import { PointsClient } from '../../src/engine/points/client.js';
 import { ModelLoader } from '../../src/engine/points/loader.js';
 import { solve } from '../../src/engine/points/solve.js';
 import { defaultState } from '../../src/engine/share/state.js';

@@ -314,7 +314,7 @@ describe('a worker that fails', () => {
   test('by silence is replaced too', () => {
     const { sampler, store, jobs } = page();
     sampler.sample(request('x'));
-    vi.advanceTimersByTime(2500);
+    vi.advanceTimersByTime(4500);
     expect(workers).toHaveLength(2);
     expect(jobs()).toHaveLength(1);
     expect(store.notice.value?.id).toBe('hang');
@@ -326,7 +326,7 @@ describe('a worker that fails', () => {
     complete(1, 7);
     const file = sampler.client.meshFile({ format: 'ply' });
     // Nothing else is under way that the silence would break off.
-    vi.advanceTimersByTime(2500);
+    vi.advanceTimersByTime(4500);
     await expect(file).rejects.toThrow('does not hold');
     expect(workers).toHaveLength(2);
     // A file that came is waited for no longer.

@@ -112,9 +112,9 @@ test('a sampler that traps is replaced, with the surface intact', async () => {
     const p = /** @type {any} */ (window).marchingParticles;
     p.debug.panic();
     const report = await p.run();
-    return { digest: report.digest, restarts: p.debug.counts().restarts };
+    return { digest: report.digest, restarts: p.debug.counts().restarts, cause: p.engine.notice.value?.id };
   });
-  assert.deepEqual(again, { digest, restarts: 1 });
+  assert.deepEqual(again, { digest, restarts: 1, cause: 'panic' });
 });
 
 test('a lost device is opened again', async () => {

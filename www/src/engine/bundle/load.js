@@ -11,6 +11,16 @@
  * never ends.
  */
 export const LOADING_MS = 60_000;
+/**
+ * Time without a message after which a worker at work counts as hung. A step takes some tens of milliseconds. On a
+ * machine that is busy with other things it takes up to two seconds.
+ */
+export const SILENCE_MS = 4000;
+/**
+ * Delay after a silence before the worker counts as hung. A tab that was suspended first handles the messages that
+ * wait.
+ */
+export const GRACE_MS = 120;
 
 /** A module that contains one 128-bit constant. It is valid exactly if the browser supports SIMD. */
 const SIMD_PROBE = new Uint8Array([

@@ -5,6 +5,8 @@
  * @module
  */
 
+import { GRACE_MS, LOADING_MS, SILENCE_MS } from '../bundle/load.js';
+
 /**
  * @import { Timer } from '../bundle/types.js'
  * @import { Order, PointsClientOptions, Refusal, Solved } from './types.js'
@@ -14,16 +16,6 @@
  * The end of an order. `givenUp`: the page cancelled it.
  * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Ending
  */
-
-/** Time that the worker's script may take to load, on a slow connection. */
-export const LOADING_MS = 30_000;
-/**
- * Silence after which a worker that was heard counts as dead. A step takes some tens of milliseconds, on a slow machine
- * some tenths of a second, and the worker beats while it loads and reads.
- */
-export const SILENCE_MS = 4000;
-/** Delay after a silence before it counts. A tab that was suspended first handles the messages that wait. */
-const GRACE_MS = 120;
 
 export class PointsClient {
   #spawn;

@@ -12,5 +12,3 @@
 export const PROGRESS_MS = 60;
 /** Largest interval between messages while the worker loads or measures. */
 export const BEAT_MS = 250;
-/** Time without a message after which a busy worker counts as hung. */
-export const SILENCE_MS = 2000;

@@ -6,8 +6,7 @@
  *
  * @module
  */
-import { LOADING_MS } from '../bundle/load.js';
-import { SILENCE_MS } from './protocol.js';
+import { GRACE_MS, LOADING_MS, SILENCE_MS } from '../bundle/load.js';
 
 /**
  * @import { Timer } from '../bundle/types.js'
@@ -18,11 +17,6 @@ import { SILENCE_MS } from './protocol.js';
 const WINDOW_MS = 60_000;
 /** Largest number of replacements in the window. One more starts safe mode. */
 const RESTARTS = 3;
-/**
- * Delay after a silence before the worker counts as hung. A tab that was suspended first handles the messages that
- * wait.
- */
-const GRACE_MS = 120;
 
 /** @type {Clock} */
 const BROWSER_CLOCK = {
@@ -39,7 +33,6 @@ export class Supervisor {
   #onLoadError;
   #clock;
   #busy;
-  #heard;
 
   /** Time until which the worker may be silent. */
   #deadline;
@@ -60,7 +53,6 @@ export class Supervisor {
     /** @type {'off' | 'loading' | 'up' | 'failed' | 'safe'} */
     this.state = 'off';
     this.#busy = false;
-    this.#heard = false;
     this.#deadline = 0;
     this.#timer = undefined;
     /** @type {number[]} */
@@ -73,8 +65,7 @@ export class Supervisor {
     this.worker = worker;
     this.state = 'loading';
     this.#busy = false;
-    this.#heard = false;
-    this.#deadline = this.#clock.now() + LOADING_MS;
+    this.#heard();
     this.#watch();
     worker.onmessage = ({ data }) => {
       // The last messages of a terminated worker may still arrive. They are ignored.
@@ -104,18 +95,19 @@ export class Supervisor {
 
   /** Sets whether the worker has work. Silence is only monitored while it has. @param {boolean} busy */
   setBusy(busy) {
-    if (busy && !this.#busy && this.#heard) this.#deadline = this.#clock.now() + SILENCE_MS;
+    if (busy && !this.#busy && this.state === 'up') this.#heard();
     this.#busy = busy;
     this.#watch();
   }
 
   /** @param {FromWorker} message */
   receive(message) {
-    // The wait for a script is longer than that for a word.
-    if (!this.#heard) this.#rest();
-    this.#heard = true;
-    this.#deadline = this.#clock.now() + SILENCE_MS;
-    if (message.type === 'ready') this.state = 'up';
+    if (message.type === 'ready') {
+      this.state = 'up';
+      // The timer waits for the end of loading, which is later than the end of the next silence.
+      this.#rest();
+    }
+    this.#heard();
     if (message.type === 'failed') {
       this.#drop();
       this.state = 'failed';
@@ -126,6 +118,15 @@ export class Supervisor {
     }
     this.#watch();
     this.#onMessage(message);
+  }
+
+  /** Time that the worker may be silent. No input can hang it while it loads, but a browser may compile for long. */
+  get #patience() {
+    return this.state === 'loading' ? LOADING_MS : SILENCE_MS;
+  }
+
+  #heard() {
+    this.#deadline = this.#clock.now() + this.#patience;
   }
 
   #watch() {
@@ -142,11 +143,11 @@ export class Supervisor {
     this.#timer = undefined;
     if (this.#clock.now() < this.#deadline) this.#watch();
     else if (!again) this.#timer = this.#clock.setTimeout(() => this.#check(true), GRACE_MS);
-    else if (!this.#heard) this.#fail(`its script has not come within ${LOADING_MS / 1000} s`);
+    else if (this.state === 'loading') this.#fail(`no word from it for ${LOADING_MS / 1000} s`);
     else this.#replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
-  /** Gives up a worker that was never heard. @param {string} message */
+  /** Gives up a worker that did not load. @param {string} message */
   #fail(message) {
     this.#drop();
     this.state = 'failed';
