@@ -4,7 +4,7 @@
 //! on them are the same but for the shift. The particles within a face are repeated once the run has placed them.
 
 use super::meeting::Meeting;
-use super::{Corner, Crease, Creases};
+use super::{Corner, Crease, Creases, ONE_END};
 use crate::field::UnitCell;
 use crate::math::sort_by_key;
 use crate::particles::{OppositeFaces, Particles};
@@ -91,8 +91,6 @@ impl Creases {
 
     /// The creases with images in the place of those on the upper of two faces; none if the two faces differ.
     fn with_images(&self, probe: &mut Probe, pair: FacePair, step: f64) -> Option<Self> {
-        /// Distance, in steps, within which a corner on the upper face is the image of one on the lower face.
-        const NEAR: f64 = 0.1;
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
         faces.push(pair);
@@ -118,7 +116,7 @@ impl Creases {
             next.corners.push(Corner { position, patches: pair.image_of(&corner.patches), image: source });
         }
         for (k, corner) in self.corners.iter().enumerate().filter(|(_, c)| c.patches.contains(&upper)) {
-            let is_near = |image: &Corner| image.position.distance(corner.position) <= NEAR * step;
+            let is_near = |image: &Corner| image.position.distance(corner.position) <= ONE_END * step;
             place[k] = Some(kept + next.corners[kept..].iter().position(is_near)?);
         }
 

@@ -4,14 +4,11 @@
 //! face has a corner on it, at the common point of both branches and the plane.
 
 use super::meeting::{Third, common_point};
-use super::{Crease, Creases};
+use super::{Crease, Creases, ONE_CORNER};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
 use glam::DVec3;
-
-/// A crease and a face that meet nearer to a corner than this share of a step meet at the corner.
-const AT_CORNER: f64 = 1e-3;
 
 /// A plane across an axis.
 #[derive(Clone, Copy)]
@@ -32,7 +29,7 @@ impl Creases {
         for axis in 0..3 {
             for offset in [lo[axis], hi[axis]] {
                 for curve in core::mem::take(&mut creases.curves) {
-                    creases.cut(probe, curve, Plane { axis, offset }, AT_CORNER * 0.5 * width);
+                    creases.cut(probe, curve, Plane { axis, offset }, ONE_CORNER * 0.5 * width);
                 }
             }
         }

@@ -34,6 +34,11 @@ use meeting::{Meeting, SHARP};
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
+/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed.
+const ONE_CORNER: f64 = 1e-3;
+/// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
+/// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before.
+const ONE_END: f64 = 0.1;
 
 /// A curve along which patches meet: two, or four where two sheets cross.
 #[derive(Clone, Debug)]
@@ -117,8 +122,8 @@ impl Creases {
 
     /// Follows the creases between patches that meet at a corner: one shorter than a cell is not always found from a cell.
     async fn follow_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
-        /// Distance from the corner, in steps, at which the crease is looked for: ten times that within which corners are one.
-        const ASIDE: f64 = 1e-2;
+        /// Distance from the corner, in steps, at which the crease is looked for.
+        const ASIDE: f64 = 10.0 * ONE_CORNER;
         let mut next = 0;
         while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
             next += 1;

@@ -14,7 +14,7 @@ use glam::{DMat3, DVec3, Vec3};
 const DIVISIONS: i32 = 8;
 /// Steps of Newton's method to the surface along the sphere.
 const STEPS: u32 = 6;
-/// A point of the link is found when a step is shorter than this share of the radius.
+/// A point of the link is found when a step is shorter than this share of the radius: Newton's method squares it.
 const AT_REST: f64 = 1e-9;
 /// Radius of the sphere that tells how many nappes a tip has, in spacings of the survey. Rounded coefficients open a cone to a neck of
 /// a ten-thousandth of a spacing.

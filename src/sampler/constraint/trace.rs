@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, Meeting, Third, common_point, touching_point};
-use super::{Crease, Creases};
+use super::{Crease, Creases, ONE_CORNER, ONE_END};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -9,15 +9,10 @@ use glam::DVec3;
 
 /// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved.
 const MOST_TURN: f64 = 0.866;
-/// Times that a step is halved, at most: a closed crease of a thousandth of the usual step is followed.
+/// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step, in twelve turns of 30°, is followed.
 const HALVINGS: u32 = 12;
 /// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.
 const BISECTIONS: u32 = 30;
-/// Corners nearer to each other than this share of a step are one.
-const ONE_CORNER: f64 = 1e-3;
-/// Ends of creases that fade out are one corner if they are nearer to each other than this share of a step. They are known less
-/// precisely than corners: a walk ends at an angle of [`FADED`], less than a hundredth of a step before.
-const ONE_END: f64 = 0.1;
 /// Largest number of steps on one curve. One that is 80 times as long as the diagonal of the box is cut there.
 const MOST_STEPS: usize = 20_000;
 

@@ -26,7 +26,8 @@ const SCANNED: usize = 8;
 const UNITS: u32 = 64;
 /// Components that are named, and witnesses left open, after which the others are not looked at and count as open.
 const MOST_NAMED: usize = 256;
-/// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0.
+/// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0: some four thousand
+/// times its last digit, as many as the longest formula has operations.
 const ROUNDING: f64 = 1e-12;
 /// Distance, in radii, to which a component without a particle is followed. One that reaches farther has room
 /// for a child, at two radii.

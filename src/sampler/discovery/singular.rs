@@ -32,7 +32,7 @@ const SUB_BOXES: usize = 27;
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Largest number of Newton steps to a singular point.
+/// Largest number of Newton steps to a singular point: so many halvings, as at a cusp, lead to less than 10⁻⁷ of the way.
 const MOST_STEPS: u32 = 24;
 /// Distance from an isolated singular point, and from another one, at which the steps have ended, over the search distance. At a
 /// cusp each step only halves the distance.
