@@ -12,7 +12,14 @@ use core::task::{Context, Poll, Waker};
 /// A computation under way, which may borrow what it works on.
 pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
-/// Ends a slice of work. A slice should take 10 to 50 µs natively.
+/// Items in a slice of work of which each takes up to a microsecond or two: they search a tree, or evaluate a field.
+pub const HEAVY: usize = 32;
+/// Items that take some 100 ns each: they ask their neighbours.
+pub const MEDIUM: usize = 8 * HEAVY;
+/// Items that take some 10 ns each: they are read and counted.
+pub const LIGHT: usize = 8 * MEDIUM;
+
+/// Ends a slice of work. A slice should take 10 to 50 µs natively; no result depends on its size.
 pub fn pause() -> impl Future<Output = ()> + Send {
     let mut is_over = false;
     poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })

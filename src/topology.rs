@@ -1,10 +1,7 @@
 //! Components, borders and Euler number of a list of triangles, counted from the list alone.
 
-use crate::slices::{self, pause, ranges};
+use crate::slices::{self, LIGHT, MEDIUM, pause, ranges};
 use core::ops::Range;
-
-/// Triangles or vertices that are looked at in one slice of work, for some 10 to 200 ns each.
-const SLICE: usize = 2048;
 
 /// A connected part of a mesh: vertices that edges join.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,7 +54,7 @@ struct Corners {
 impl Corners {
     async fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
         let mut start = vec![0_u32; vertex_count + 2];
-        for slice in triangles.chunks(SLICE) {
+        for slice in triangles.chunks(LIGHT) {
             for &v in slice.iter().flatten() {
                 start[v as usize + 2] += 1;
             }
@@ -68,7 +65,7 @@ impl Corners {
         }
         pause().await;
         let mut ends = vec![[0; 2]; 3 * triangles.len()];
-        for slice in triangles.chunks(SLICE) {
+        for slice in triangles.chunks(LIGHT) {
             for &[a, b, c] in slice {
                 for (v, next, previous) in [(a, b, c), (b, c, a), (c, a, b)] {
                     let end = &mut start[v as usize + 1];
@@ -114,7 +111,7 @@ impl Topology {
         let mut corners = Corners::new(triangles, vertex_count).await;
         let mut topology = Self::default();
         let mut stars = Vec::with_capacity(vertex_count);
-        for vertices in ranges(vertex_count, SLICE) {
+        for vertices in ranges(vertex_count, MEDIUM) {
             for v in vertices {
                 let range = corners.range(v);
                 stars.push(topology.add_vertex(v as u32, &mut corners.ends[range]));
@@ -212,7 +209,7 @@ impl Topology {
             open.push(first as u32);
             while let Some(v) = open.pop() {
                 looked_at += 1;
-                if looked_at.is_multiple_of(SLICE) {
+                if looked_at.is_multiple_of(MEDIUM) {
                     pause().await;
                 }
                 let star = &stars[v as usize];

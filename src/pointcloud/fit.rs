@@ -15,7 +15,7 @@ use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::math::{Bounds, sort_numbers};
-use crate::slices::{pause, ranges};
+use crate::slices::{HEAVY, pause, ranges};
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -29,9 +29,7 @@ const WARN_CONDITION: f64 = 1e10;
 /// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box. Half and twice
 /// as much hold the same surfaces of twelve random clouds.
 const MARGIN: f64 = 0.06;
-/// Number of points at which a slice of work takes the residual. It changes no figure.
-const BATCH: usize = 1024;
-/// Pairs of a point and a centre in a slice of work. It changes no figure.
+/// Pairs of a point and a centre in a slice of work, at 1 to 16 ns each.
 const PAIRS: usize = 8192;
 /// Largest smoothing term λ that is tried. The largest that was chosen for spheres, tori and bunnies of 5,000 points, with and without
 /// noise, is a fourth of it.
@@ -217,7 +215,7 @@ async fn smoothing(points: &[CellPoint], centres: &[DVec3], tell: impl Fn(f64)) 
 /// Sum of f² and `distance_sq` |∇f − n|² over the points.
 async fn error_at(field: &mut RbfField, points: &[CellPoint], distance_sq: f64) -> f64 {
     let mut sum = 0.0;
-    for points in points.chunks(BATCH) {
+    for points in points.chunks(HEAVY) {
         let positions: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
         let (mut value, mut gradient) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
         field.exact_gradients(&positions, &mut value, &mut gradient);
@@ -361,7 +359,7 @@ impl System {
 async fn residuals(field: &mut RbfField, points: &[DVec3], tell: impl Fn(f64)) -> (Vec<f32>, DVec3) {
     let mut residuals = Vec::with_capacity(points.len());
     let (mut largest, mut farthest) = (0.0, DVec3::ZERO);
-    for range in ranges(points.len(), BATCH) {
+    for range in ranges(points.len(), HEAVY) {
         tell(range.start as f64 / points.len() as f64);
         let points = &points[range];
         let batch: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();

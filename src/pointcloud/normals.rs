@@ -17,7 +17,7 @@
 use super::thin::covariance;
 use super::{Cloud, CloudError, NormalSource, eigen};
 use crate::math::{Bounds, shortest_text, sort_numbers, unkey};
-use crate::slices::{pause, ranges};
+use crate::slices::{HEAVY, MEDIUM, pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
 use glam::DVec3;
@@ -53,9 +53,6 @@ const MOST_OUTLIERS: f64 = 0.02;
 const DISAGREEING: f64 = 0.3;
 /// Largest number of times that all given normals are compared with their neighbours: each time those beside turned ones are clearer.
 const MOST_ROUNDS: u32 = 16;
-
-/// Planes fitted in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const PLANES: usize = 20;
 
 /// Share of such pairs above which the user is warned. Half and double warn of the same ones of twelve random clouds.
 const WARN_SHARE: f64 = 0.01;
@@ -230,7 +227,7 @@ impl NeighbourGraph {
         let wide = flattest(&local, &tree).await;
         let (mut neighbours, mut normal, mut flat, mut nearest) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for range in ranges(points.len(), PLANES) {
+        for range in ranges(points.len(), HEAVY) {
             tell(range.start as f64 / points.len() as f64);
             for i in range {
                 let plane = Plane::around(&local, &tree, i, wide, &mut nearest);
@@ -267,7 +264,7 @@ impl NeighbourGraph {
         let mut is_turned = vec![false; self.local.len()];
         for _ in 0..MOST_ROUNDS {
             let mut is_settled = true;
-            for range in ranges(self.local.len(), PLANES) {
+            for range in ranges(self.local.len(), MEDIUM) {
                 for i in range {
                     let near = &self.neighbours[i * self.per_point..(i + 1) * self.per_point];
                     let (mut sum, mut weight) = (0.0, 0.0);

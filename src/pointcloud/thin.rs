@@ -3,7 +3,7 @@
 
 use super::{Cloud, CloudError};
 use crate::math::{Bounds, IndexTable, Sym3, hash};
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 use glam::DVec3;
 
 /// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen among them.
@@ -23,9 +23,6 @@ const FLAT_SHARE: f64 = 1e-5;
 
 /// Points that a column has room for at first: 24 kB of positions. It grows by half.
 const FIRST_POINTS: usize = 1024;
-
-/// Points merged or put into cells in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const POINTS: usize = 1000;
 
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
 ///
@@ -58,7 +55,7 @@ pub async fn merge(mut cloud: Cloud, tell: impl Fn(f64)) -> Result<Cloud, CloudE
     let Cloud { position, normal, .. } = &mut cloud;
     let (count, mut kept) = (position.len(), 0);
     let mut table = IndexTable::default();
-    for range in ranges(count, POINTS) {
+    for range in ranges(count, MEDIUM) {
         tell(range.start as f64 / count as f64);
         for i in range {
             let p = position[i];
@@ -138,7 +135,7 @@ pub async fn thin(cloud: Cloud) -> Result<Cloud, CloudError> {
 /// Indices of the first point in each cell of a grid of cubes with a corner at `lo`. It ends at more than [`KEPT`] of them.
 async fn first_in_cells(points: &[DVec3], lo: DVec3, side: f64) -> Result<Vec<u32>, CloudError> {
     let (mut table, mut cells, mut first) = (IndexTable::default(), Vec::new(), Vec::new());
-    for range in ranges(points.len(), POINTS) {
+    for range in ranges(points.len(), MEDIUM) {
         for i in range {
             if first.len() > KEPT {
                 return Ok(first);

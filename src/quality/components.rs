@@ -3,11 +3,7 @@
 use super::gaps::LONG;
 use super::points::MeasuredPoints;
 use crate::math::Forest;
-use crate::slices::pause;
-
-/// Points or triangles that are looked at in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no
-/// figure.
-const SLICE: usize = 512;
+use crate::slices::{MEDIUM, pause};
 
 /// Label of a point that belongs to no component because its position is not finite.
 pub(super) const NO_LABEL: u32 = u32::MAX;
@@ -27,7 +23,7 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
             forest.join(i as u32, j as u32);
         }
     };
-    for chunk in mesh.chunks(SLICE) {
+    for chunk in mesh.chunks(MEDIUM) {
         for triangle in chunk {
             let [a, b, c] = triangle.map(|i| i as usize);
             for (i, j) in [(a, b), (b, c), (c, a)] {

@@ -3,10 +3,8 @@
 use super::points::MeasuredPoints;
 use super::sizes::WantedRadii;
 use crate::math::functions::exp;
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 
-/// Points that are looked at in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const SLICE: usize = 256;
 /// Energy of six neighbours at the ideal distance: 6 exp(−2).
 const SIX: f32 = 0.812_011_7;
 
@@ -17,7 +15,7 @@ const SIX: f32 = 0.812_011_7;
 pub(super) async fn of_points(points: &MeasuredPoints, wanted: Option<&WantedRadii>, d_hex: f64) -> Vec<f32> {
     let n = points.tree.len();
     let mut energy = Vec::with_capacity(n);
-    for range in ranges(n, SLICE) {
+    for range in ranges(n, MEDIUM) {
         energy.extend(range.map(|i| {
             let pair = |j: usize| {
                 let share = match wanted {

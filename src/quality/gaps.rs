@@ -5,7 +5,7 @@ use super::points::MeasuredPoints;
 use crate::field::Field;
 use crate::field::descent::{BATCH, Descent, descend};
 use crate::math::{Bounds, sort_few};
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 use glam::Vec3;
 
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end. With half of it all of 34 random
@@ -28,16 +28,13 @@ const REACH: f32 = 0.125;
 /// Distance from the surface at which a place is on it, and from the box at which it is in it, over the edge's length. Half of it
 /// changes the area of 6 of 34 random surfaces by up to 0.4 %; with twice as much one of them has another number of components.
 const NEAR: f32 = 0.02;
-/// Points or triangles that are looked at in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no
-/// figure.
-const SLICE: usize = 512;
 
 /// Returns the spacing at every point.
 pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
     let n = points.tree.len();
     let mut lengths = Vec::new();
     let mut spacing = Vec::with_capacity(n);
-    for range in ranges(n, SLICE) {
+    for range in ranges(n, MEDIUM) {
         spacing.extend(range.map(|i| {
             let p = points.tree.position[i];
             lengths.clear();
@@ -63,7 +60,7 @@ impl Gaps<'_> {
     pub(super) async fn drop_across(&self, field: &mut dyn Field, triangles: &mut Vec<[u32; 3]>) {
         let (mut is_across, mut long) = (Vec::new(), Vec::new());
         let mut kept = 0;
-        for range in ranges(triangles.len(), SLICE) {
+        for range in ranges(triangles.len(), MEDIUM) {
             is_across.clear();
             is_across.resize(range.len(), false);
             long.clear();

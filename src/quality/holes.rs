@@ -11,15 +11,11 @@ use super::triangles::area_vector;
 use crate::field::Field;
 use crate::field::descent::BATCH;
 use crate::math::Bounds;
-use crate::slices::pause;
+use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-
-/// Crossings of random lines that are looked at in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size
-/// changes no figure.
-const SLICE: usize = 256;
 
 /// [`WIDE`] squared.
 const WIDE_SQ: f32 = (WIDE * WIDE) as f32;
@@ -314,7 +310,7 @@ pub(super) async fn uncovered(
 ) -> Uncovered {
     let mut uncovered = Uncovered::default();
     let (mut all, mut far) = (0.0, 0.0);
-    for chunk in probe::crossings(field, bounds, seed).await.chunks(SLICE) {
+    for chunk in probe::crossings(field, bounds, seed).await.chunks(HEAVY) {
         for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
             all += 1.0;
             let (gap_sq, index) = cover.tree.nearest(p, u32::MAX, f32::INFINITY);

@@ -50,7 +50,7 @@ pub use spacing::Histogram;
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, SQRT_3};
-use crate::slices::{self, pause, ranges};
+use crate::slices::{self, MEDIUM, pause, ranges};
 use crate::topology::Topology;
 use accuracy::first_order_height;
 use border::Border;
@@ -70,9 +70,6 @@ use triangles::TriangleAngles;
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
-/// Points or triangles that are looked at in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no
-/// figure.
-const SLICE: usize = 256;
 /// Size of a triangle, in d_hex, from which on it lies in a hole, and its samples look for the nearest point one by one. Half and
 /// double give the same figures, in the same time within 2 %.
 const SPREAD: f64 = 2.0;
@@ -283,7 +280,7 @@ async fn points_away_from(border: Option<&Border>, points: &MeasuredPoints) -> V
     let n = points.tree.len();
     let mut inner = vec![true; n];
     if let Some(border) = border {
-        for range in ranges(n, SLICE) {
+        for range in ranges(n, MEDIUM) {
             range.for_each(|i| inner[i] = !border.is_near(points.tree.position[i]));
             pause().await;
         }
@@ -301,7 +298,7 @@ async fn measure_neighbourhoods(
     let mut order = ValenceTally::default();
     let mut edge = Moments::default();
     let mut ratios = EdgeRatios::default();
-    for range in ranges(points.tree.len(), SLICE) {
+    for range in ranges(points.tree.len(), MEDIUM) {
         for i in range.filter(|&i| inner[i]) {
             // On a crease a particle has neighbours on one side only.
             if !points.creases.holds(i) {
@@ -339,7 +336,7 @@ async fn measure_triangles(
     let mut angles = TriangleAngles::default();
     let mut corners = 0;
     for list in [&triangles.unanimous, &triangles.majority] {
-        for chunk in list.chunks(SLICE) {
+        for chunk in list.chunks(MEDIUM) {
             chunk.iter().filter(away).for_each(|&triangle| angles.add(&points.tree.position, triangle));
             corners += chunk.iter().flatten().filter(|&&i| is_whole(i as usize)).count();
             pause().await;

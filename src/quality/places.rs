@@ -1,7 +1,7 @@
 //! The places with the worst spacing: crowded pairs and wide holes.
 
 use crate::math::{key_of, sort_by_key};
-use crate::slices::pause;
+use crate::slices::{HEAVY, pause};
 use glam::Vec3;
 use serde::Serialize;
 
@@ -13,9 +13,6 @@ pub const CROWDED: f64 = 0.75;
 pub const WIDE: f64 = 1.4;
 /// Largest number of places of each kind that are told: enough to look at one by one. The figures count all of them.
 const MOST: usize = 64;
-/// Holes that are compared with others in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no
-/// figure.
-const SLICE: usize = 64;
 
 /// Two particles and their distance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -112,7 +109,7 @@ pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
         if holes.iter().all(is_apart) {
             holes.push(hole);
         }
-        if k.is_multiple_of(SLICE) {
+        if k.is_multiple_of(HEAVY) {
             pause().await;
         }
     }

@@ -10,8 +10,7 @@ use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// Points at which the field is evaluated together, in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size
-/// changes no figure.
+/// Points at which the field is evaluated together, in one slice of work.
 const BATCH: usize = 64;
 
 /// The points to be measured, with their normals, residuals and one-rings. All columns are in tree order.

@@ -19,8 +19,7 @@ const LINES: usize = 4096;
 /// Points along a line at which the field is evaluated. Two crossings between consecutive points are not seen: a part thinner
 /// than a 64th of the box may be missed.
 const STATIONS: usize = 64;
-/// Lines that are evaluated together, in one slice of work: 512 evaluations. A slice is to take 10 to 50 µs ([`pause`]); its size
-/// changes no figure.
+/// Lines that are evaluated together, in one slice of work: 512 evaluations.
 const BATCH: usize = 8;
 /// A crossing counts if its first-order distance from the surface after projection is below this share of the step along the
 /// line: at poles and jumps the sign changes too. Half and double give the same figures on 34 random surfaces.

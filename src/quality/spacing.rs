@@ -5,11 +5,8 @@ use super::moments::Moments;
 use super::places::{CROWDED, Pairs};
 use super::points::MeasuredPoints;
 use crate::math::{key, unkey};
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 use serde::Serialize;
-
-/// Points whose pairs are found in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const SLICE: usize = 256;
 
 /// Histogram of the nearest-neighbour distances over the ideal ones: d_hex, or twice the particle's wanted radius where one is given.
 /// Bins are equal, and values outside fall into the outermost.
@@ -49,7 +46,7 @@ pub(super) async fn add_pairs(points: &MeasuredPoints, inner: &[bool], d_hex: f6
     let MeasuredPoints { tree, creases, .. } = points;
     let reach = (CROWDED * d_hex) as f32;
     let mut near = Vec::new();
-    for range in ranges(inner.len(), SLICE) {
+    for range in ranges(inner.len(), MEDIUM) {
         for i in range.filter(|&i| inner[i] && creases.is_first(i)) {
             let nearest = f64::from(points.rings.nearest[i]) / d_hex;
             if !nearest.is_finite() || !pairs.matters(nearest) {

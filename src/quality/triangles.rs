@@ -8,11 +8,8 @@ use super::figures::Angles;
 use super::moments::{Moments, share};
 use super::one_rings::OneRings;
 use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
-
-/// Points whose triangles are found in one slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const SLICE: usize = 64;
 
 /// The triangles of a set of points, as indices in tree order, counter-clockwise around the normal of the first corner.
 #[derive(Debug, Default)]
@@ -29,7 +26,7 @@ impl Triangles {
     /// Counts, for each triangle that a corner sees, how many of its corners do.
     pub(super) async fn new(rings: &OneRings) -> Self {
         let mut triangles = Self { unanimous: Vec::with_capacity(2 * rings.len()), ..Self::default() };
-        for range in ranges(rings.len(), SLICE) {
+        for range in ranges(rings.len(), MEDIUM) {
             range.for_each(|i| triangles.add(rings, i));
             pause().await;
         }

@@ -5,7 +5,7 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
-use crate::slices::{self, Work, pause, ranges};
+use crate::slices::{self, HEAVY, Work, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
@@ -113,12 +113,10 @@ impl MeasuringInput {
 async fn facing_another_sheet(particles: &Particles) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
-    /// Particles looked at in one slice of work.
-    const SLICE: usize = 64;
     let tree = Tree::in_slices(particles.position.iter().copied().zip(0..).collect()).await;
     let mut near = Vec::new();
     let mut count = 0;
-    for range in ranges(tree.len(), SLICE) {
+    for range in ranges(tree.len(), HEAVY) {
         // In tree order: near particles look at the same memory.
         for k in range {
             let i = tree.origin[k] as usize;

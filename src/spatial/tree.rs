@@ -2,14 +2,12 @@
 //! points are distributed nor on distant outliers.
 
 use crate::math::{key, sort_few, unkey};
-use crate::slices::{self, pause};
+use crate::slices::{self, LIGHT, pause};
 use glam::Vec3;
 
 /// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be
 /// gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
 const LEAF: usize = 16;
-/// Points whose nodes are made in one slice of work.
-const SLICE: usize = 1024;
 /// Depth of the traversal stack: a balanced tree over 2³² points has fewer than 33 levels.
 const STACK: usize = 64;
 
@@ -86,7 +84,7 @@ impl Tree {
                 // The median search leaves an unspecified order; sorting by index makes it our own.
                 sort_few(&mut items[range], |a, b| a.1 < b.1);
             }
-            if seen >= SLICE {
+            if seen >= LIGHT {
                 seen = 0;
                 pause().await;
             }

@@ -27,7 +27,7 @@ mod stars;
 
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
-use crate::slices::{self, pause, ranges};
+use crate::slices::{self, LIGHT, pause, ranges};
 use crate::spatial::tree::Tree;
 use crate::topology::Topology;
 use creases::Sheet;
@@ -36,9 +36,6 @@ use holes::Borders;
 use patch::Patch;
 use rim::Rim;
 use stars::Stars;
-
-/// Points that are looked at in one slice of work, where that takes some 10 ns each.
-const SLICE: usize = 2048;
 
 /// Options of the triangulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -272,7 +269,7 @@ impl JoinablePoints {
         rim.clear(&mut patch).await;
         holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
-        for range in ranges(self.tree.len(), SLICE) {
+        for range in ranges(self.tree.len(), LIGHT) {
             for v in range.start as u32..range.end as u32 {
                 if patch.around(v).next().is_none() && !rim.holds(v) {
                     insert::insert(&mut patch, &self.tree, v, &mut keys);

@@ -1,9 +1,8 @@
 //! The triangles on which stars agree, and changes to them in a few places.
 
-use super::SLICE;
 use super::stars::Stars;
 use crate::math::{sort_few, tangent_frame};
-use crate::slices::{pause, ranges};
+use crate::slices::{LIGHT, MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 
 /// No triangle, no list.
@@ -51,13 +50,13 @@ impl<'a> Patch<'a> {
             lists: Vec::new(),
             changed: Vec::new(),
         };
-        for range in ranges(stars.len(), SLICE / 4) {
+        for range in ranges(stars.len(), MEDIUM) {
             for i in range.start as u32..range.end as u32 {
                 patch.add_agreed(i);
             }
             pause().await;
         }
-        for range in ranges(stars.len(), SLICE) {
+        for range in ranges(stars.len(), LIGHT) {
             for i in range {
                 if patch.of_entry[stars.range(i)].contains(&NONE) {
                     patch.list(i as u32);

@@ -1,10 +1,9 @@
 //! The rim of a surface: edges along which it is known to end, such as the creases around a patch. Each of them becomes a side of a
 //! triangle on its left, and no triangle stays beyond.
 
-use super::SLICE;
 use super::patch::{Gap, NONE, Patch, quarter_turns};
 use crate::math::{sort_by_key, sort_pairs, tangent_frame};
-use crate::slices::pause;
+use crate::slices::{MEDIUM, pause};
 use glam::Vec3;
 
 /// Edges with the surface on their left, seen from outside, in the numbers of a tree.
@@ -81,7 +80,7 @@ impl Rim {
             if !patch.has_edge(a, b) {
                 clear_between(patch, a, b);
             }
-            if k % (SLICE / 16) == 0 {
+            if k.is_multiple_of(MEDIUM) {
                 pause().await;
             }
         }

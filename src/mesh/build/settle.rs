@@ -1,16 +1,16 @@
 //! Triangles on which only some of the stars agree: four points near a circle may each prefer another diagonal, since each sees
 //! the others in its own tangent plane. On a lattice they do so everywhere.
 
+use super::holes;
 use super::patch::Patch;
 use super::rim::Rim;
-use super::{SLICE, holes};
-use crate::slices::pause;
+use crate::slices::{MEDIUM, pause};
 
 /// Adds the triangles that fewer than three corners see, where their directed edges are free: those that two corners see before
 /// those that one sees, the ones with short edges first.
 pub(super) async fn settle(patch: &mut Patch<'_>) {
     for (k, dispute) in disputed(patch).await.into_iter().enumerate() {
-        if k % SLICE == SLICE - 1 {
+        if k % MEDIUM == MEDIUM - 1 {
             pause().await;
         }
         let [a, b, c] = [64, 32, 0].map(|shift| (dispute >> shift) as u32);
@@ -28,7 +28,7 @@ async fn disputed(patch: &Patch<'_>) -> Vec<u128> {
     let stars = patch.stars;
     let mut triangles = Vec::new();
     for (k, &i) in patch.changed().iter().enumerate() {
-        if k % SLICE == SLICE - 1 {
+        if k % MEDIUM == MEDIUM - 1 {
             pause().await;
         }
         let range = stars.range(i as usize);

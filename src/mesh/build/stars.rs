@@ -6,7 +6,7 @@
 
 use super::ball::{Ball, BallPoints};
 use crate::math::sort_few;
-use crate::slices::pause;
+use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{Leaf, Tree};
 use core::ops::Range;
 use glam::Vec3;
@@ -22,8 +22,6 @@ pub(super) const WIDEST: f32 = 2.0;
 /// Points nearer than this share of the ball's radius are one point. Half and double give the same meshes of 46 unrelaxed random
 /// runs.
 const TWIN: f32 = 1e-5;
-/// Points whose stars are made in one slice of work, at some 0.2 µs each.
-const SLICE: usize = 128;
 /// Marks, in [`Stars::entry`], that the triangle with this neighbour and the next one is narrow enough to be one of the mesh.
 const WEDGE: u32 = 1 << 31;
 
@@ -73,10 +71,10 @@ impl Stars {
         };
         stars.start.push(0);
         let mut scratch = Box::<StarBuffers>::default();
-        let mut pause_at = SLICE;
+        let mut pause_at = HEAVY;
         for Leaf { range, lo, hi } in tree.leaves() {
             if range.start >= pause_at {
-                pause_at = range.start + SLICE;
+                pause_at = range.start + HEAVY;
                 pause().await;
             }
             if lo == hi && range.len() > 1 {

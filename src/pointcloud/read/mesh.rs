@@ -5,12 +5,9 @@ use crate::field::model::{GivenMesh, GivenTopology};
 use crate::math::IndexTable;
 use crate::pointcloud::thin::find_or_add;
 use crate::pointcloud::{Cloud, NormalSource};
-use crate::slices::{pause, ranges};
+use crate::slices::{MEDIUM, pause, ranges};
 use crate::topology::Topology;
 use glam::DVec3;
-
-/// Faces summed in a slice of work. A slice is to take 10 to 50 µs ([`pause`]); its size changes no figure.
-const FACES: usize = 2000;
 
 /// Points on the faces of a mesh of large ones: five for each of 200 centres.
 const ON_FACES: f64 = 1_000.0;
@@ -91,7 +88,7 @@ impl FileMesh {
         const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
         let mut inside = Cloud { source: NormalSource::FromMesh, ..Cloud::default() };
         for (k, triangle) in self.triangles().enumerate() {
-            if k % FACES == 0 {
+            if k % MEDIUM == 0 {
                 pause().await;
             }
             let area = self.area_vector(triangle);
@@ -123,7 +120,7 @@ impl FileMesh {
         let (mut table, mut welded, mut triangles) = (IndexTable::default(), Vec::new(), Vec::new());
         let mut area = 0.0;
         for (k, triangle) in self.triangles().enumerate() {
-            if k % FACES == 0 {
+            if k % MEDIUM == 0 {
                 pause().await;
             }
             area += 0.5 * self.area_vector(triangle).length();
@@ -177,7 +174,7 @@ impl FileMesh {
         area.try_reserve_exact(self.position.len()).map_err(|_| ReadError::Memory)?;
         area.resize(self.position.len(), DVec3::ZERO);
         let mut from = 0;
-        for faces in ranges(self.faces.len(), FACES) {
+        for faces in ranges(self.faces.len(), MEDIUM) {
             tell(faces.start as f64 / self.faces.len() as f64);
             for &to in &self.faces[faces] {
                 let corners = &self.corners[from..to as usize];

@@ -17,14 +17,11 @@ pub use format::InputFormat;
 pub use mesh::FileMesh;
 
 use crate::field::model::MAX_FILE_BYTES;
-use crate::slices::pause;
+use crate::slices::{MEDIUM, pause};
 use input::Input;
 
 /// Maximum size of a file in bytes.
 pub const MAX_BYTES: u64 = MAX_FILE_BYTES as u64;
-
-/// Rows read in a slice of work, which so takes about a tenth of a millisecond natively.
-const ROWS: usize = 500;
 
 /// Why a file cannot be read. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -194,7 +191,7 @@ impl Reader {
         let mut read: usize = 0;
         while self.rows.row(&mut self.input, &mut self.mesh)? {
             read += 1;
-            if read.is_multiple_of(ROWS) {
+            if read.is_multiple_of(MEDIUM) {
                 tell(self.input.fraction());
                 pause().await;
             }
