@@ -101,9 +101,9 @@ impl Course {
                     continue;
                 }
                 if is_gaussian {
-                    witkin_heckbert::interact(&mut self.dynamics, (i, own), (j, other));
+                    witkin_heckbert::interact(&mut self.dynamics, particles, i, j);
                 } else {
-                    forces::interact(&mut self.dynamics, (i, own), (j, other));
+                    forces::interact(&mut self.dynamics, particles, i, j);
                 }
                 self.run.interactions += 1;
             }
