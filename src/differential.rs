@@ -11,6 +11,7 @@
 //! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range of the numbers (in
 //!   single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see [`Curvature::is_defined`].
 
+use crate::field::descent::BATCH;
 use crate::field::{Field, Jet};
 use crate::math::{LANES, Lanes, Real, Sym3, frame_of};
 use glam::{DVec3, Vec3};
@@ -72,9 +73,6 @@ pub fn exact_curvature(jet: &Jet) -> Curvature<f64, DVec3> {
     let [k1, k2, x, y, z] = principal(jet.gradient.to_array(), &jet.hessian);
     Curvature { k1, k2, direction: DVec3::new(x, y, z) }
 }
-
-/// Points in a call of the field: enough to hide the cost of a call, and few enough for the first-level cache.
-const BATCH: usize = 128;
 
 /// Computes the curvature at each of the `points`, of the level set of the field through it.
 ///

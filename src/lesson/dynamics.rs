@@ -3,9 +3,6 @@
 use crate::paper::Particle;
 use glam::DVec3;
 
-/// A particle moves by no more than this in an iteration, in radii.
-pub(super) const MAX_MOVE: f64 = 0.35;
-
 /// Sums of force and energy over the neighbours of a particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Dynamics {

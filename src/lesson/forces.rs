@@ -13,9 +13,9 @@
 //! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
-use super::dynamics::{Displacement, Dynamics, MAX_MOVE};
+use super::dynamics::{Displacement, Dynamics};
 use super::event::Log;
-use crate::paper::{OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
+use crate::paper::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
 
 /// A disc meets those that are not larger within this many radii.
 pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;

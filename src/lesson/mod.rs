@@ -51,7 +51,7 @@ pub use section::Iterate;
 pub use settings::{LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, Seeding};
 
 use crate::field::Field;
-use crate::math::{Bounds, SQRT_3};
+use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::paper::{ImplicitSurface, Particle, Push};
 use crate::sampler::FateCounts;
 use course::{Course, Moment, Setup};
@@ -476,7 +476,7 @@ fn check_count(
     settings: &LessonSettings,
 ) -> Result<(), LessonError> {
     let sizes = settings.rules().sizes;
-    let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
+    let cell = |radius: f64| HEXAGONAL_CELL * radius * radius;
     let expected: f64 = patches
         .iter()
         .filter_map(|patch| Some(patch.area / cell(sizes.radius_at(surface, patch.point)?)))

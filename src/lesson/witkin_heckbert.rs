@@ -12,8 +12,8 @@
 //!   is not small, a pair that has just divided could leave the surface, or get negative radii.
 
 use super::course::Setup;
-use super::dynamics::{Displacement, Dynamics, MAX_MOVE};
-use crate::paper::{ImplicitSurface, Particle};
+use super::dynamics::{Displacement, Dynamics};
+use crate::paper::{ImplicitSurface, MAX_MOVE, Particle};
 use glam::DVec3;
 
 /// Energies reach as far as this, in σ.

@@ -16,10 +16,10 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// 1.5 · 2²³: adding it to a number below 2²² in size rounds that number to an integer, which then stands in the
 /// low bits of the sum.
-const ROUNDER: f32 = 12_582_912.0;
+pub(crate) const ROUNDER: f32 = 12_582_912.0;
 
 /// 1.5 · 2⁵²: [`ROUNDER`] in double precision.
-const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
 
 /// 2²³: from here on every single-precision number is an integer.
 const ALL_INTEGERS: f32 = 8_388_608.0;

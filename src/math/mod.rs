@@ -16,7 +16,7 @@ pub use lanes::{LANES, Lanes};
 pub use real::Real;
 pub use sort::sort_few;
 pub(crate) use sort::{key, key_of, sort_by_key, sort_numbers, sort_pairs, unkey};
-pub(crate) use table::{IndexTable, hash};
+pub(crate) use table::{GOLDEN_RATIO, IndexTable, hash};
 
 use core::ops::RangeInclusive;
 use glam::{DVec3, Vec3};
@@ -57,6 +57,9 @@ pub fn grouped(count: usize) -> String {
 
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.
 pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// Area of the cell of a hexagonal lattice, whose spacing is 2r, over r².
+pub(crate) const HEXAGONAL_CELL: f64 = 2.0 * SQRT_3;
 
 /// An axis-aligned box, in the field's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! A hash table of indices into a column of items, which may be points, sides or whatever can be compared.
 
 /// Golden ratio times 2⁶⁴. Multiplication by it spreads keys that differ in a few bits over the top bits (Fibonacci hashing).
-const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
+pub(crate) const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
 /// Number of buckets of the first table.
 const FIRST: usize = 64;
 

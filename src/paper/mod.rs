@@ -52,7 +52,7 @@ pub use surface::{FieldSample, ImplicitSurface, Trial};
 pub(crate) use buckets::Buckets;
 pub(crate) use particle::is_same_sheet;
 pub(crate) use projection::Circle;
-pub(crate) use relaxation::{OVERLAP_REACH, OVERLAP_STEP, overlap};
+pub(crate) use relaxation::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, overlap};
 pub(crate) use surface::Landing;
 pub(crate) use uniform::{DIRECTIONS, REACH, RISE_SLACK, predicted_angle};
 

@@ -34,7 +34,7 @@ const STEP: f64 = 0.6;
 pub(crate) const OVERLAP_STEP: f64 = 0.33;
 
 /// A particle moves by no more than this in a step, in radii.
-const MAX_MOVE: f64 = 0.35;
+pub(crate) const MAX_MOVE: f64 = 0.35;
 
 /// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from each other.
 fn same_sheet_weight(cosine: f64) -> f64 {

@@ -16,13 +16,13 @@ use super::particle::{TangentFrame, is_same_sheet};
 use super::projection::Circle;
 use super::rules::{Matched, SearchStart};
 use super::surface::Landing;
-use crate::math::frame_of;
+use crate::math::{SQRT_3, frame_of};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
 /// Directions of the six children in the frame (V̂⁰, N̂ × V̂⁰): §4.2, (cos iπ/3, sin iπ/3).
 pub(crate) const DIRECTIONS: [[f64; 2]; 6] = {
-    const SIN_60: f64 = 0.866_025_403_784_438_6;
+    const SIN_60: f64 = 0.5 * SQRT_3;
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
 };
 

@@ -11,7 +11,7 @@ use crate::slices::complete;
 use glam::{DVec2, DVec3};
 
 /// Largest 16-bit integer.
-const STEPS: f64 = 65_535.0;
+const STEPS: f64 = u16::MAX as f64;
 /// Number of floats before the points.
 const HEAD: usize = 4;
 /// Number of integers per point.

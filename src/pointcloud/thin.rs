@@ -21,9 +21,6 @@ const MIN_DISTANCE_SHARE: f64 = 1e-4;
 /// random clouds.
 const FLAT_SHARE: f64 = 1e-5;
 
-/// Points that a column has room for at first: 24 kB of positions. It grows by half.
-const FIRST_POINTS: usize = 1024;
-
 /// Index in `points` of the point equal to `p`, or `fresh` if there is none.
 ///
 /// In the latter case `p` must be stored at `fresh` before the next call. `points` must be the same column in every call. Returns
@@ -33,14 +30,23 @@ fn index_of(table: &mut IndexTable, p: DVec3, fresh: usize, points: &[DVec3]) ->
     table.find_or_add(hash(p.to_array().map(|c| (c + 0.0).to_bits())), fresh, |k| points[k] == p)
 }
 
+/// Appends to a column, whose capacity grows by half; `None` if there is not enough memory, where [`Vec::push`] would abort.
+pub(super) fn push<T>(column: &mut Vec<T>, item: T) -> Option<()> {
+    /// Initial capacity: 24 kB of positions, from which growth by half reaches the points of a file of 50 MB in some twenty
+    /// steps.
+    const FIRST: usize = 1024;
+    if column.len() == column.capacity() {
+        column.try_reserve_exact((column.len() / 2).max(FIRST)).ok()?;
+    }
+    column.push(item);
+    Some(())
+}
+
 /// Index in `points` of the point equal to `p`, which is appended if there is none; see [`index_of`].
 pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
-    if points.len() == points.capacity() {
-        points.try_reserve_exact((points.len() / 2).max(FIRST_POINTS)).ok()?;
-    }
     let index = index_of(table, p, points.len(), points)?;
     if index as usize == points.len() {
-        points.push(p);
+        push(points, p)?;
     }
     Some(index)
 }

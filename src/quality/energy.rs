@@ -4,9 +4,10 @@ use super::points::MeasuredPoints;
 use super::sizes::WantedRadii;
 use crate::math::functions::exp;
 use crate::slices::{MEDIUM, pause, ranges};
+use core::f64::consts::E;
 
 /// Energy of six neighbours at the ideal distance: 6 exp(−2).
-const SIX: f32 = 0.812_011_7;
+const SIX: f32 = (6.0 / (E * E)) as f32;
 
 /// Returns the energy of each point, Σ exp(−2 s²) over its natural neighbours, over that of six at the ideal distance, where s = 1.
 ///

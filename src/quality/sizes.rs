@@ -3,11 +3,9 @@
 use super::moments::Moments;
 use super::places::Pairs;
 use super::points::MeasuredPoints;
-use crate::math::SQRT_3;
+use crate::math::{HEXAGONAL_CELL, SQRT_3};
 
-/// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
-const CELL_AREA: f64 = 2.0 * SQRT_3;
-/// Radius of a hole in that lattice: the circumradius of a triangle of side 2.
+/// Radius of a hole in a hexagonal lattice of radius 1: the circumradius of a triangle of side 2.
 const HOLE: f64 = 2.0 / SQRT_3;
 
 /// The wanted radii, in tree order; NaN for a point without one.
@@ -24,7 +22,7 @@ impl WantedRadii {
         let of = |&i: &u32| radii.get(i as usize).map_or(f64::NAN, |&r| f64::from(r));
         let radius: Vec<f64> = points.tree.origin.iter().map(of).collect();
         let once = (0..radius.len()).filter(|&i| points.creases.is_first(i)).map(|i| radius[i]);
-        let cells: f64 = once.filter(|r| r.is_finite()).map(|r| CELL_AREA * r * r).sum();
+        let cells: f64 = once.filter(|r| r.is_finite()).map(|r| HEXAGONAL_CELL * r * r).sum();
         Self { radius, hole: HOLE * (area / cells).sqrt() }
     }
 

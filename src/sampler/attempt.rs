@@ -1,13 +1,13 @@
 //! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
 
-use crate::math::{Bounds, sort_numbers};
+use crate::math::{Bounds, HEXAGONAL_CELL, sort_numbers};
 use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine::{self, Refusal, SurfaceFacts};
 use crate::sampler::settings::{Settings, SizeMode};
-use crate::sampler::sizing::{CELL_AREA, Sizing};
+use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make it more
@@ -139,7 +139,7 @@ impl Attempt {
 
     /// The number of particles of radius r that are expected, times r².
     fn count_times_radius_sq(&self) -> f64 {
-        self.area * self.packing / CELL_AREA
+        self.area * self.packing / HEXAGONAL_CELL
     }
 
     /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it,
@@ -236,7 +236,7 @@ impl Attempt {
     /// Takes the radius from the radius field, if there is one.
     fn follow_sizing(&mut self) {
         let Some(sizing) = &self.sizing else { return };
-        let radius = (self.area / (CELL_AREA * sizing.predicted_count())).sqrt();
+        let radius = (self.area / (HEXAGONAL_CELL * sizing.predicted_count())).sqrt();
         // There is none where there is no surface.
         if radius > 0.0 && radius.is_finite() {
             self.radius = radius;

@@ -10,7 +10,8 @@
 pub(crate) mod chains;
 pub(crate) mod tree;
 
-use crate::math::{LANES, Lanes, push_gently};
+use crate::math::functions::ROUNDER;
+use crate::math::{GOLDEN_RATIO, LANES, Lanes, push_gently};
 use glam::{Vec3, Vec4};
 
 /// Marks that there is no block.
@@ -21,8 +22,6 @@ const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
 /// Mean number of points in a block of eight for points on a surface, whose last blocks in each cell are partly empty.
 /// It is less than the 5.5 measured with the cell side that the sampler uses.
 const POINTS_PER_BLOCK: usize = 5;
-/// The golden ratio in 64 bits: multiplication by it spreads consecutive keys well over the top bits.
-const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
 /// Key of an empty table entry. No brick has it, because keys have 63 bits.
 const EMPTY: u64 = u64::MAX;
 
@@ -343,11 +342,9 @@ impl CellGrid {
 
 /// The integer nearest to `x`, offset so that it is not negative: non-decreasing in `x`.
 fn coordinate(x: f32) -> u32 {
-    // Added to 3 · 2²², a number is rounded to an integer that stands in the low bits of the sum: cheaper than a
-    // conversion, which saturates. Cell sides are far above the spacing of the coordinates, so 22 bits suffice.
-    const INTEGER: f32 = 12_582_912.0;
+    // Cheaper than a conversion, which saturates. Cell sides are far above the spacing of the coordinates, so 22 bits suffice.
     const CENTRE: u32 = 1 << (COORDINATE_BITS - 1);
-    (x + INTEGER).to_bits().wrapping_sub(INTEGER.to_bits()).wrapping_add(CENTRE) & COORDINATE_MASK as u32
+    (x + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits()).wrapping_add(CENTRE) & COORDINATE_MASK as u32
 }
 
 /// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower and the upper half.

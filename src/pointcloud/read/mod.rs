@@ -16,6 +16,7 @@ mod xyz;
 pub use format::InputFormat;
 pub use mesh::FileMesh;
 
+use super::thin;
 use crate::field::model::MAX_FILE_BYTES;
 use crate::slices::{MEDIUM, pause};
 use input::Input;
@@ -123,16 +124,9 @@ pub fn check_size(bytes: u64) -> Result<(), ReadError> {
     }
 }
 
-/// Appends to a column, whose capacity grows by half. Unlike [`Vec::push`] it does not abort if memory runs out.
+/// Appends to a column.
 fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
-    /// Initial capacity: 24 kB of positions, from which growth by half reaches the points of a file of 50 MB in some twenty
-    /// steps.
-    const FIRST: usize = 1024;
-    if column.len() == column.capacity() {
-        column.try_reserve_exact((column.len() / 2).max(FIRST)).map_err(|_| ReadError::Memory)?;
-    }
-    column.push(item);
-    Ok(())
+    thin::push(column, item).ok_or(ReadError::Memory)
 }
 
 /// Reader of the rows of one format.

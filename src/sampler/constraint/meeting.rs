@@ -9,13 +9,14 @@ use glam::DVec3;
 const STEPS: u32 = 12;
 /// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding.
 const AT_REST: f64 = 1e-9;
-/// Sine of the angle between two branches from which on they make a crease: one degree.
+/// Sine of the angle between two branches from which on they make a crease: one degree. Half and double give the same particles on
+/// 24 random solids.
 pub(super) const SHARP: f64 = 0.0175;
 /// Sine of that angle down to which a crease is followed, where it fades out. At [`ASIDE`] the angle then still outweighs the bend of a
 /// branch, which is half of `ASIDE` squared where the radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by [`FADED`] times as much the branches
-/// differ there, which is far above rounding.
+/// differ there, which is far above rounding. Half and double change the particles of 4 of 24 random solids, but not their number.
 const ASIDE: f64 = 1e-4;
 
 /// A point where two patches meet.

@@ -34,7 +34,8 @@ use meeting::{Meeting, SHARP};
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
 const CELL: f64 = 1.0 / 128.0;
-/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed.
+/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. Half and double
+/// give the same particles on 24 random solids.
 const ONE_CORNER: f64 = 1e-3;
 /// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
 /// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before.

@@ -24,7 +24,8 @@ const REACH: f32 = 2.5;
 const SCANNED: usize = 8;
 /// Units of work that a witness counts for: a few proofs take as long as some sixty particles.
 const UNITS: u32 = 64;
-/// Components that are named, and witnesses left open, after which the others are not looked at and count as open.
+/// Components that are named, and witnesses left open, after which the others are not looked at and count as open. Half and double
+/// give the same on 12 random surfaces of many components.
 const MOST_NAMED: usize = 256;
 /// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0: some four thousand
 /// times its last digit, as many as the longest formula has operations.

@@ -83,7 +83,7 @@ const BATCH: usize = 32;
 /// Units of work that a cell counts for: on long formulas it takes as long as several particles.
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side: the size of the smallest cell.
-const MARGIN: f64 = 1.0 / 65_536.0;
+const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;
 /// A taller cell reaches this many times as far as the slopes of the cell itself require: half or twice as far takes 1.00 times the
 /// cells.
 const RISE_ROOM: f64 = 2.0;

@@ -7,6 +7,7 @@ mod uniform;
 pub(crate) use level::{FrontContext, FrontSetup, LevelFront};
 pub(crate) use uniform::gaps::widest_gap;
 
+use crate::math::SQRT_3;
 use crate::sampler::front::adaptive::AdaptiveFront;
 use crate::sampler::front::uniform::UniformFront;
 use crate::sampler::settings::Sampling;
@@ -19,7 +20,8 @@ pub(crate) const UNCOVERED: f32 = 2.0;
 /// it the radius does not resolve the curvature.
 const MAX_DIP: f32 = 0.9;
 
-const SIN_60: f32 = 0.866_025_4;
+/// Sine of 60°.
+const SIN_60: f32 = 0.5 * SQRT_3 as f32;
 
 /// The fronts of both kinds, of which one works. The other one keeps its memory.
 #[derive(Clone, Default)]

@@ -10,7 +10,7 @@ mod laws;
 pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
 
 use crate::differential::{Curvature, curvatures};
-use crate::math::{Bounds, SQRT_3};
+use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
 use crate::sampler::settings::Settings;
@@ -24,8 +24,6 @@ const MAX_ROUNDS: u32 = 6;
 /// Relative error at which a predicted count counts as met; the prediction itself is not more accurate. Half of it gives the same
 /// radii on 22 random surfaces, twice as much others on 3.
 const PREDICTION_TOLERANCE: f64 = 2e-3;
-/// Area of the hexagonal Voronoi cell of a particle over r².
-pub(crate) const CELL_AREA: f64 = 2.0 * SQRT_3;
 
 /// The radius field of a run.
 #[derive(Clone, Debug)]
@@ -151,7 +149,8 @@ impl Sizing {
         (self.predicted, self.smallest, self.largest) = (0.0, f32::INFINITY, 0.0);
         for sample in &self.samples {
             let radius = self.law.radius(&sample.curvature).min(self.envelope.at(sample.position));
-            self.predicted += f64::from(sample.weight) / (CELL_AREA * f64::from(radius) * f64::from(radius));
+            self.predicted +=
+                f64::from(sample.weight) / (HEXAGONAL_CELL * f64::from(radius) * f64::from(radius));
             self.smallest = self.smallest.min(radius);
             self.largest = self.largest.max(radius);
         }

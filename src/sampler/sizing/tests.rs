@@ -26,7 +26,7 @@ fn a_sphere_has_one_radius_and_the_count_of_its_area() {
         let sizing = sizing_of(sphere, &settings);
         assert!(sizing.largest() / sizing.smallest() - 1.0 < 1e-3, "{radius_law:?}");
         let radius = f64::from(sizing.smallest());
-        let exact = 4.0 * core::f64::consts::PI / (CELL_AREA * radius * radius);
+        let exact = 4.0 * core::f64::consts::PI / (HEXAGONAL_CELL * radius * radius);
         assert!((sizing.predicted_count() / exact - 1.0).abs() < 0.02, "{radius_law:?}");
     }
 }

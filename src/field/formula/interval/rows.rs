@@ -5,6 +5,7 @@
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use super::range::{Range, down, up};
 use crate::math::Interval;
+use crate::math::functions::ROUNDER_F64;
 use crate::math::interval::product;
 
 /// Number of boxes in a row.
@@ -196,14 +197,12 @@ const TRUSTED_ANGLE: f64 = 1e5;
 /// The nearest multiple of π/2 is subtracted in two parts (W. J. Cody & W. Waite, "Software Manual for the Elementary
 /// Functions", 1980). The Taylor series follows; its first omitted terms are below 10⁻¹⁷ for |r| ≤ π/4.
 fn sine_cosine(x: f64) -> (f64, f64) {
-    // Adding 1.5 · 2⁵² rounds a number to an integer, which is then in the low bits of the sum.
-    const INTEGER: f64 = 6_755_399_441_055_744.0;
     // π/2 in two parts. The first has 33 bits, so that its product with a quadrant below 2²⁰ is exact.
     const HALF_PI_HEAD: f64 = 1.570_796_326_734_125_6;
     const HALF_PI_TAIL: f64 = 6.077_100_506_506_192e-11;
-    let shifted = x * core::f64::consts::FRAC_2_PI + INTEGER;
+    let shifted = x * core::f64::consts::FRAC_2_PI + ROUNDER_F64;
     let quadrant = shifted.to_bits();
-    let turns = shifted - INTEGER;
+    let turns = shifted - ROUNDER_F64;
     let r = (x - turns * HALF_PI_HEAD) - turns * HALF_PI_TAIL;
     let q = r * r;
     let mut sine = -1.0 / 1_307_674_368_000.0;
