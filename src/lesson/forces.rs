@@ -33,8 +33,11 @@ const CROWDED: f64 = {
 };
 
 /// "Compute the energy", "compute the velocity": the overlap of two discs pushes both. A pair is met from the larger one.
-pub(super) fn interact(dynamics: &mut [Dynamics], particles: &[Particle], i: usize, j: usize) {
-    let (own, other) = (&particles[i], &particles[j]);
+pub(super) fn interact(
+    dynamics: &mut [Dynamics],
+    (i, own): (usize, &Particle),
+    (j, other): (usize, &Particle),
+) {
     let is_met_here = other.radius < own.radius || other.radius == own.radius && j < i;
     if !is_met_here {
         return;

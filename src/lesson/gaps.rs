@@ -36,7 +36,7 @@ impl Course {
                 is_listed.then(|| flat * (near.distance / (flat.length() * 2.0 * r)))
             })
             .collect();
-        let centre = gap_centre(&plane);
+        let centre = widest_gap(&plane);
         run.seen.push(Event::Gap { particle: beside, width: centre.map(|centre| centre.length() * 2.0 * r) });
         let Some(centre) = centre else { return };
         if run.particles.len() >= run.rules.max_particles {
@@ -68,7 +68,7 @@ impl Course {
 }
 
 /// Centre of the widest empty circle through the origin and two of the points, if it is a gap.
-fn gap_centre(points: &[DVec2]) -> Option<DVec2> {
+fn widest_gap(points: &[DVec2]) -> Option<DVec2> {
     let mut widest = NARROWEST;
     let mut found = None;
     for (k, &a) in points.iter().enumerate() {

@@ -36,7 +36,7 @@ impl Lesson {
                 surface.sample(centre + right * x + up * y).value
             })
             .collect();
-        let node = |i: usize, j: usize| Node { at: [at(i), at(j)], value: values[j * (cells + 1) + i] };
+        let node = |i: usize, j: usize| ([at(i), at(j)], values[j * (cells + 1) + i]);
         let mut segments = Vec::new();
         for j in 0..cells {
             for i in 0..cells {
@@ -71,18 +71,11 @@ impl Lesson {
     }
 }
 
-/// A node of the grid.
-#[derive(Clone, Copy)]
-struct Node {
-    at: [f64; 2],
-    value: f64,
-}
-
 /// The zero of f between two nodes, if f changes its sign.
-fn crossing(a: Node, b: Node) -> Option<[f64; 2]> {
-    if !(a.value.is_finite() && b.value.is_finite()) || (a.value <= 0.0) == (b.value <= 0.0) {
+fn crossing((a, fa): ([f64; 2], f64), (b, fb): ([f64; 2], f64)) -> Option<[f64; 2]> {
+    if !(fa.is_finite() && fb.is_finite()) || (fa <= 0.0) == (fb <= 0.0) {
         return None;
     }
-    let t = a.value / (a.value - b.value);
-    Some([0, 1].map(|axis| a.at[axis] + t * (b.at[axis] - a.at[axis])))
+    let t = fa / (fa - fb);
+    Some([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])])
 }

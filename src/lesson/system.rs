@@ -101,9 +101,9 @@ impl Course {
                     continue;
                 }
                 if is_gaussian {
-                    witkin_heckbert::interact(&mut self.dynamics, particles, i, j);
+                    witkin_heckbert::interact(&mut self.dynamics, (i, own), (j, other));
                 } else {
-                    forces::interact(&mut self.dynamics, particles, i, j);
+                    forces::interact(&mut self.dynamics, (i, own), (j, other));
                 }
                 self.run.interactions += 1;
             }

@@ -62,9 +62,13 @@ fn largest(setup: &Setup) -> f64 {
 ///
 /// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source subtracts the two terms as printed; its
 /// erratum adds them. Every pair is met from both sides, each with its own σ.
-pub(super) fn interact(dynamics: &mut [Dynamics], particles: &[Particle], i: usize, j: usize) {
-    let offset = particles[i].p() - particles[j].p();
-    let sigma_sq = particles[i].radius * particles[i].radius;
+pub(super) fn interact(
+    dynamics: &mut [Dynamics],
+    (i, own): (usize, &Particle),
+    (j, other): (usize, &Particle),
+) {
+    let offset = own.p() - other.p();
+    let sigma_sq = own.radius * own.radius;
     let energy = ALPHA * libm::exp(-offset.length_squared() / (2.0 * sigma_sq));
     dynamics[i].energy += energy;
     dynamics[i].moment += offset.length_squared() * energy;

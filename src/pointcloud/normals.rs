@@ -162,14 +162,14 @@ struct NeighbourGraph {
 }
 
 /// The plane through a point and its nearest neighbours.
-struct FittedPlane {
+struct Plane {
     mean: DVec3,
     normal: DVec3,
     /// Ratio of the variance across the plane and the smaller one along it.
     variation: f64,
 }
 
-impl FittedPlane {
+impl Plane {
     /// The plane through point `i` and `count` neighbours, which are left in `nearest`.
     fn around(local: &[DVec3], tree: &Tree, i: usize, count: usize, nearest: &mut Vec<u32>) -> Self {
         let p = local[i];
@@ -197,7 +197,7 @@ async fn flattest(local: &[DVec3], tree: &Tree) -> usize {
         let count = (NEIGHBOURS << doublings).min(local.len().saturating_sub(1));
         let (mut variation, mut kurtosis) = (0.0, 0.0);
         for i in (0..local.len()).step_by(step) {
-            let plane = FittedPlane::around(local, tree, i, count, &mut nearest);
+            let plane = Plane::around(local, tree, i, count, &mut nearest);
             variation += plane.variation;
             let across = nearest.iter().map(|&j| (local[j as usize] - plane.mean).dot(plane.normal));
             let [square, fourth] =
@@ -230,7 +230,7 @@ impl NeighbourGraph {
         for range in ranges(points.len(), HEAVY) {
             tell(range.start as f64 / points.len() as f64);
             for i in range {
-                let plane = FittedPlane::around(&local, &tree, i, wide, &mut nearest);
+                let plane = Plane::around(&local, &tree, i, wide, &mut nearest);
                 neighbours.extend(nearest.iter().take(per_point));
                 normal.push(plane.normal);
                 flat.push(local[i] - plane.normal * (local[i] - plane.mean).dot(plane.normal));

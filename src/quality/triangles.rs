@@ -80,7 +80,7 @@ impl Triangles {
         for &i in self.majority.iter().chain(&self.single).flatten() {
             hot[i as usize] = true;
         }
-        let between = |&[a, b]: &[u32; 2]| hot[a as usize] && hot[b as usize];
+        let between = |&(a, b): &(u32, u32)| hot[a as usize] && hot[b as usize];
         let mut taken = Sides::default();
         self.unanimous
             .iter()
@@ -89,7 +89,7 @@ impl Triangles {
             .for_each(|side| taken.insert(side));
         let longest = |triangle: [u32; 3]| {
             sides(triangle)
-                .map(|[a, b]| (position[a as usize] - position[b as usize]).length_squared())
+                .map(|(a, b)| (position[a as usize] - position[b as usize]).length_squared())
                 .into_iter()
                 .fold(0.0, f32::max)
         };
@@ -100,7 +100,7 @@ impl Triangles {
             for next in order {
                 let triangle = disputed[unkey(next).1 as usize];
                 let sides = sides(triangle);
-                let open = sides.iter().filter(|&&[a, b]| taken.contains([b, a])).count();
+                let open = sides.iter().filter(|&&(a, b)| taken.contains((b, a))).count();
                 if open >= needed && !sides.iter().any(|&side| taken.contains(side)) {
                     sides.into_iter().for_each(|side| taken.insert(side));
                     mesh.push(triangle);
@@ -114,20 +114,20 @@ impl Triangles {
 /// A set of directed edges.
 #[derive(Default)]
 struct Sides {
-    all: Vec<[u32; 2]>,
+    all: Vec<(u32, u32)>,
     table: IndexTable,
 }
 
 impl Sides {
-    fn hash([a, b]: [u32; 2]) -> u32 {
+    fn hash((a, b): (u32, u32)) -> u32 {
         hash([u64::from(a) << 32 | u64::from(b)])
     }
 
-    fn contains(&self, side: [u32; 2]) -> bool {
+    fn contains(&self, side: (u32, u32)) -> bool {
         self.table.find(Self::hash(side), |k| self.all[k] == side).is_some()
     }
 
-    fn insert(&mut self, side: [u32; 2]) {
+    fn insert(&mut self, side: (u32, u32)) {
         let fresh = self.all.len();
         self.all.push(side);
         self.table.find_or_add(Self::hash(side), fresh, |k| self.all[k] == side);
@@ -135,8 +135,8 @@ impl Sides {
 }
 
 /// Returns the directed edges of a triangle.
-fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
+fn sides([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
+    [(a, b), (b, c), (c, a)]
 }
 
 /// Returns twice the area vector of a triangle.

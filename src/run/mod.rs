@@ -462,7 +462,7 @@ impl<F: Field> Run<F> {
     }
 
     /// Takes the creases of the surface for the next start, and the field in which they were found.
-    pub(crate) fn know_creases(&mut self, field: F, creases: Creases) {
+    pub(crate) fn know_creases(&mut self, (field, creases): (F, Creases)) {
         self.replace_field(field);
         self.creases = Some(creases);
     }

@@ -64,7 +64,9 @@ pub(super) struct Attempt {
 pub(super) struct Refining {
     /// Times that the radius of the front is halved, after which it is that of the attempt.
     pub(super) halvings: u32,
-    /// The radius field of the refined particles, where sizes differ: the front has one size.
+    /// Whether the surface has creases.
+    pub(super) is_creased: bool,
+    /// The radius field of the refined particles, where sizes differ: the front has one size, but where there are creases.
     pub(super) sizing: Option<Sizing>,
     /// The particles on creases at every level, where there are creases.
     pub(super) ladder: Option<CreaseLadder>,
@@ -150,6 +152,7 @@ impl Attempt {
         settings: &Settings,
         points: &[Vec3],
         mut curvature: Vec<f64>,
+        is_creased: bool,
     ) -> Option<Refusal> {
         let count = self.predicted_count(settings);
         let radius = (self.count_times_radius_sq() / count).sqrt();
@@ -162,9 +165,6 @@ impl Attempt {
         let is_mostly_smooth =
             || largest.is_finite() && halvings_at(curvature[curvature.len() / 2]).is_some();
         let halvings = halvings_at(largest).or_else(|| is_mostly_smooth().then_some(0));
-        if count > f64::from(settings.max_particles) {
-            return Some(Refusal::Full);
-        }
         // There is no radius where there is no surface.
         let expected = if radius > 0.0 { count } else { 0.0 };
         if refine::halvings(0.0, expected).is_none() {
@@ -173,6 +173,7 @@ impl Attempt {
         let Some(halvings) = halvings else {
             return Some(Refusal::Bent { at: bend.into() });
         };
+        let unrefined = self.clone();
         (self.radius, self.is_pilot) = (radius, false);
         let mut sizing = self.sizing.take();
         if let Some(sizing) = &mut sizing {
@@ -180,8 +181,31 @@ impl Attempt {
         }
         // Why no coarser front is tried, should this one fail.
         let failure = (halvings == 0).then_some(Refusal::Bent { at: bend.into() });
-        self.refining = Some(Refining { halvings, sizing, ladder: None, bend, failures: 0, failure });
+        self.refining =
+            Some(Refining { halvings, is_creased, sizing, ladder: None, bend, failures: 0, failure });
+        self.grade_front(settings);
+        if self.predicted_count(settings) > f64::from(settings.max_particles) {
+            *self = unrefined;
+            return Some(Refusal::Full);
+        }
         None
+    }
+
+    /// Gives the front of a refinement on a surface with creases radii that differ, where those of the wanted particles do: it decides
+    /// how many particles lie on each crease. The radii of every level are those of the front over a power of two, and their slope is
+    /// as much smaller.
+    pub(super) fn grade_front(&mut self, settings: &Settings) {
+        let share = self.front_radius() / self.radius;
+        let Some(refining) = self.refining.as_mut().filter(|refining| refining.is_creased) else { return };
+        let Some(sizing) = refining.sizing.take() else { return };
+        let mut wanted = sizing.graded(settings.grading / share, 1.0);
+        if settings.size_mode == SizeMode::Count {
+            wanted.scale_to(f64::from(settings.count) / self.packing);
+        }
+        refining.sizing = Some(wanted.clone());
+        self.sizing = Some(wanted);
+        self.follow_sizing();
+        self.sizing = self.sizing.take().map(|wanted| wanted.graded(settings.grading, share));
     }
 
     /// The target of the refinement of this attempt's front; none if the front is not refined.
@@ -212,7 +236,7 @@ impl Attempt {
     /// The first attempt at the front that stands because this one's was refused.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
         self.end_refinement();
-        Self::first(settings, self.area, diagonal, self.sizing.take().map(Sizing::unscaled))
+        Self::first(settings, self.area, diagonal, self.sizing.take().map(|sizing| sizing.unscaled(settings)))
     }
 
     /// Ends the refinement: the particles have the radii of the radius field, if there is one.

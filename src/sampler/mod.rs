@@ -339,12 +339,11 @@ impl Sampler {
                     *curvature = 0.0;
                 }
             }
-            let is_adaptive = settings.sampling == Sampling::Adaptive;
-            let crease = if is_adaptive { self.creases.first() } else { None };
-            self.counts.refusal = match (crease, self.creases.passed) {
-                (_, Some(at)) => Some(Refusal::Singular { at: at.as_vec3().into() }),
-                (Some(at), _) => Some(Refusal::Creased { at: at.into() }),
-                _ => self.attempt.refine(settings, &self.survey.position, curvature),
+            self.counts.refusal = match self.creases.passed {
+                Some(at) => Some(Refusal::Singular { at: at.as_vec3().into() }),
+                None => {
+                    self.attempt.refine(settings, &self.survey.position, curvature, self.creases.are_there())
+                }
             };
         }
         let predicted = self.attempt.predicted_count(settings);

@@ -117,6 +117,7 @@ impl Sampler {
 
     /// Empties the columns and prepares fronts of the present radius.
     fn begin_attempt(&mut self) -> PhaseState {
+        self.attempt.grade_front(&self.settings);
         self.output.moved = true;
         self.output.particles.clear();
         self.tools.neighbours.clear();
@@ -127,7 +128,9 @@ impl Sampler {
         let mut settings = self.settings;
         if self.attempt.refining.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
-            settings.sampling = Sampling::Uniform;
+            if self.attempt.sizing.is_none() {
+                settings.sampling = Sampling::Uniform;
+            }
         }
         self.tools.front.reset(&FrontSetup {
             settings: &settings,

@@ -237,9 +237,9 @@ impl Session {
         if self.run.field().formula().is_some() && !self.run.knows_creases() {
             let under_way = self.fitting.creases.take().filter(|(of, _)| *of == bounds);
             let search = under_way.unwrap_or_else(|| (bounds, self.run.find_creases()));
-            let (field, creases) = slices::advance(self.fitting.creases.insert(search).1.as_mut(), budget)?;
+            let found = slices::advance(self.fitting.creases.insert(search).1.as_mut(), budget)?;
             self.fitting.creases = None;
-            self.run.know_creases(field, creases);
+            self.run.know_creases(found);
         }
         (self.fitting.is_fitted, self.fitting.is_settled) = (is_fitted, true);
         Some(self.answer())

@@ -31,9 +31,9 @@ const TYPES: &str = r"import type {
 } from '../../engine/core-types.js';";
 
 /// The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
-#[wasm_bindgen(js_name = Lesson)]
+#[wasm_bindgen]
 #[derive(Default)]
-pub struct PageLesson {
+pub struct Lesson {
     run: Option<lesson::Lesson>,
 }
 
@@ -67,8 +67,8 @@ fn points(system: &[u8], pulls: &[Pull]) -> Result<Box<dyn Field>, Fault> {
     Ok(Box::new(Pointwise(field)))
 }
 
-#[wasm_bindgen(js_class = Lesson)]
-impl PageLesson {
+#[wasm_bindgen]
+impl Lesson {
     /// A lesson without a run.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {

@@ -12,7 +12,7 @@ pub use core::Core;
 #[cfg(feature = "lesson")]
 mod lesson;
 #[cfg(feature = "lesson")]
-pub use lesson::PageLesson;
+pub use lesson::Lesson;
 
 #[cfg(any(feature = "core", feature = "points", feature = "lesson"))]
 mod values;
@@ -25,4 +25,4 @@ pub use points::Points;
 #[cfg(feature = "render")]
 mod render;
 #[cfg(feature = "render")]
-pub use render::PageRenderer;
+pub use render::Renderer;

@@ -5,7 +5,7 @@
 
 use crate::render::style::{ClipBoxStyle, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
-use crate::render::{Callbacks, Columns, DrawOutcome, Renderer};
+use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -27,9 +27,9 @@ extern "C" {
 }
 
 /// Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new canvas.
-#[wasm_bindgen(js_name = Renderer)]
-pub struct PageRenderer {
-    inner: Rc<RefCell<Renderer>>,
+#[wasm_bindgen]
+pub struct Renderer {
+    inner: Rc<RefCell<Inner>>,
     scratch: RefCell<Scratch>,
     canvas: HtmlCanvasElement,
     on_context_lost: Closure<dyn FnMut(web_sys::Event)>,
@@ -52,8 +52,8 @@ impl Scratch {
     }
 }
 
-#[wasm_bindgen(js_class = Renderer)]
-impl PageRenderer {
+#[wasm_bindgen]
+impl Renderer {
     /// Opens a graphics device on `canvas`, which must have no context of another kind yet.
     ///
     /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or "destroyed".
@@ -67,7 +67,7 @@ impl PageRenderer {
         canvas: HtmlCanvasElement,
         #[wasm_bindgen(unchecked_param_type = "(reason: string, message: string) => void")] on_lost: Function,
         #[wasm_bindgen(unchecked_param_type = "(message: string) => void")] on_error: Function,
-    ) -> Result<PageRenderer, JsError> {
+    ) -> Result<Renderer, JsError> {
         console_error_panic_hook::set_once();
         let callbacks = Callbacks {
             on_lost: Arc::new(move |reason, message| {
@@ -76,7 +76,7 @@ impl PageRenderer {
             on_error: Arc::new(move |message| call_later(&on_error, Array::of1(&message.into()))),
         };
         let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
-        let inner = Rc::new(RefCell::new(Renderer::new(target, callbacks).await?));
+        let inner = Rc::new(RefCell::new(Inner::new(target, callbacks).await?));
         // wgpu hears nothing of a lost WebGL context. The default action would forbid restoring it.
         let weak = Rc::downgrade(&inner);
         let on_context_lost = Closure::new(move |event: web_sys::Event| {
@@ -105,7 +105,7 @@ impl PageRenderer {
 
     /// Largest number of particles that `write` takes.
     pub fn max_particles(&self) -> u32 {
-        Renderer::MAX_PARTICLES
+        Inner::MAX_PARTICLES
     }
 
     /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
@@ -176,7 +176,7 @@ impl PageRenderer {
 
     /// Largest number of faces that `write_faces` takes.
     pub fn max_faces(&self) -> u32 {
-        Renderer::MAX_FACES
+        Inner::MAX_FACES
     }
 
     /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
@@ -337,7 +337,7 @@ impl PageRenderer {
     }
 }
 
-impl Drop for PageRenderer {
+impl Drop for Renderer {
     fn drop(&mut self) {
         // Fails only for a listener that is not there.
         let _ = self.canvas.remove_event_listener_with_callback(
@@ -392,16 +392,16 @@ fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), Js
         return Err(JsError::new(&format!("{corners} corners and {} marks are no faces", marks.length())));
     }
     let end = u64::from(first) + u64::from(corners / 3);
-    if end > u64::from(Renderer::MAX_FACES) {
-        return Err(JsError::new(&format!("{end} faces, at most {} are drawn", Renderer::MAX_FACES)));
+    if end > u64::from(Inner::MAX_FACES) {
+        return Err(JsError::new(&format!("{end} faces, at most {} are drawn", Inner::MAX_FACES)));
     }
     Ok(())
 }
 
 fn check_end(first: u32, count: u32) -> Result<(), JsError> {
     let end = u64::from(first) + u64::from(count);
-    if end > u64::from(Renderer::MAX_PARTICLES) {
-        return Err(JsError::new(&format!("{end} particles, at most {} are drawn", Renderer::MAX_PARTICLES)));
+    if end > u64::from(Inner::MAX_PARTICLES) {
+        return Err(JsError::new(&format!("{end} particles, at most {} are drawn", Inner::MAX_PARTICLES)));
     }
     Ok(())
 }

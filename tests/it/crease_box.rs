@@ -2,6 +2,7 @@
 //! surface of the Euler number that a fine grid of tetrahedra finds.
 
 use glam::DVec3;
+use marching_particles::Sampling::{Adaptive, Uniform};
 use marching_particles::{Bounds, Field, Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -117,7 +118,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
 fn random_roofs_are_refined_up_to_the_box() {
     const ROOFS: u64 = 14;
     /// One of them goes through a corner of the box.
-    const MOST_REFUSED: usize = 2;
+    const MOST_REFUSED: usize = 3;
     let bounds = Bounds { min: [-1.0, -0.875, -1.0], max: [1.0, 1.0, 1.125] };
     let (mut refined, mut told, mut refused) = (0, 0, Vec::new());
     for seed in 0..ROOFS {
@@ -127,11 +128,12 @@ fn random_roofs_are_refined_up_to_the_box() {
         let [euler, other] = [40, 56].map(|cells| euler_on_grid(&rounded, &bounds, cells));
         let euler = (euler == other).then_some(euler);
         told += usize::from(euler.is_some());
-        for count in [2_000, 8_000] {
-            let settings =
-                settings!(method: Method::Refined, bounds: Some(bounds); ..Settings::with_count(count));
+        for (count, sampling) in [(2_000, Uniform), (8_000, Uniform), (8_000, Adaptive)] {
+            let settings = settings!(
+                method: Method::Refined, sampling: sampling, bounds: Some(bounds); ..Settings::with_count(count)
+            );
             let Ok(sample) = sample(field.clone(), &settings) else { continue };
-            let what = format!("{text}, {count} particles");
+            let what = format!("{text}, {count} particles, {sampling:?}");
             match sample.report().growth.refined_levels {
                 Some(_) => {
                     refined += usize::from(check(&sample, &bounds, euler, &what) > 0);

@@ -12,7 +12,7 @@
 use super::graph::{Graph, Id, Node};
 use super::{Formula, Parameter, scalar};
 use crate::field::Field;
-use crate::math::newton::{self, NewtonLimits, step_to_surface};
+use crate::math::newton::{self, Limits, step_to_surface};
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -276,7 +276,7 @@ impl Formula {
     /// A point of the surface near a point, both in the coordinates of the formula; the point itself if none is found.
     fn place_near(&mut self, p: DVec3) -> DVec3 {
         let at_rest = NEAR * p.length().max(1.0);
-        let limits = NewtonLimits { at_rest, ..NewtonLimits::steps(MOST_PLACE_STEPS) };
+        let limits = Limits { at_rest, ..Limits::steps(MOST_PLACE_STEPS) };
         let origin = self.origin;
         let step_at = |place| Some((step_to_surface(self.value_and_gradient(place)), ()));
         newton::land(p - origin, limits, step_at).map_or(p, |(place, ())| origin + place)

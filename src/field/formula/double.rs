@@ -13,7 +13,7 @@ pub(super) fn value(f: f64, scale: Option<f64>) -> f32 {
 }
 
 /// f and ∇f in single precision or, with a scale s, those of arsinh(f/s); not finite where f is not.
-pub(super) fn gradient(f: f64, gradient: DVec3, scale: Option<f64>) -> (f32, Vec3) {
+pub(super) fn gradient((f, gradient): (f64, DVec3), scale: Option<f64>) -> (f32, Vec3) {
     // d/df arsinh(f/s) = 1/√(s² + f²)
     let size = scale.map_or(1.0, |scale| libm::hypot(scale, f));
     (value(f, scale), (gradient / size).as_vec3())
@@ -21,7 +21,7 @@ pub(super) fn gradient(f: f64, gradient: DVec3, scale: Option<f64>) -> (f32, Vec
 
 /// The second-order jet of f in single precision or, with a scale s, that of arsinh(f/s); not finite where f is not.
 pub(super) fn hessian(jet: &Jet, scale: Option<f64>) -> (f32, Vec3, Sym3<f32>) {
-    let (value, slope) = gradient(jet.value, jet.gradient, scale);
+    let (value, slope) = gradient((jet.value, jet.gradient), scale);
     let Some(scale) = scale else {
         return (value, slope, jet.hessian.map(|entry| entry as f32));
     };

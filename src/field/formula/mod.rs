@@ -574,12 +574,12 @@ impl Field for Formula {
         let compiled = self.branches.active(&mut self.compiled);
         if is_double {
             for (k, &p) in points.iter().enumerate() {
-                let (f, slope) = compiled.gradient(
+                let exact = compiled.gradient(
                     &self.values,
                     place(self.origin, p.as_dvec3()),
                     &mut self.scratch.doubles,
                 );
-                (value[k], gradient[k]) = double::gradient(f, slope, self.double);
+                (value[k], gradient[k]) = double::gradient(exact, self.double);
             }
             return;
         }

@@ -83,7 +83,7 @@ impl Stars {
             }
             let reach = BALL * (hi - lo).length();
             scratch.surroundings.gather(tree, normal, lo - reach, hi + reach);
-            range.for_each(|i| stars.add(tree, normal, tips, i, reach, &mut scratch));
+            range.for_each(|i| stars.add((tree, normal, tips), i, reach, &mut scratch));
         }
         stars
     }
@@ -100,9 +100,7 @@ impl Stars {
     /// Adds the star of point `i`, of a leaf whose surroundings reach as far as told.
     fn add(
         &mut self,
-        tree: &Tree,
-        normal: &[Vec3],
-        tips: &[u32],
+        (tree, normal, tips): (&Tree, &[Vec3], &[u32]),
         i: usize,
         reach: f32,
         scratch: &mut StarBuffers,

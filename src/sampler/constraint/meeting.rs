@@ -1,6 +1,6 @@
 //! Points where branches of f are zero together.
 
-use crate::math::newton::{self, NewtonLimits, step_to_corner, step_to_curve, step_to_surface};
+use crate::math::newton::{self, Limits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
@@ -30,8 +30,8 @@ pub(super) struct Meeting {
 }
 
 /// Limits of a search within `reach`.
-fn limits(reach: f64) -> NewtonLimits {
-    NewtonLimits { reach, at_rest: AT_REST * reach, ..NewtonLimits::steps(STEPS) }
+fn limits(reach: f64) -> Limits {
+    Limits { reach, at_rest: AT_REST * reach, ..Limits::steps(STEPS) }
 }
 
 /// Value and gradient of a branch at a point.

@@ -204,9 +204,4 @@ impl Creases {
         });
         ends.find(|(_, corner)| corner.is_none()).map(|(point, _)| point.as_vec3())
     }
-
-    /// A point of a crease, if there is one.
-    pub(super) fn first(&self) -> Option<Vec3> {
-        self.curves.first().map(|curve| curve.points[0].as_vec3())
-    }
 }

@@ -10,7 +10,6 @@
 use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target};
-use crate::differential::{Curvature, curvatures};
 use crate::math::{Bounds, Forest};
 use crate::mesh::build::{MeshOptions, triangulate};
 use crate::mesh::half_edge::NONE;
@@ -140,13 +139,13 @@ impl CoarseFronts {
         if let Some(ladder) = surface.ladder {
             return self.take_patches(probe, surface, particles, target, ladder);
         }
-        let &SurfaceFacts { ref bounds, sizing, failures, .. } = surface;
+        let &SurfaceFacts { ref bounds, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
         for part in &parts {
-            let refinement = Refinement::of_component(probe, surface, part, target)?;
+            let mut refinement = Refinement::of_component(probe, surface, part, target)?;
             let mut part = part.clone();
             part.keep_within(bounds);
             if self.are_several {
@@ -161,8 +160,7 @@ impl CoarseFronts {
                     self.candidates.push(candidate);
                 }
             }
-            let area = refinement.area();
-            let weight = area * sizing.map_or(1.0, |sizing| density(probe, sizing, &part.position));
+            let weight = refinement.weight(probe, surface.sizing);
             // A lone component hands its levels on by itself.
             let particles = if self.are_several { part } else { Particles::default() };
             self.components.push(AcceptedComponent { refinement, weight, particles });
@@ -214,8 +212,8 @@ impl CoarseFronts {
                 continue;
             }
             let front = FrontPart { particles: &part, triangles, patch: Some(patch) };
-            let refinement = Refinement::new(probe, surface, &front, target)?;
-            let weight = refinement.area();
+            let mut refinement = Refinement::new(probe, surface, &front, target)?;
+            let weight = refinement.weight(probe, surface.sizing);
             // Those are numbers in the ladder, and no rows.
             let mut numbers = mem::take(&mut part.twins);
             let place = part.keep_within(&surface.bounds);
@@ -300,17 +298,6 @@ fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts 
         own.twins.extend(particles.twins.get(i));
     }
     parts
-}
-
-/// Particles per area that the radius field asks for at these points, evenly spread over a component.
-fn density(probe: &mut Probe, sizing: &Sizing, points: &[Vec3]) -> f64 {
-    let mut curvature = vec![Curvature::default(); points.len()];
-    curvatures(probe.field, points, &mut curvature);
-    let cells = points.iter().zip(&curvature).map(|(&p, curvature)| {
-        let radius = f64::from(sizing.radius(p, curvature));
-        1.0 / (radius * radius)
-    });
-    cells.sum::<f64>() / points.len() as f64
 }
 
 /// The refinement of all components.
@@ -521,6 +508,11 @@ impl Joint {
             let first = &mut first[*twin as usize];
             *first = row.min(*first);
             *twin = *first;
+            let least = self.particles.radius[row as usize].min(self.particles.radius[*first as usize]);
+            self.particles.radius[*first as usize] = least;
+        }
+        for (row, &twin) in self.particles.twins.iter().enumerate() {
+            self.particles.radius[row] = self.particles.radius[twin as usize];
         }
         for (pair, sides) in ladder.pairs(self.to_come) {
             self.particles.segments.push(pair.map(|number| first[number as usize]));

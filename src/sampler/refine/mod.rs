@@ -41,6 +41,7 @@ use crate::math::SQRT_3;
 use crate::mesh::half_edge::{NONE, Stage, Subdivision};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
+use crate::sampler::sizing::Sizing;
 use coarse::FrontPart;
 use net::{BLOCK, Ground, MovedBlock, Net, Springs};
 use recipe::{LevelFacts, Pass, Recipe, TUNING};
@@ -232,11 +233,28 @@ impl Refinement {
         refinement
     }
 
+    /// Share of the particles that is due to it: its area, or ∫ dA / r² where the radius r differs, in units that all components share.
+    fn weight(&mut self, probe: &mut Probe, sizing: Option<&Sizing>) -> f64 {
+        let Some(sizing) = sizing else { return self.area() };
+        let mut ground = Ground { probe, block: &mut self.memory.block };
+        let all = 0..self.net.position.len() as u32;
+        self.net.find_sizes(&mut ground, sizing, self.target.radius, true, all);
+        let cells = self.measured().cells();
+        // The first level has one size.
+        self.net.size.clear();
+        cells
+    }
+
     /// Area of the surface.
     fn area(&self) -> f64 {
+        self.measured().area()
+    }
+
+    /// The sums over all faces.
+    fn measured(&self) -> Tally {
         let mut tally = Tally::default();
         tally.measure(&self.net, 0..(self.net.mesh.half_edge_slots() / 3) as u32);
-        tally.area()
+        tally
     }
 
     /// The level that is finished next, by how many come after it.

@@ -40,14 +40,6 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
-    /// The surface has creases, and radii are to differ.
-    #[error(
-        "The front stands, and is not refined: near {at} the surface has a crease. Such a surface is refined with one radius only."
-    )]
-    Creased {
-        /// Position of a point of a crease.
-        at: Spot,
-    },
     /// The surface has a border that is not at the box.
     #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
@@ -128,7 +120,6 @@ impl Refusal {
         match self {
             Self::Few { .. } | Self::Full => None,
             Self::Bent { at }
-            | Self::Creased { at }
             | Self::Singular { at }
             | Self::Border { at }
             | Self::Cut { at }
@@ -143,12 +134,7 @@ impl Refusal {
     pub(crate) fn is_coarse(self) -> bool {
         !matches!(
             self,
-            Self::Few { .. }
-                | Self::Full
-                | Self::Bent { .. }
-                | Self::Creased { .. }
-                | Self::Singular { .. }
-                | Self::Border { .. }
+            Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. }
         )
     }
 }

@@ -116,9 +116,17 @@ impl Sizing {
     }
 
     /// The radius field as the settings ask for it, before any [`Sizing::scale`].
-    pub(crate) fn unscaled(mut self) -> Self {
+    pub(crate) fn unscaled(mut self, settings: &Settings) -> Self {
         self.law = self.law.unscaled();
+        self.slope = settings.grading as f32;
         self.grade();
+        self
+    }
+
+    /// The radius field with another largest slope, and with the law and its clamp multiplied by `factor`.
+    pub(crate) fn graded(mut self, slope: f64, factor: f64) -> Self {
+        self.slope = slope as f32;
+        self.scale(factor);
         self
     }
 
