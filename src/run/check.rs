@@ -4,7 +4,7 @@ use crate::field::{Field, difference_step};
 use crate::math::Bounds;
 use glam::DVec3;
 
-/// Points along each axis of the box that are looked at.
+/// Points along each axis of the box that are looked at: 27 in all, of which half must differ.
 const SIDE: usize = 3;
 /// A gradient differs if it does so by more than this share of its length. Differences of a smooth f are nearer by far.
 const DIFFERENT: f64 = 0.02;

@@ -37,7 +37,8 @@ const MOST_STEPS: usize = 64;
 /// A step changes a parameter by at most this share of its range, so that a surface that is pulled far passes through what lies between.
 const LONGEST_STEP: f64 = 0.125;
 
-/// A step that does not bring the surface nearer to the points is halved at most this often. Then the parameters stay where they are.
+/// A step that does not bring the surface nearer to the points is halved at most this often, to a 2,000th of a range. Then the
+/// parameters stay where they are.
 const MOST_HALVINGS: usize = 8;
 
 /// Distance from a point, over its distance from the origin or over 1, at which the surface passes through it: a hundredth of what single
@@ -51,7 +52,7 @@ const RIDGE: f64 = 1e-8;
 /// strongest one moves across.
 const IDLE: f64 = 1e-3;
 
-/// Steps of Newton's method to the place of a point.
+/// Steps of Newton's method to the place of a point. Near the surface each doubles the digits, so that most of them may lead there.
 const MOST_PLACE_STEPS: u32 = 20;
 
 /// f as a function of the parameters, three at a time.

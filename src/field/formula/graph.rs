@@ -91,7 +91,8 @@ pub(super) fn power(x: f64, n: i32) -> f64 {
     result
 }
 
-/// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it.
+/// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it: the second derivatives are up to
+/// its inverse, and no picture shows a blend as narrow.
 pub(super) const MIN_BLEND_WIDTH: f64 = 1e-9;
 
 /// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. It is twice continuously

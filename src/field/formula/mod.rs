@@ -69,14 +69,15 @@ use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use solids::Solid;
 
-/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed.
+/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed: the time that a typed
+/// character takes is bounded.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
-/// Maximum nesting of brackets, calls, signs and exponents.
+/// Maximum nesting of brackets, calls, signs and exponents, which keeps recursion within the stack.
 pub const MAX_DEPTH: usize = 64;
 
 /// Maximum number of operations of a formula. An integer power counts as its products.
-pub const MAX_OPERATIONS: usize = 4096;
+pub const MAX_OPERATIONS: usize = MAX_FORMULA_BYTES;
 
 /// Maximum number of unknown names that become parameters.
 pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;

@@ -32,7 +32,8 @@ use glam::{DVec3, Vec3};
 pub(super) use ladder::CreaseLadder;
 use meeting::{Meeting, SHARP};
 
-/// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box.
+/// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box. Half and
+/// double find as many creases and corners of 24 random solids.
 const CELL: f64 = 1.0 / 128.0;
 /// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. Half and double
 /// give the same particles on 24 random solids.

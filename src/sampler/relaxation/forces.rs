@@ -8,7 +8,7 @@ use crate::sampler::sheet::repulsion_weight;
 use core::ops::Range;
 use glam::{Mat4, Vec3, Vec4};
 
-/// Particles whose pairs are evaluated in one batch.
+/// Particles whose pairs are evaluated in one batch: the pairs take 8 kB, a quarter of a small first-level cache.
 pub(super) const BATCH_PARTICLES: usize = 32;
 /// Largest number of pairs in a batch.
 const MOST_PAIRS: usize = BATCH_PARTICLES * ROOM;

@@ -10,6 +10,7 @@ mod flags;
 mod range;
 mod rows;
 
+use super::MAX_OPERATIONS;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
@@ -332,7 +333,7 @@ impl FactorProgram {
 }
 
 /// Maximum number of operations of a program for second derivatives. Those of a formula that takes more are unbounded.
-const MAX_SECOND_OPERATIONS: usize = 8_192;
+const MAX_SECOND_OPERATIONS: usize = 2 * MAX_OPERATIONS;
 
 /// Maximum number of factors. A product of more is taken as one function.
 const MAX_FACTORS: usize = 16;

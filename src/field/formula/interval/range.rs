@@ -15,7 +15,8 @@ pub(in crate::field::formula) struct Range {
 /// Relative widening of a bound that `libm` computed. Its functions err by less than two units in the last place.
 const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of larger ones.
+/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of larger ones. Its
+/// rounding there may be a millionth of the way between two poles.
 const TRUSTED_ANGLE: f64 = 1e9;
 
 /// The empty range.

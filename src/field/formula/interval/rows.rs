@@ -186,10 +186,10 @@ impl Row {
     }
 }
 
-/// Bound of the rounding error of [`Row::sine`]: a few units in the last place of 1.
+/// Bound of the rounding error of [`Row::sine`]: some tens of units in the last place of 1.
 const SINE_SLACK: f64 = 1e-14;
 
-/// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`].
+/// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`]: it has less than 2¹⁶ quadrants.
 const TRUSTED_ANGLE: f64 = 1e5;
 
 /// Sine and cosine for |x| ≤ 10⁵ with an error of a few 10⁻¹⁶.
