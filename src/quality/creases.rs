@@ -20,6 +20,8 @@ pub(super) struct CreaseRows {
     is_tip: Vec<bool>,
     /// Particle and patch of each row on a crease, sorted.
     on_creases: Vec<(u32, u32)>,
+    /// Edges of the triangles between points on creases, the lower point first. Sorted.
+    edges: Vec<[u32; 2]>,
 }
 
 impl CreaseRows {
@@ -46,6 +48,7 @@ impl CreaseRows {
             particle: tree.origin.iter().map(|&row| particle(row)).collect(),
             first: (0..).zip(&tree.origin).map(first).collect(),
             on_creases,
+            edges: Vec::new(),
         }
     }
 
@@ -109,6 +112,22 @@ impl CreaseRows {
         let start = self.on_creases.partition_point(|&(other, _)| other < particle);
         let end = self.on_creases.partition_point(|&(other, _)| other <= particle);
         &self.on_creases[start..end]
+    }
+
+    /// Takes the edges between points on creases from the triangles.
+    pub(super) fn find_edges(&mut self, mesh: &[[u32; 3]]) {
+        let edges = mesh.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let mut edges: Vec<[u32; 2]> = edges
+            .filter(|edge| edge.iter().all(|&i| self.holds(i as usize)))
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .collect();
+        sort_pairs(&mut edges);
+        self.edges = edges;
+    }
+
+    /// Whether natural neighbours i < j are neighbours on the surface. Points on creases may have a hole of their patch between them.
+    pub(super) fn are_joined(&self, i: usize, j: usize) -> bool {
+        !(self.holds(i) && self.holds(j)) || self.edges.binary_search(&[i as u32, j as u32]).is_ok()
     }
 
     /// Whether two points of one patch are the first rows of their particles that are: particles that follow each other along a

@@ -85,8 +85,10 @@ impl MeasuredPoints {
         (self.tree.position[i].as_dvec3() - self.tree.position[j].as_dvec3()).length()
     }
 
-    /// Returns the points `j` > `i` of which each is a natural neighbour of the other, if both are `inner`.
+    /// Returns the points `j` > `i` of which each is a natural neighbour of the other on the surface, if both are `inner`.
     pub(super) fn mutual<'a>(&'a self, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
-        self.rings.of(i).filter(move |&j| j > i && inner[i] && inner[j] && self.rings.adjacent(j, i))
+        self.rings.of(i).filter(move |&j| {
+            j > i && inner[i] && inner[j] && self.rings.adjacent(j, i) && self.creases.are_joined(i, j)
+        })
     }
 }

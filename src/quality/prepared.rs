@@ -50,12 +50,13 @@ impl Prepared {
         drop_equal(position, is_further, &mut drop, &mut has_duplicate);
         pause().await;
         loop {
-            let points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows).await;
+            let mut points = MeasuredPoints::new(position, normal, field, &has_duplicate, &drop, rows).await;
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
                 let options = MeshOptions { bounds, ..MeshOptions::default() };
                 let mesh = points.creases.mesh(&points.tree, &points.normal, rows, &options).await;
+                points.creases.find_edges(&mesh);
                 (Triangles::seen(&points.rings, &mesh), mesh)
             } else {
                 let mut triangles = Triangles::new(&points.rings).await;
