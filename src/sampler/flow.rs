@@ -301,7 +301,7 @@ impl Flow {
             smallest: range.smallest.min(radius),
             largest: range.largest.max(radius),
         });
-        self.grids.reset(radii, GAUSSIAN_RANGE);
+        self.grids.reset(radii, |radius| GAUSSIAN_RANGE * radius);
         self.columns.handle.clear();
         for i in 0..particles.len() {
             let handle = self.grids.insert(particles.position[i], particles.radius[i], i as u32);

@@ -177,8 +177,8 @@ impl Sampler {
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        let front = self.tools.front.active();
-        Counts { fates: front.level().fates, gaps_filled: front.filled(), ..self.counts.clone() }
+        let level = self.tools.front.level();
+        Counts { fates: level.fates, gaps_filled: level.filled, ..self.counts.clone() }
     }
 
     /// Energy per particle before the first relaxation step and after each. Of uniform sampling it is Σ s (exp(−d²/2σ²) −

@@ -115,7 +115,7 @@ impl Sampler {
     /// Rows of the columns that will stay.
     pub(super) fn settled(&self) -> usize {
         match self.phase {
-            PhaseState::Generation(_) | PhaseState::Filling => self.tools.front.active().level().settled,
+            PhaseState::Generation(_) | PhaseState::Filling => self.tools.front.level().settled,
             _ => self.output.particles.len(),
         }
     }

@@ -9,7 +9,7 @@ use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::singular::{self, Singular};
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::flow::{BALANCE_EVERY, FlowSurface, Settled};
-use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
+use crate::sampler::front::{Front, FrontContext, FrontSetup};
 use crate::sampler::phase::{FlowStage, PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal, Turn};
@@ -67,7 +67,7 @@ impl Sampler {
                 | PhaseState::Generation(_)
                 | PhaseState::Search
                 | PhaseState::Filling => {
-                    self.tools.front.active_mut().stop(&mut self.output.particles);
+                    self.tools.front.stop(&mut self.output.particles);
                     self.output.particles =
                         self.tools.coarse.end().unwrap_or(core::mem::take(&mut self.output.particles));
                     self.drop_beyond();
@@ -180,7 +180,7 @@ impl Sampler {
             *left -= 1;
             let patch = self.patch_at(probe, point.position);
             probe.select(patch);
-            let front = self.tools.front.active_mut();
+            let front = &mut self.tools.front;
             let is_seed = !front.is_covered(probe, &self.output.particles, point, patch)
                 && self.survey.is_zero(probe, point);
             self.counts.seeding_evaluations += probe.evaluations() - start;
@@ -240,7 +240,7 @@ impl Sampler {
         after: Option<SurveyCursor>,
     ) -> Option<PhaseState> {
         if self.output.particles.len() >= self.settings.max_particles as usize {
-            self.tools.front.active_mut().level_mut().capped = true;
+            self.tools.front.cap();
             return Some(PhaseState::Search);
         }
         let patch = self.patch_at(probe, seed.position);
@@ -255,13 +255,13 @@ impl Sampler {
     /// Lets the front grow until it has met itself, another one or the box everywhere.
     fn grow(&mut self, probe: &mut Probe, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
         self.spend_on_front(probe, left, |front, context, budget| front.step(context, budget));
-        if !self.tools.front.active().is_done() {
+        if !self.tools.front.is_done() {
             return PhaseState::Generation(after);
         }
         let is_dropped = self.drop_lone_seed(probe, after.is_none());
         self.counts.left_out += u32::from(is_dropped);
         match after {
-            Some(cursor) if !self.tools.front.is_capped() => PhaseState::Seeding(cursor),
+            Some(cursor) if !self.tools.front.level().capped => PhaseState::Seeding(cursor),
             _ => PhaseState::Search,
         }
     }
@@ -291,7 +291,7 @@ impl Sampler {
         };
         let reach = ROOM * reach;
         let slack = f64::from(2.0 * self.attempt.tolerance(&self.survey).residual);
-        let others = self.tools.front.active_mut().within(seed.position, reach as f32);
+        let others = self.tools.front.within(seed.position, reach as f32);
         let others = others.iter().map(|near| near.index as usize).filter(|&j| j != last);
         !holds_any(field, &self.output.particles, seed, reach, others, slack)
     }
@@ -300,7 +300,7 @@ impl Sampler {
     fn with_front<R>(
         &mut self,
         probe: &mut Probe,
-        call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext) -> R,
+        call: impl FnOnce(&mut Front, &mut FrontContext) -> R,
     ) -> R {
         let mut context = FrontContext {
             probe,
@@ -308,7 +308,7 @@ impl Sampler {
             neighbours: &mut self.tools.neighbours,
             particles: &mut self.output.particles,
         };
-        call(self.tools.front.active_mut(), &mut context)
+        call(&mut self.tools.front, &mut context)
     }
 
     /// Calls a method of the front that uses up the budget, and counts its evaluations.
@@ -316,7 +316,7 @@ impl Sampler {
         &mut self,
         probe: &mut Probe,
         left: &mut u32,
-        call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext, u32) -> u32,
+        call: impl FnOnce(&mut Front, &mut FrontContext, u32) -> u32,
     ) {
         let start = probe.evaluations();
         *left = self.with_front(probe, |front, context| call(front, context, *left));
@@ -328,7 +328,7 @@ impl Sampler {
     /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
     /// but for the gaps.
     fn search_components(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
-        if self.tools.front.is_capped() {
+        if self.tools.front.level().capped {
             return self.end_generation(probe);
         }
         if self.tools.coarse.known().is_some() {
@@ -352,10 +352,10 @@ impl Sampler {
             let Some(seed) = witness else {
                 return self.begin_filling(probe);
             };
-            let rule = self.tools.front.active().rule();
+            let rule = self.tools.front.level().rule;
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
             let patch = self.patch_at(probe, point.position);
-            let near = self.tools.front.active_mut().list_cover(&self.output.particles, point, patch);
+            let near = self.tools.front.list_cover(&self.output.particles, point, patch);
             let start = probe.evaluations();
             let is_covered =
                 self.components.is_covered(probe, &self.output.particles, seed, &near, tolerance, rule);
@@ -377,15 +377,15 @@ impl Sampler {
     }
 
     fn begin_filling(&mut self, probe: &mut Probe) -> PhaseState {
-        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.tools.front.active_mut().begin_filling();
+        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.tools.front.begin_filling();
         if has_gaps { PhaseState::Filling } else { self.end_generation(probe) }
     }
 
     /// Fills gaps until no particle fits into any.
     fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
         self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
-        let front = self.tools.front.active_mut();
-        if !front.is_filled() || front.begin_filling() {
+        let front = &mut self.tools.front;
+        if !front.is_done() || front.begin_filling() {
             PhaseState::Filling
         } else {
             self.end_generation(probe)
@@ -405,10 +405,10 @@ impl Sampler {
         if let Some(next) = self.begin_refinement(probe) {
             return next;
         }
-        if !self.tools.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
+        if !self.tools.front.level().capped && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
         }
-        if self.tools.front.active().level().fates.added == 0 && !self.tools.front.is_capped() {
+        if self.tools.front.level().fates.added == 0 && !self.tools.front.level().capped {
             self.begin_audit(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
             self.begin_audit(self.reason_for_end())
@@ -426,7 +426,7 @@ impl Sampler {
         let before = probe.evaluations();
         let next = if let Some(refusal) = unpinned {
             Err(refusal)
-        } else if self.tools.front.is_capped() {
+        } else if self.tools.front.level().capped {
             Err(Refusal::Full)
         } else {
             let surface = refining.surface(&self.bounds);
@@ -551,7 +551,7 @@ impl Sampler {
         let law = self.law();
         let steps = self.settings.relax_steps;
         let limits =
-            MoveLimits { bounds: self.bounds, largest_lift: self.tools.front.active().rule().largest_lift() };
+            MoveLimits { bounds: self.bounds, largest_lift: self.tools.front.level().rule.largest_lift() };
         self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
         PhaseState::Relaxation
     }
@@ -602,7 +602,7 @@ impl Sampler {
                 let surface = FlowSurface {
                     bounds: self.bounds,
                     survey: &self.survey,
-                    rule: front.active().rule(),
+                    rule: front.level().rule,
                     sizing: self.attempt.sizing.as_ref(),
                     radius: self.attempt.radius as f32,
                     count: (self.settings.size_mode == SizeMode::Count).then_some(self.settings.count),
@@ -715,7 +715,7 @@ impl Sampler {
             &self.output.particles,
             self.attempt.radius,
             tolerance,
-            self.tools.front.active().rule(),
+            self.tools.front.level().rule,
             slice,
         );
         self.counts.seeding_evaluations += probe.evaluations() - start;
@@ -728,7 +728,7 @@ impl Sampler {
     }
 
     fn reason_for_end(&self) -> StopReason {
-        if self.tools.front.is_capped() { StopReason::Cap } else { StopReason::Complete }
+        if self.tools.front.level().capped { StopReason::Cap } else { StopReason::Complete }
     }
 
     /// Marks the particles next to singular points, where there are any.

@@ -1,18 +1,15 @@
-//! The generation levels of a front: the loop that both kinds of front share, and what they keep of a level.
-//!
-//! A level has three stages. Every parent predicts its children, which get provisional places in the particle columns. All
-//! children are projected onto the surface, a batch at a time. Their fates are then decided one by one in the order of the
-//! queue, and those that are placed close up over those that are not.
+//! What both kinds of front keep of a generation level, and what each of them does in its own way.
 
-use crate::math::{Bounds, sort_few, tangent_frame};
+use crate::differential::Curvature;
+use crate::math::{Bounds, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
-use crate::sampler::neighbours::grids::RadiusRange;
+use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::probe::Probe;
 use crate::sampler::settings::Settings;
-use crate::sampler::sheet::{OrientedPoint, SheetRule};
+use crate::sampler::sheet::{OrientedPoint, PointPair, SheetRule};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::ops::Range;
@@ -56,7 +53,7 @@ impl FrontSetup<'_> {
 
 /// Stage of a level: the work that is done for each parent or child in turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum LevelStage {
+pub(super) enum LevelStage {
     /// Predict the children of a parent.
     #[default]
     Place,
@@ -66,262 +63,202 @@ enum LevelStage {
     Settle,
 }
 
+/// A point of the surface, with the radius and the curvature there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfacePoint {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) radius: f32,
+    /// Curvature, in an adaptive front.
+    pub(crate) curvature: Curvature,
+}
+
+/// The place to which the projection has led a child.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ChildLanding {
+    /// A place on the surface at which the child touches its parent.
+    On(SurfacePoint),
+    /// No place on the surface was found at which the child touches its parent.
+    NotConverged,
+    /// The field has no value there, or its gradient vanishes.
+    Undefined,
+}
+
+/// A child on its way to the surface. Its provisional place stands in the particle columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Child {
+    /// The slot of its parent.
+    pub(super) slot: u32,
+    pub(super) handle: GridHandle,
+    /// Distance to the nearest place at which the child would have collided when it was predicted, as far as that is known.
+    pub(super) clearance: f32,
+}
+
 /// State of a front within its level, and its limits.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub(crate) struct FrontLevel {
-    stage: LevelStage,
+    pub(super) stage: LevelStage,
     /// Next parent of the stage, or next child.
-    next: usize,
+    pub(super) next: usize,
     /// Index that the first child of this level has while it is provisional, and that the first one placed keeps.
-    pub(crate) first_child: usize,
+    pub(super) first_child: usize,
     /// Particles before this index are final. Provisional children stand from here on.
     pub(crate) settled: usize,
-    pub(crate) bounds: Bounds,
-    pub(crate) max_particles: usize,
+    pub(super) bounds: Bounds,
+    pub(super) max_particles: usize,
     pub(crate) fates: FateCounts,
+    /// Particles placed in gaps.
+    pub(crate) filled: u64,
     /// Whether the limit on particles was reached.
     pub(crate) capped: bool,
+    /// The rule that tells sheets apart.
+    pub(crate) rule: SheetRule,
+    pub(super) grids: RadiusGrids,
+    /// The particles that the last query of the grids found.
+    pub(super) found: Vec<Neighbour>,
+    /// Direction along the crease for each row of a particle on one.
+    pub(super) along: Vec<Vec3>,
+    pub(super) children: ProvisionalChildren,
 }
 
 impl FrontLevel {
-    pub(crate) fn new(bounds: Bounds, max_particles: usize) -> Self {
-        Self { bounds, max_particles, ..Self::default() }
-    }
-
     /// Begins a level. Its children follow the particles that are final.
-    pub(crate) fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         (self.stage, self.next) = (LevelStage::Place, 0);
         self.first_child = self.settled;
     }
 
-    /// Counts the slots of particles that were placed before the front: those of tips are taken.
-    pub(crate) fn count_known(&mut self, known: &[Slots]) {
-        let fates = known.iter().flat_map(|slots| (0..Slots::COUNT).map(|k| slots.get(k)));
-        fates.for_each(|fate| self.fates.count(fate));
-    }
-}
-
-/// The children of a level between their prediction and their fate: a child `C` poses a problem `P`, whose solution is an `L`.
-#[derive(Clone, Debug)]
-pub(crate) struct ProvisionalChildren<C, P, L> {
-    /// The children, in the order of their provisional places.
-    pub(crate) list: Vec<C>,
-    /// Landing of each child, in the order of `list`.
-    pub(crate) landings: Vec<L>,
-    /// Largest distance between a provisional and a final place in this level.
-    pub(crate) drift: f32,
-    /// The problems of a batch and their solutions.
-    pub(crate) problems: Vec<P>,
-    pub(crate) solutions: Vec<L>,
-}
-
-impl<C, P, L> Default for ProvisionalChildren<C, P, L> {
-    fn default() -> Self {
-        Self {
-            list: Vec::new(),
-            landings: Vec::new(),
-            drift: 0.0,
-            problems: Vec::new(),
-            solutions: Vec::new(),
+    /// Finds the particles of a patch around a place: of each layer of radii those within `reach` of its largest one.
+    pub(super) fn gather(
+        &mut self,
+        particles: &Particles,
+        patch: Option<u32>,
+        place: Vec3,
+        reach: impl Fn(f32) -> f32,
+    ) {
+        self.grids.gather(place, reach, &mut self.found);
+        if patch.is_some() {
+            self.found.retain(|near| particles.is_on(near.index as usize, patch));
         }
     }
+
+    /// Removes the particles on another sheet that face the same way as `parent` from those found around it. They stay in the
+    /// neighbour lists of the relaxation, which tells sheets apart by the normals alone.
+    pub(super) fn drop_strangers(
+        &mut self,
+        probe: &mut Probe,
+        particles: &Particles,
+        parent: usize,
+        spacing: f32,
+    ) {
+        let from = OrientedPoint::of(particles, parent);
+        self.found.retain(|near| {
+            let pair = from.pair(near.offset, particles.normal[near.index as usize]);
+            near.index as usize >= self.settled
+                || !pair.faces_one_way()
+                || is_on_sheet(self.rule, probe, from.position, pair, spacing)
+        });
+    }
+
+    /// Puts a provisional child into the columns and the grids.
+    pub(super) fn enter(
+        &mut self,
+        particles: &mut Particles,
+        parent: usize,
+        slot: usize,
+        spot: &SurfacePoint,
+        clearance: f32,
+    ) {
+        let &SurfacePoint { position, normal, radius, .. } = spot;
+        let handle = self.grids.insert(position, radius, particles.len() as u32);
+        let level = particles.level[parent] + 1;
+        particles.push(position, normal, radius, parent as u32, level, initial_slots());
+        self.children.list.push(Child { slot: slot as u32, handle, clearance });
+    }
+
+    /// Notes to where child `k` of the level was projected.
+    pub(super) fn note_landing(&mut self, particles: &Particles, k: usize, landing: ChildLanding) {
+        if let ChildLanding::On(spot) = landing {
+            let moved = (spot.position - particles.position[self.first_child + k]).length();
+            self.children.drift = self.children.drift.max(moved);
+        }
+        self.children.landings.push(landing);
+    }
 }
 
-impl<C, P, L> ProvisionalChildren<C, P, L> {
-    pub(crate) fn clear(&mut self) {
+/// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair is not doubtful, or the field
+/// between them says so.
+pub(super) fn is_on_sheet(
+    rule: SheetRule,
+    probe: &mut Probe,
+    position: Vec3,
+    pair: PointPair,
+    spacing: f32,
+) -> bool {
+    pair.lift() <= rule.suspicious(spacing) || rule.is_one_sheet(probe, position, pair)
+}
+
+/// The children of a level between their prediction and their fate.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ProvisionalChildren {
+    /// The children, in the order of their provisional places.
+    pub(super) list: Vec<Child>,
+    /// Landing of each child, in the order of `list`.
+    pub(super) landings: Vec<ChildLanding>,
+    /// Largest distance between a provisional and a final place in this level.
+    pub(super) drift: f32,
+}
+
+impl ProvisionalChildren {
+    pub(super) fn clear(&mut self) {
         self.list.clear();
         self.landings.clear();
         self.drift = 0.0;
     }
 }
 
-/// A front that grows in levels.
-pub(crate) trait LevelFront {
-    /// The rule that tells sheets apart.
-    fn rule(&self) -> SheetRule;
-
-    /// Forgets an earlier run.
-    fn reset(&mut self, setup: &FrontSetup);
-
-    /// Gives back the memory that only the front needs.
-    fn release(&mut self);
-
-    /// The state of the front within its level.
-    fn level(&self) -> &FrontLevel;
-
-    /// The state of the front within its level, for changes.
-    fn level_mut(&mut self) -> &mut FrontLevel;
+/// What a kind of front does in its own way. The rest is the same for both, and is done by [`Front`](super::Front).
+pub(super) trait Placing {
+    /// Forgets an earlier run, and prepares the grids.
+    fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup);
 
     /// Number of parents in the level; none if the front has come to its end.
     fn parents(&self) -> usize;
 
-    /// Number of provisional children in the level.
-    fn children(&self) -> usize;
+    /// Makes a particle at a place a parent of the level that is about to begin. Returns the radius that a particle has there.
+    fn add_parent(&mut self, context: &mut FrontContext, place: Vec3, particle: usize) -> f32;
 
     /// Stage one: finds the free slots of a parent of the level and enters a provisional child in each.
-    fn place_children(&mut self, context: &mut FrontContext, parent: usize);
+    fn place_children(&mut self, level: &mut FrontLevel, context: &mut FrontContext, parent: usize);
 
     /// Stage two: projects a batch of children onto the surface.
-    fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>);
+    fn project_children(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
+        children: Range<usize>,
+    );
 
-    /// Stage three: decides the fate of a child.
-    fn settle_child(&mut self, context: &mut FrontContext, child: usize);
+    /// Stage three: whether a child has room at its final place; if so, it is about to become the next settled particle.
+    fn has_room(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
+        child: usize,
+        spot: &SurfacePoint,
+    ) -> bool;
 
     /// Makes the children that were placed the parents of the next level.
-    fn end_level(&mut self);
+    fn end_level(&mut self, level: &FrontLevel);
 
     /// Drops the parents and the provisional children.
     fn clear_level(&mut self);
 
-    /// Adds a seed on a patch, between two levels. Says whether it could: an adaptive one needs a curvature.
-    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint, patch: Option<u32>) -> bool;
-
-    /// Whether the last particle, a seed that stayed alone, touches another one of whatever sheet.
-    fn is_seed_crowded(&mut self, particles: &Particles) -> bool;
-
-    /// Forgets the last seed, which has the index `seed`.
-    fn forget_seed(&mut self, seed: usize);
-
-    /// Takes in the rows of the particles on creases, which are the only ones so far: they are the parents of the first level. Each has
-    /// a direction along its crease in `along`.
-    fn add_creases(&mut self, context: &mut FrontContext, along: &[Vec3]);
-
-    /// The particles within a distance of a place, of whatever sheet.
-    fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour];
-
-    /// Collects the particles on the patch of a `point` that face the same way and are so near that no front need start there.
-    fn gather_cover(
-        &mut self,
-        particles: &Particles,
-        point: OrientedPoint,
-        patch: Option<u32>,
-    ) -> &mut Vec<Neighbour>;
+    /// Forgets the particles from `len` on.
+    fn truncate(&mut self, len: usize);
 
     /// Goes on to the gaps, once the surface is covered; false if there is none to fill.
-    fn begin_filling(&mut self) -> bool;
-
-    /// Fills gaps with up to `budget` units of work and returns what is left.
-    fn fill(&mut self, context: &mut FrontContext, budget: u32) -> u32;
-
-    /// Whether no gap is left.
-    fn is_filled(&self) -> bool;
-
-    /// Particles placed in gaps.
-    fn filled(&self) -> u64;
-
-    /// Whether every particle has placed its children.
-    fn is_done(&self) -> bool {
-        self.parents() == 0
-    }
-
-    /// Does up to `budget` units (the slots of a parent, the projection of a child, the fate of a child) and returns what is
-    /// left.
-    fn step(&mut self, context: &mut FrontContext, mut budget: u32) -> u32 {
-        while budget > 0 && !self.is_done() {
-            let &FrontLevel { stage, next, .. } = self.level();
-            let count = match stage {
-                LevelStage::Place => (self.parents() - next).min(1),
-                LevelStage::Project => {
-                    let most = (self.children() - next).min(BATCH).min(budget as usize);
-                    self.on_one_patch(context.particles, next, most)
-                }
-                LevelStage::Settle => (self.children() - next).min(1),
-            };
-            if count == 0 {
-                self.end_stage(context.particles);
-                continue;
-            }
-            match stage {
-                LevelStage::Place => self.place_children(context, next),
-                LevelStage::Project => self.project_children(context, next..next + count),
-                LevelStage::Settle => self.settle_child(context, next),
-            }
-            self.level_mut().next += count;
-            budget -= count as u32;
-        }
-        budget
-    }
-
-    /// Number of children from child `first` on, `most` at most, that lie on one patch.
-    fn on_one_patch(&self, particles: &Particles, first: usize, most: usize) -> usize {
-        let first = self.level().first_child + first;
-        let patch = particles.patch_of(first);
-        let is_on = |&k: &usize| particles.is_on(first + k, patch);
-        if patch.is_none() { most } else { (0..most).take_while(is_on).count() }
-    }
-
-    /// Goes on to the next stage, or to the next level.
-    fn end_stage(&mut self, particles: &mut Particles) {
-        let level = self.level_mut();
-        level.next = 0;
-        match level.stage {
-            LevelStage::Place => level.stage = LevelStage::Project,
-            LevelStage::Project => level.stage = LevelStage::Settle,
-            LevelStage::Settle => {
-                particles.truncate(level.settled);
-                self.end_level();
-                if self.level().capped {
-                    self.clear_level();
-                }
-                self.level_mut().begin();
-            }
-        }
-    }
-}
-
-/// What needs no code of its own in either front.
-impl dyn LevelFront + '_ {
-    /// Ends the front where it is: what is not final is dropped.
-    pub(crate) fn stop(&mut self, particles: &mut Particles) {
-        particles.truncate(self.level().settled);
-        self.clear_level();
-    }
-
-    /// Whether the last seed stayed alone beside another particle: it is the far side of something too small for the radius.
-    pub(crate) fn has_lone_seed(&mut self, particles: &Particles) -> bool {
-        let is_seed = particles.parent.last() == Some(&Particles::NO_PARENT);
-        let is_lone = is_seed && particles.len() > particles.twins.len();
-        is_lone && self.is_seed_crowded(particles)
-    }
-
-    /// Takes the last seed back, which stayed alone.
-    pub(crate) fn drop_last_seed(&mut self, context: &mut FrontContext) {
-        let last = context.particles.len() - 1;
-        self.forget_seed(last);
-        let level = self.level_mut();
-        for k in 0..Slots::COUNT {
-            level.fates.uncount(context.particles.slots[last].get(k));
-        }
-        level.settled = last;
-        context.particles.truncate(last);
-        context.neighbours.truncate(last);
-    }
-
-    /// Whether a particle of the sheet of a `point` is so near that no front need start there. `patch` is that of the point.
-    pub(crate) fn is_covered(
-        &mut self,
-        probe: &mut Probe,
-        particles: &Particles,
-        point: OrientedPoint,
-        patch: Option<u32>,
-    ) -> bool {
-        let rule = self.rule();
-        let found = self.gather_cover(particles, point, patch);
-        let spacing = |j: usize| 2.0 * particles.radius[j];
-        rule.is_near_own(probe, particles, point, found, spacing)
-    }
-
-    /// The particles that [`LevelFront::gather_cover`] finds around a `point`, the nearest first.
-    pub(crate) fn list_cover(
-        &mut self,
-        particles: &Particles,
-        point: OrientedPoint,
-        patch: Option<u32>,
-    ) -> Vec<u32> {
-        let found = self.gather_cover(particles, point, patch);
-        sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
-        found.iter().map(|found| found.index).collect()
-    }
+    fn begin_filling(&mut self, level: &mut FrontLevel) -> bool;
 }
 
 /// The directions in the tangent plane of a parent from which the angles of its slots are measured.

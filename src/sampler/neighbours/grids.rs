@@ -56,9 +56,9 @@ impl Layers {
         layers
     }
 
-    /// Returns the sides of the cells of each layer, for queries that usually reach `reach` radii.
-    fn sides(&self, reach: f32) -> impl Iterator<Item = f32> {
-        self.middle[..self.count].iter().map(move |middle| CELL_PER_REACH * (reach * middle))
+    /// Returns the sides of the cells of each layer, for queries that usually have the radius `reach` among particles of a radius.
+    fn sides(&self, reach: impl Fn(f32) -> f32) -> impl Iterator<Item = f32> {
+        self.middle[..self.count].iter().map(move |&middle| CELL_PER_REACH * reach(middle))
     }
 
     /// Returns the layer of a radius, and notes that the layer has met it.
@@ -96,8 +96,8 @@ pub(crate) struct RadiusGrids {
 }
 
 impl RadiusGrids {
-    /// Empties the grids for particles with these radii; the usual query reaches `reach` radii.
-    pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32) {
+    /// Empties the grids for particles with these radii; the usual query has the radius `reach` among particles of a radius.
+    pub(crate) fn reset(&mut self, radii: RadiusRange, reach: impl Fn(f32) -> f32) {
         self.layers = Layers::between(radii);
         self.grids.truncate(self.layers.count);
         for (k, side) in self.layers.sides(reach).enumerate() {
@@ -105,6 +105,13 @@ impl RadiusGrids {
                 Some(grid) => grid.reset(side),
                 None => self.grids.push(CellGrid::new(side)),
             }
+        }
+    }
+
+    /// Reserves memory for this many particles, if all of them have about one radius.
+    pub(crate) fn reserve(&mut self, particles: usize) {
+        if let [grid] = &mut self.grids[..] {
+            grid.reserve(particles);
         }
     }
 
@@ -147,7 +154,7 @@ impl RadiusChains {
     /// Empties the lists for up to `particles` particles with these radii; the usual query reaches `reach` radii.
     pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32, particles: usize) {
         self.layers = Layers::between(radii);
-        self.chains.reset(self.layers.sides(reach), particles);
+        self.chains.reset(self.layers.sides(|radius| reach * radius), particles);
     }
 
     pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) {

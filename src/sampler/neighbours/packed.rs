@@ -1,7 +1,9 @@
 //! Neighbour lists of the relaxation, 16 bytes for each particle: every pair is stored once, with the larger index.
 
 use crate::math::push_gently;
+use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::probe::BATCH;
+use crate::spatial::Neighbour;
 use core::ops::Range;
 
 /// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the
@@ -106,6 +108,22 @@ impl PackedNeighbours {
         let i = self.near.len();
         self.near.push([0; ROOM]);
         self.fill(i, candidates);
+    }
+
+    /// Appends the list of the next particle: those `found` of which `read` says that they are near and of a smaller index, and whose
+    /// normals do not face away. `read` gives the cosine of the two normals, too.
+    #[inline]
+    pub(crate) fn list(&mut self, found: &[Neighbour], mut read: impl FnMut(&Neighbour) -> (bool, f32)) {
+        let mut is_weighted = false;
+        self.push(found.iter().map(|near| {
+            let (is_near, cosine) = read(near);
+            is_weighted |= is_near & (cosine < FULL_COSINE);
+            (near.index, is_near & (cosine > LISTED_COSINE))
+        }));
+        if is_weighted {
+            found.iter().for_each(|near| self.note_weighted(near.index as usize));
+            self.note_weighted(self.near.len() - 1);
+        }
     }
 
     /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are

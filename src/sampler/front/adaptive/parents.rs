@@ -34,12 +34,6 @@ pub(crate) struct Parents {
 }
 
 impl Parents {
-    pub(crate) fn clear(&mut self) {
-        self.level.clear();
-        self.born.clear();
-        self.seams.clear();
-    }
-
     /// Adds a particle that has placed no children to this level.
     pub(crate) fn add(&mut self, particle: u32, local: LocalShape) {
         self.level.push(Parent { particle, has_placed: false, local });

@@ -5,6 +5,7 @@
 use crate::differential::{Curvature, curvatures_of};
 use crate::math::Sym3;
 use crate::sampler::front::adaptive::MAX_SLOPE;
+use crate::sampler::front::level::{ChildLanding, SurfacePoint};
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{
     ChildCircle, CircleLanding, MAX_TURN, MIN_COS, MIN_CROSSING, Tolerance, turned,
@@ -40,6 +41,8 @@ const LOOSE_TOUCH: f32 = 0.5;
 pub(crate) struct Proposal {
     /// The circle of the first guess; its radius is the guessed distance from the parent.
     pub(crate) circle: ChildCircle,
+    /// Number of the parent in its level.
+    pub(crate) parent: u32,
     /// Radius of the parent.
     pub(crate) parent_radius: f32,
     /// Change of the radius per length away from the parent, as guessed.
@@ -56,26 +59,6 @@ impl Proposal {
         // NaN stays.
         if radius > largest { largest } else { radius }
     }
-}
-
-/// The solution of a proposal.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum DirectLanding {
-    /// A place on the surface at which the child touches its parent.
-    On(SurfacePoint),
-    /// No place on the surface was found at which the child touches its parent.
-    NotConverged,
-    /// The field has no value there, or its gradient vanishes.
-    Undefined,
-}
-
-/// A point of the surface, with the radius and the curvature there.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SurfacePoint {
-    pub(crate) position: Vec3,
-    pub(crate) normal: Vec3,
-    pub(crate) radius: f32,
-    pub(crate) curvature: Curvature,
 }
 
 /// A proposal that is not solved yet.
@@ -131,11 +114,11 @@ impl DirectPlacement {
         sizing: &Sizing,
         proposals: &[Proposal],
         tolerance: &dyn Fn(f32) -> Tolerance,
-        landed: &mut Vec<DirectLanding>,
+        landed: &mut Vec<ChildLanding>,
     ) {
         debug_assert!(proposals.len() <= BATCH);
         landed.clear();
-        landed.resize(proposals.len(), DirectLanding::NotConverged);
+        landed.resize(proposals.len(), ChildLanding::NotConverged);
         let idle = ActiveProposal {
             proposal: 0,
             steps: 0,
@@ -169,7 +152,7 @@ impl DirectPlacement {
                 let mut a = active[k];
                 let i = a.proposal as usize;
                 match self.advance(sizing, &proposals[i], tolerance, k, &mut a) {
-                    NewtonStep::Landed(spot) => landed[i] = DirectLanding::On(spot),
+                    NewtonStep::Landed(spot) => landed[i] = ChildLanding::On(spot),
                     NewtonStep::Again => {
                         active[kept] = a;
                         kept += 1;
@@ -267,7 +250,7 @@ impl DirectPlacement {
         sizing: &Sizing,
         proposal: &Proposal,
         tolerance: &dyn Fn(f32) -> Tolerance,
-    ) -> DirectLanding {
+    ) -> ChildLanding {
         let mut circle = proposal.circle;
         let guess = circle.radius;
         // The sign of the miss brackets the distance that fits.
@@ -281,13 +264,13 @@ impl DirectPlacement {
             self.landing = landing;
             let position = match result {
                 CircleLanding::On { position, .. } => position,
-                CircleLanding::Undefined if best.is_none() => return DirectLanding::Undefined,
+                CircleLanding::Undefined if best.is_none() => return ChildLanding::Undefined,
                 _ => break,
             };
             let mut spot = self.look(probe, sizing, position);
             spot.radius = proposal.graded(spot.radius, sizing.least());
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
-                return DirectLanding::Undefined;
+                return ChildLanding::Undefined;
             }
             let miss = circle.radius - proposal.parent_radius - spot.radius;
             let relative = miss.abs() / spot.radius;
@@ -307,8 +290,8 @@ impl DirectPlacement {
                 if next > near && next < far { next } else { 0.5 * (near + far.min(2.0 * guess)) };
         }
         match best {
-            Some((miss, spot)) if miss <= LOOSE_TOUCH => DirectLanding::On(spot),
-            _ => DirectLanding::NotConverged,
+            Some((miss, spot)) if miss <= LOOSE_TOUCH => ChildLanding::On(spot),
+            _ => ChildLanding::NotConverged,
         }
     }
 }

@@ -1,16 +1,17 @@
 //! Prediction of the children of a parent: how many each free arc takes, which slots they get, and where they stand until they
 //! are projected.
 
-use super::{AdaptiveChild, AdaptiveFront};
+use super::AdaptivePlacing;
+use crate::differential::Curvature;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild};
 use crate::sampler::front::adaptive::placement::Proposal;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
-use crate::sampler::front::level::initial_slots;
+use crate::sampler::front::level::{FrontLevel, SurfacePoint};
 use crate::sampler::projection::ChildCircle;
 use core::f32::consts::TAU;
 
-impl AdaptiveFront {
+impl AdaptivePlacing {
     /// Spreads children over the free arcs.
     pub(super) fn predict_children(&mut self, frame: &ParentFrame, alone_on_sheet: bool) {
         for k in 0..self.around.ring.arcs.len() {
@@ -53,7 +54,13 @@ impl AdaptiveFront {
 
     /// Gives every occupant of the circle around parent `which` of the level a slot, and the children a provisional place. A
     /// parent that places children `again` keeps the slots that it has filled.
-    pub(super) fn fill_slots(&mut self, particles: &mut Particles, which: usize, again: bool) {
+    pub(super) fn fill_slots(
+        &mut self,
+        level: &mut FrontLevel,
+        particles: &mut Particles,
+        which: usize,
+        again: bool,
+    ) {
         let parent = self.parents.level[which].particle as usize;
         let mut slots = particles.slots[parent];
         let is_child = |occupant: &&Occupant| !occupant.kind.is_matched();
@@ -79,48 +86,29 @@ impl AdaptiveFront {
                 break;
             };
             given |= 1 << slot;
-            self.level.fates.uncount(slots.get(slot));
+            level.fates.uncount(slots.get(slot));
             let fate = match kind {
                 OccupantKind::Matched => SlotFate::Matched,
-                OccupantKind::Child(..) if particles.len() >= self.level.max_particles => {
-                    self.level.capped = true;
+                OccupantKind::Child(..) if particles.len() >= level.max_particles => {
+                    level.capped = true;
                     SlotFate::Capped
                 }
                 OccupantKind::Child(child, clearance) => {
-                    self.enter_child(particles, which, slot as u32, &child, clearance);
+                    let (centre, normal) = (particles.position[parent], particles.normal[parent]);
+                    let PredictedChild { direction, distance, turn, slope, largest, .. } = child;
+                    let circle = ChildCircle { centre, normal, direction, radius: distance, guess: turn };
+                    let parent_radius = particles.radius[parent];
+                    let proposal = Proposal { circle, parent: which as u32, parent_radius, slope, largest };
+                    self.proposals.push(proposal);
+                    let (position, normal, radius) = (centre + child.offset, child.normal, child.radius);
+                    let spot = SurfacePoint { position, normal, radius, curvature: Curvature::default() };
+                    level.enter(particles, parent, slot, &spot, clearance);
                     SlotFate::Open
                 }
             };
             slots.set(slot, fate);
-            self.level.fates.count(fate);
+            level.fates.count(fate);
         }
         particles.slots[parent] = slots;
-    }
-
-    /// Gives a child of parent `which` of the level its provisional place.
-    fn enter_child(
-        &mut self,
-        particles: &mut Particles,
-        which: usize,
-        slot: u32,
-        child: &PredictedChild,
-        clearance: f32,
-    ) {
-        let parent = self.parents.level[which].particle as usize;
-        let index = particles.len() as u32;
-        let (centre, normal) = (particles.position[parent], particles.normal[parent]);
-        let position = centre + child.offset;
-        let level = particles.level[parent] + 1;
-        particles.push(position, child.normal, child.radius, parent as u32, level, initial_slots());
-        let &PredictedChild { direction, distance, turn, slope, largest, .. } = child;
-        let circle = ChildCircle { centre, normal, direction, radius: distance, guess: turn };
-        let parent_radius = particles.radius[parent];
-        self.children.list.push(AdaptiveChild {
-            proposal: Proposal { circle, parent_radius, slope, largest },
-            slot,
-            handle: self.grids.insert(position, child.radius, index),
-            parent: which as u32,
-            clearance,
-        });
     }
 }

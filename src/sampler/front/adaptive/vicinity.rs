@@ -3,7 +3,7 @@
 use super::{FrontRules, LISTED, RING, TOUCHING};
 use crate::particles::Particles;
 use crate::sampler::front::adaptive::arcs::{ParentRing, PredictedChild};
-use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
+use crate::sampler::front::level::FrontLevel;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::sheet::{PointPair, is_level};
 use crate::spatial::Neighbour;
@@ -45,17 +45,16 @@ pub(super) struct Vicinity {
 }
 
 impl Vicinity {
-    /// Reads the particles `found` around `parent`: into the ring those that its children may collide with, and into the
+    /// Reads the particles that were found around `parent`: into the ring those that its children may collide with, and into the
     /// neighbour `lists`, if it has none there yet, those before it that repel it. The ones before it are final, and so is its
-    /// list. Particles before `settled` have their exact radius. Says whether all that were found are of the parent's sheet.
+    /// list. Settled particles have their exact radius. Says whether all that were found are of the parent's sheet.
     pub(super) fn read(
         &mut self,
-        found: &[Neighbour],
+        level: &FrontLevel,
         lists: Option<&mut PackedNeighbours>,
         particles: &Particles,
         parent: usize,
         rules: &FrontRules,
-        settled: usize,
     ) -> bool {
         let (normal, radius) = (particles.normal[parent], particles.radius[parent]);
         let exact_sq = (RING * radius) * (RING * radius);
@@ -63,11 +62,10 @@ impl Vicinity {
         self.ring.clear();
         self.touching.clear();
         let mut alone = true;
-        let mut is_weighted = false;
-        let list = found.iter().map(|near| {
+        let mut read = |near: &Neighbour| {
             let j = near.index as usize;
             if j == parent {
-                return (near.index, false);
+                return (false, 1.0);
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
             let pair = PointPair { offset: near.offset, normal, other };
@@ -75,25 +73,19 @@ impl Vicinity {
                 if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
                     self.touching.push(self.ring.len() as u32);
                 }
-                let is_exact = j < settled && near.distance_sq <= exact_sq;
+                let is_exact = j < level.settled && near.distance_sq <= exact_sq;
                 self.ring.push(near.offset, particles.radius[j], is_exact);
             } else {
                 alone = false;
             }
             let reach = LISTED * both;
-            let along = other.dot(normal);
-            let is_listed = (j < parent) & (near.distance_sq <= reach * reach);
-            is_weighted |= is_listed & (along < FULL_COSINE);
-            (near.index, is_listed & (along > LISTED_COSINE))
-        });
-        if let Some(lists) = lists {
-            lists.push(list);
-            if is_weighted {
-                found.iter().for_each(|near| lists.note_weighted(near.index as usize));
-            }
-        } else {
-            // Walking through the list fills the ring and the touching.
-            list.for_each(drop);
+            ((j < parent) & (near.distance_sq <= reach * reach), other.dot(normal))
+        };
+        match lists {
+            Some(lists) => lists.list(&level.found, read),
+            None => level.found.iter().for_each(|near| {
+                read(near);
+            }),
         }
         alone
     }

@@ -6,11 +6,11 @@
 //! neighbours (a Delaunay triangle in the tangent plane), and places a particle at the centre if that is far enough from all
 //! others.
 
-use super::UniformFront;
+use super::UniformPlacing;
 use crate::math::tangent_frame;
 use crate::particles::{SlotFate, Slots};
-use crate::sampler::front::level::FrontContext;
-use crate::sampler::neighbours::constants::{FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE};
+use crate::sampler::front::level::{FrontContext, FrontLevel, Placing};
+use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN};
 use crate::sampler::projection::{ChildCircle, CircleLanding};
 use crate::spatial::Neighbour;
 use glam::Vec2;
@@ -30,56 +30,39 @@ const WIDEST: f32 = 1.25;
 /// Largest number of neighbours considered. The two rings of a lattice have 18.
 const CAPACITY: usize = 24;
 
-/// The pass over the seams and its result.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SeamPass {
-    /// Particles on a seam, in the order of the front; the pass has visited those before `next`.
-    pub(crate) seams: Vec<u32>,
-    next: usize,
-    /// Particles placed.
-    pub(crate) filled: u64,
-}
-
-impl SeamPass {
-    pub(crate) fn clear(&mut self) {
-        self.seams.clear();
-        self.next = 0;
-        self.filled = 0;
-    }
-
-    /// Whether every particle on a seam has been visited.
-    pub(crate) fn is_done(&self) -> bool {
-        self.next >= self.seams.len()
-    }
-}
-
-impl UniformFront {
+impl UniformPlacing {
     /// Visits up to `budget` particles on seams and returns the rest of the budget.
-    pub(crate) fn fill_gaps(&mut self, context: &mut FrontContext, mut budget: u32) -> u32 {
-        while budget > 0 && !self.gaps.is_done() {
-            let i = self.gaps.seams[self.gaps.next] as usize;
-            self.gaps.next += 1;
+    pub(in crate::sampler::front) fn fill_gaps(
+        &mut self,
+        level: &mut FrontLevel,
+        context: &mut FrontContext,
+        mut budget: u32,
+    ) -> u32 {
+        while budget > 0 && self.begin_filling(level) {
+            let i = self.seams[self.next_seam] as usize;
+            self.next_seam += 1;
             budget -= 1;
-            if context.particles.len() < self.level.max_particles {
-                self.fill_beside(context, i);
+            if context.particles.len() < level.max_particles {
+                self.fill_beside(level, context, i);
             }
         }
         budget
     }
 
     /// Fills the widest gap beside particle `i`, if a particle has room there.
-    fn fill_beside(&mut self, context: &mut FrontContext, i: usize) {
+    fn fill_beside(&mut self, level: &mut FrontLevel, context: &mut FrontContext, i: usize) {
         let FrontContext { probe, neighbours, particles, .. } = context;
         let (p, n, patch) = (particles.position[i], particles.normal[i], particles.patch_of(i));
         probe.select(patch);
         let spacing = 2.0 * self.radius;
-        self.gather(particles, patch, p, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius);
+        let reach = (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius;
+        level.gather(particles, patch, p, |_| reach);
         // The neighbours of the sheet are mapped to the tangent plane: they keep their direction there and their distance in
         // space. The unit is 2r.
         let (u, w) = tangent_frame(n);
         let mut plane = [Vec2::ZERO; CAPACITY];
         let mut count = 0;
-        for near in &self.found {
+        for near in &level.found {
             let j = near.index as usize;
             let flat = Vec2::new(near.offset.dot(u), near.offset.dot(w));
             let length = flat.length();
@@ -93,38 +76,27 @@ impl UniformFront {
         let direction = (u * centre.x + w * centre.y) / width;
         let circle =
             ChildCircle { centre: p, normal: n, direction, radius: width * spacing, guess: [1.0, 0.0] };
-        let landing = &mut self.children.solutions;
-        probe.land_on_circles(&[circle], self.tolerance, landing);
-        let CircleLanding::On { position, normal } = landing[0] else { return };
-        let is_inside = self.level.bounds.contains(position) && probe.is_on_patch(position, patch);
+        probe.land_on_circles(&[circle], self.tolerance, &mut self.landings);
+        let CircleLanding::On { position, normal } = self.landings[0] else { return };
+        let is_inside = level.bounds.contains(position) && probe.is_on_patch(position, patch);
         if !is_inside || normal.dot(n) <= 0.0 {
             return;
         }
-        self.gather(particles, patch, position, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius);
+        level.gather(particles, patch, position, |_| reach);
         let same_sheet = |near: &&Neighbour| particles.normal[near.index as usize].dot(normal) > 0.0;
         let clear = GAP * spacing;
-        if self.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
+        if level.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
             return;
         }
-        let mut is_weighted = false;
-        neighbours.push(self.found.iter().map(|near| {
-            let along = particles.normal[near.index as usize].dot(normal);
-            is_weighted |= along < FULL_COSINE;
-            (near.index, along > LISTED_COSINE)
-        }));
-        if is_weighted {
-            self.found.iter().for_each(|near| neighbours.note_weighted(near.index as usize));
-            neighbours.note_weighted(particles.len());
-        }
-        let level = particles.level[i] + 1;
-        self.grid.insert(position, particles.len() as u32);
+        neighbours.list(&level.found, |near| (true, particles.normal[near.index as usize].dot(normal)));
+        level.grids.insert(position, self.radius, particles.len() as u32);
         // The particle has neighbours all around, so it places no children.
         let mut slots = Slots::default();
         slots.set(0, SlotFate::Parent);
         (1..6).for_each(|k| slots.set(k, SlotFate::Matched));
-        particles.push(position, normal, self.radius, i as u32, level, slots);
-        self.gaps.filled += 1;
-        self.level.settled += 1;
+        particles.push(position, normal, self.radius, i as u32, particles.level[i] + 1, slots);
+        level.filled += 1;
+        level.settled += 1;
     }
 }
 
