@@ -30,7 +30,6 @@ pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Forecast, Progress};
 pub use refine::{Refusal, Spot};
 pub use settings::{COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode};
-pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;

@@ -7,75 +7,33 @@
 use crate::differential::Curvature;
 use crate::sampler::settings::{LawKind, Settings};
 
-/// Law by the chord error: the gap between the surface and a triangle of neighbours is at most ε.
+/// Returns the radius that a law gives where the surface has a curvature. `size` is the chord error ε of the law by it, a length; of the
+/// others it is the factor s, a pure number.
 ///
-/// The middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if h =
-/// √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2. This law is the default, since its
-/// parameter is the easiest to understand.
-///
-/// # Differs from the paper
-///
-/// The paper scales κ₁ + κ₂; see [`SumOfCurvatures`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ChordError {
-    /// Chord error ε, a length.
-    pub error: f64,
-}
-
-/// Law by the largest curvature, r = s / max(|κ₁|, |κ₂|): the normals of neighbours differ by about 2s radians in the
-/// direction of the largest curvature.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaxCurvature {
-    /// Factor s of the law, a pure number.
-    pub scale: f64,
-}
-
-/// The paper's law, r = s / |κ₁ + κ₂| (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum vanishes on
-/// symmetric saddles, which get the largest radius.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SumOfCurvatures {
-    /// Factor s of the law, a pure number.
-    pub scale: f64,
-}
-
-impl ChordError {
-    /// Returns the radius of a particle: infinite on a plane, 0 where the radius of curvature is below ε/2.
-    #[must_use]
-    pub fn radius(&self, curvature: &Curvature) -> f32 {
-        let error = self.error as f32;
-        let bend_radius = 1.0 / curvature.max_abs();
-        0.5 * (3.0 * error * (2.0 * bend_radius - error)).max(0.0).sqrt()
+/// * Chord error: the middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if h =
+///   √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2: infinite on a plane, 0 where R is below ε/2. This law
+///   is the default, since its parameter is the easiest to understand.
+/// * Largest curvature: r = s / max(|κ₁|, |κ₂|), infinite on a plane. The normals of neighbours differ by about 2s radians in the
+///   direction of the largest curvature.
+/// * Sum of curvatures: r = s / |κ₁ + κ₂|, the paper's law (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum
+///   vanishes on symmetric saddles, where the radius is infinite.
+fn law_radius(law: LawKind, size: f32, curvature: &Curvature) -> f32 {
+    match law {
+        LawKind::ChordError => {
+            let bend_radius = 1.0 / curvature.max_abs();
+            0.5 * (3.0 * size * (2.0 * bend_radius - size)).max(0.0).sqrt()
+        }
+        LawKind::MaxCurvature => size / curvature.max_abs(),
+        LawKind::SumOfCurvatures => size / (2.0 * curvature.mean().abs()),
     }
-}
-
-impl MaxCurvature {
-    /// Returns the radius of a particle: infinite on a plane.
-    #[must_use]
-    pub fn radius(&self, curvature: &Curvature) -> f32 {
-        self.scale as f32 / curvature.max_abs()
-    }
-}
-
-impl SumOfCurvatures {
-    /// Returns the radius of a particle: infinite where the mean curvature vanishes.
-    #[must_use]
-    pub fn radius(&self, curvature: &Curvature) -> f32 {
-        self.scale as f32 / (2.0 * curvature.mean().abs())
-    }
-}
-
-/// A law for the radius, with its parameters.
-#[derive(Clone, Copy, Debug)]
-enum Law {
-    ChordError(ChordError),
-    MaxCurvature(MaxCurvature),
-    SumOfCurvatures(SumOfCurvatures),
 }
 
 /// The law of a run, with its clamp, and the factor on all radii that makes the count match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizingLaw {
-    law: Law,
+    law: LawKind,
+    /// Chord error or factor of the law.
+    size: f32,
     /// Smallest and largest radius, before the factor.
     least: f32,
     greatest: f32,
@@ -85,13 +43,14 @@ pub(crate) struct SizingLaw {
 impl SizingLaw {
     /// Returns the law that `settings` ask for in a box with this diagonal.
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
-        let scale = settings.curvature_scale;
+        let law = settings.radius_law;
+        let size = match law {
+            LawKind::ChordError => settings.chord_error * diagonal,
+            LawKind::MaxCurvature | LawKind::SumOfCurvatures => settings.curvature_scale,
+        };
         Self {
-            law: match settings.radius_law {
-                LawKind::ChordError => Law::ChordError(ChordError { error: settings.chord_error * diagonal }),
-                LawKind::MaxCurvature => Law::MaxCurvature(MaxCurvature { scale }),
-                LawKind::SumOfCurvatures => Law::SumOfCurvatures(SumOfCurvatures { scale }),
-            },
+            law,
+            size: size as f32,
             least: (settings.radius_min_share * diagonal) as f32,
             greatest: (settings.radius_max_share * diagonal) as f32,
             factor: 1.0,
@@ -121,11 +80,7 @@ impl SizingLaw {
     /// Returns the radius where the surface has this curvature.
     #[inline]
     pub(crate) fn radius(&self, curvature: &Curvature) -> f32 {
-        let radius = match self.law {
-            Law::ChordError(law) => law.radius(curvature),
-            Law::MaxCurvature(law) => law.radius(curvature),
-            Law::SumOfCurvatures(law) => law.radius(curvature),
-        };
+        let radius = law_radius(self.law, self.size, curvature);
         // NaN, which stands for an undefined curvature, is not above the smallest radius.
         let radius = if radius > self.least { radius.min(self.greatest) } else { self.least };
         radius * self.factor
@@ -144,7 +99,11 @@ mod tests {
     #[test]
     fn chord_error_is_the_gap_of_an_inscribed_triangle() {
         for (error, bend_radius) in [(1e-3, 1.0), (1e-4, 0.3), (0.05, 0.2)] {
-            let radius = f64::from(ChordError { error }.radius(&curved(1.0 / bend_radius as f32, 0.0)));
+            let radius = f64::from(law_radius(
+                LawKind::ChordError,
+                error as f32,
+                &curved(1.0 / bend_radius as f32, 0.0),
+            ));
             // A side of 2r puts the corners at circumradius 2r/√3 from the foot of the sphere's centre.
             let corner_sq = 4.0 * radius * radius / 3.0;
             let gap = bend_radius - (bend_radius * bend_radius - corner_sq).sqrt();
@@ -153,15 +112,15 @@ mod tests {
                 "asked {error}, got {gap} on a sphere of {bend_radius}"
             );
         }
-        assert_eq!(ChordError { error: 0.1 }.radius(&curved(100.0, 0.0)), 0.0);
-        assert_eq!(ChordError { error: 0.1 }.radius(&curved(0.0, 0.0)), f32::INFINITY);
+        assert_eq!(law_radius(LawKind::ChordError, 0.1, &curved(100.0, 0.0)), 0.0);
+        assert_eq!(law_radius(LawKind::ChordError, 0.1, &curved(0.0, 0.0)), f32::INFINITY);
     }
 
     #[test]
     fn curvature_laws_are_reciprocal() {
-        assert_eq!(MaxCurvature { scale: 0.5 }.radius(&curved(1.0, -4.0)), 0.125);
-        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&curved(1.0, -5.0)), 0.125);
-        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&curved(3.0, -3.0)), f32::INFINITY);
+        assert_eq!(law_radius(LawKind::MaxCurvature, 0.5, &curved(1.0, -4.0)), 0.125);
+        assert_eq!(law_radius(LawKind::SumOfCurvatures, 0.5, &curved(1.0, -5.0)), 0.125);
+        assert_eq!(law_radius(LawKind::SumOfCurvatures, 0.5, &curved(3.0, -3.0)), f32::INFINITY);
     }
 
     #[test]

@@ -7,8 +7,6 @@
 mod envelope;
 mod laws;
 
-pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
-
 use crate::differential::{Curvature, curvatures};
 use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::discovery::survey::Survey;
