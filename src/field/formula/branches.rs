@@ -306,7 +306,7 @@ pub(super) struct Branches {
     /// Roles with the parameters before, kept for their memory.
     before: Vec<NodeRole>,
     doubles: Vec<f64>,
-    ranges: Vec<Range>,
+    ranges: Vec<interval::Row<1>>,
 }
 
 impl Branches {
@@ -471,7 +471,7 @@ impl Branches {
         while let Some(at) = open.pop() {
             let part = &self.parts[at];
             interval::bounds(&self.base.graph, &part.nodes, values, bounds, &mut self.ranges);
-            let range = |id: Id| self.ranges[id as usize];
+            let range = |id: Id| self.ranges[id as usize].at(0);
             if range(part.root).is_nonzero() {
                 continue;
             }

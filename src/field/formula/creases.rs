@@ -193,7 +193,7 @@ fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
 /// Memory that the cells of a search use again.
 #[derive(Default)]
 struct TieScratch {
-    ranges: Vec<interval::Range>,
+    ranges: Vec<interval::Row<1>>,
     reaches: Vec<TieReach>,
 }
 
@@ -292,10 +292,10 @@ impl TieSearch<'_> {
     }
 
     /// Whether f may be zero in the cell where a choice is tied, which the cell is [open to](Self::open_to).
-    fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Range>) -> bool {
+    fn may_be_tied(&self, id: Id, cell: &Bounds, ranges: &mut Vec<interval::Row<1>>) -> bool {
         let Tie { roots, nodes, .. } = &self.ties[self.ties.partition_point(|tie| tie.choice < id)];
         interval::bounds(&self.base.graph, nodes, self.values, cell, ranges);
-        !roots.iter().any(|&root| ranges[root as usize].is_nonzero())
+        !roots.iter().any(|&root| ranges[root as usize].at(0).is_nonzero())
     }
 
     /// The choices, out of `choices`, whose operands may be equal somewhere in the cell and on which f depends there, with their reach;
@@ -304,7 +304,7 @@ impl TieSearch<'_> {
         let (base, part) = (self.base, self.part);
         let TieScratch { ranges, reaches, .. } = scratch;
         interval::bounds(&base.graph, &part.nodes, self.values, cell, ranges);
-        let range = |id: Id| ranges[id as usize];
+        let range = |id: Id| ranges[id as usize].at(0);
         let mut open_to = Vec::new();
         if range(part.root).is_nonzero() {
             return open_to;

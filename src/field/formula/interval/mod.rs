@@ -14,163 +14,70 @@ use super::MAX_OPERATIONS;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
-use super::registers::RegisterAllocator;
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
+use core::borrow::Borrow;
 pub(super) use range::Range;
-use rows::{BOXES, Row};
+pub(super) use rows::Row;
 
-/// Operation of a step. Its operands a, b and c are rows unless stated otherwise.
-#[derive(Clone, Copy, Debug)]
-enum BoxOp {
-    /// Uniform a over every box.
-    Fill,
-    Unary(Unary),
-    Power(i32),
-    Binary(Binary),
-    /// Row a times uniform b.
-    Scale,
-    Smin,
-    /// Row c where row a is at most row b, or, with `false`, where it is not; else 0.
-    If(bool),
-}
-
-#[derive(Clone, Copy, Debug)]
-struct BoxStep {
-    op: BoxOp,
-    out: u32,
-    operands: [u32; 3],
-}
+/// Number of boxes whose bounds are computed together: enough to hide the cost of finding out which operation comes next.
+const BOXES: usize = 32;
 
 /// A graph compiled for boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BoxProgram {
-    /// Nodes that depend on no coordinate; their operands are indices into this list.
-    uniform_nodes: Vec<Node>,
-    /// Current bounds of the uniform nodes. They contain the rounding errors, so they are seldom single numbers.
-    uniforms: Vec<Range>,
-    steps: Vec<BoxStep>,
-    /// Rows of the results.
-    outputs: Vec<u32>,
-    /// The first three are the coordinates.
-    rows: Vec<Row>,
+    /// The nodes that the results need; their operands are indices into this list.
+    nodes: Vec<Node>,
+    /// Bounds of each node over the boxes at hand. Those of a node that depends on no coordinate stay, and as they contain the rounding
+    /// errors they are seldom single numbers.
+    rows: Vec<Row<BOXES>>,
+    /// The nodes that depend on a coordinate.
+    varying: Vec<Id>,
+    /// Nodes of the results.
+    outputs: Vec<Id>,
 }
 
 impl BoxProgram {
     /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
-        let mut program = Self::default();
-        let mut uniform = vec![0_u32; graph.len()];
-        // Virtual row of each node, later replaced by a real one.
-        let mut row = vec![u32::MAX; graph.len()];
-        let mut next = 3_u32;
-        for id in graph.needed_by(outputs) {
-            let node = graph.node(id);
-            if graph.is_uniform(id) {
-                uniform[id as usize] = program.uniform_nodes.len() as u32;
-                program.uniform_nodes.push(node.mapped(|operand| uniform[operand as usize]));
-                continue;
-            }
-            if let Node::Coordinate(axis) = node {
-                row[id as usize] = u32::from(axis);
-                continue;
-            }
-            let exact = |operand: Id| graph.is_uniform(operand);
-            let scaled = matches!(node, Node::Binary(Binary::Mul, _, b) if exact(b));
-            let mut operands = [0; 3];
-            let mut k = 0;
-            node.operands(|operand| {
-                operands[k] = if scaled && k == 1 {
-                    uniform[operand as usize]
-                } else {
-                    program.row_of(graph, operand, &uniform, &mut row, &mut next)
-                };
-                k += 1;
-            });
-            let op = match node {
-                Node::Unary(operation, _) => BoxOp::Unary(operation),
-                Node::Power(_, n) => BoxOp::Power(n),
-                Node::Binary(_, _, _) if scaled => BoxOp::Scale,
-                Node::Binary(operation, _, _) => BoxOp::Binary(operation),
-                Node::Smin(_, _, _) => BoxOp::Smin,
-                Node::If(at_most, ..) => BoxOp::If(at_most),
-                Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => {
-                    unreachable!("dealt with above")
-                }
-            };
-            row[id as usize] = next;
-            program.steps.push(BoxStep { op, out: next, operands });
-            next += 1;
+        let needed = graph.needed_by(outputs);
+        let mut new = vec![0; graph.len()];
+        (0..).zip(&needed).for_each(|(index, &id)| new[id as usize] = index);
+        let new = |id: Id| new[id as usize];
+        Self {
+            nodes: needed.iter().map(|&id| graph.node(id).mapped(new)).collect(),
+            rows: vec![Row::ZERO; needed.len()],
+            varying: needed.iter().filter(|&&id| !graph.is_uniform(id)).map(|&id| new(id)).collect(),
+            outputs: outputs.iter().map(|&id| new(id)).collect(),
         }
-        for &id in outputs {
-            let output = program.row_of(graph, id, &uniform, &mut row, &mut next);
-            program.outputs.push(output);
-        }
-        program.allocate(next);
-        program
     }
 
-    /// Virtual row of a node. A uniform node is broadcast into a row.
-    fn row_of(&mut self, graph: &Graph, id: Id, uniform: &[u32], row: &mut [u32], next: &mut u32) -> u32 {
-        if graph.is_uniform(id) && row[id as usize] == u32::MAX {
-            self.steps.push(BoxStep { op: BoxOp::Fill, out: *next, operands: [uniform[id as usize], 0, 0] });
-            row[id as usize] = *next;
-            *next += 1;
-        }
-        row[id as usize]
-    }
-
-    /// Assigns real rows to virtual ones.
-    fn allocate(&mut self, count: u32) {
-        let uses = self.steps.iter().enumerate().flat_map(|(at, step)| step.rows().map(move |row| (at, row)));
-        // The coordinates are filled in anew for each batch of boxes.
-        let kept = self.outputs.iter().copied().chain(0..3);
-        let mut real = RegisterAllocator::new(count as usize, uses, kept);
-        (0..3).for_each(|axis| _ = real.assign(axis));
-        for (at, step) in self.steps.iter_mut().enumerate() {
-            let used = *step;
-            for (operand, is_row) in step.operands.iter_mut().zip(step.op.row_operands()) {
-                if is_row {
-                    *operand = real.of(*operand);
-                }
-            }
-            real.free(at, used.rows());
-            step.out = real.assign(used.out);
-        }
-        self.outputs.iter_mut().for_each(|row| *row = real.of(*row));
-        self.rows = vec![Row::ZERO; real.count()];
-    }
-
-    /// Recomputes the bounds of the uniform nodes from the values of the parameters.
+    /// Recomputes the bounds of the nodes that depend on no coordinate from the values of the parameters.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
-        self.uniforms.clear();
-        for &node in &self.uniform_nodes {
-            let coordinate = |_| unreachable!("a coordinate is not uniform");
-            let range = range_of(node, parameters, coordinate, |id| self.uniforms[id as usize]);
-            self.uniforms.push(range);
+        for (at, &node) in self.nodes.iter().enumerate() {
+            if self.varying.binary_search(&(at as Id)).is_err() {
+                let none = |_| unreachable!("a coordinate varies");
+                let of = |id: Id| Row::<1>::fill(self.rows[id as usize].at(0));
+                self.rows[at] = Row::fill(row_of(node, 1, parameters, none, of).at(0));
+            }
         }
     }
 
-    /// Number of operations.
+    /// Number of operations for each box.
     pub(super) fn operations(&self) -> usize {
-        self.steps.len()
+        self.varying.len()
     }
 
     /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
     fn run(&mut self, boxes: &[Bounds], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
         for (first, boxes) in (0..).step_by(BOXES).zip(boxes.chunks(BOXES)) {
             let n = boxes.len();
-            for axis in 0..3 {
-                let row = &mut self.rows[axis];
-                for k in 0..BOXES {
-                    // The last box pads the row: arbitrary numbers could be slow in some lanes.
-                    let Bounds { min, max } = boxes[k.min(n - 1)];
-                    (row.lo[k], row.hi[k]) = (min[axis].min(max[axis]), min[axis].max(max[axis]));
-                }
-            }
-            for at in 0..self.steps.len() {
-                let step = self.steps[at];
-                self.rows[step.out as usize] = self.execute(&step, n);
+            // The last box pads the row: arbitrary numbers could be slow in some lanes.
+            let coordinate =
+                |axis: u8| Row::each(BOXES, |k| Range::of_coordinate(&boxes[k.min(n - 1)], axis));
+            for &at in &self.varying {
+                let row = row_of(self.nodes[at as usize], n, &[], coordinate, |id| &self.rows[id as usize]);
+                self.rows[at as usize] = row;
             }
             for k in 0..n {
                 take(first + k, &|output| self.rows[self.outputs[output] as usize].at(k));
@@ -191,104 +98,78 @@ impl BoxProgram {
             out[i] = Sym3 { xx, xy, xz, yy, yz, zz };
         });
     }
-
-    fn execute(&self, step: &BoxStep, n: usize) -> Row {
-        let [a, b, c] = step.operands;
-        let row = |operand: u32| &self.rows[operand as usize];
-        match step.op {
-            BoxOp::Fill => Row::fill(self.uniforms[a as usize]),
-            BoxOp::Unary(operation) => match operation {
-                Unary::Neg => row(a).neg(),
-                Unary::Square => row(a).square(),
-                Unary::Abs => row(a).abs(),
-                Unary::Sqrt => row(a).sqrt(),
-                Unary::Sign => row(a).sign(),
-                Unary::Sin => row(a).sine(false),
-                Unary::Cos => row(a).sine(true),
-                _ => Row::each(n, |k| row(a).at(k).unary(operation)),
-            },
-            BoxOp::Power(2) => row(a).square(),
-            BoxOp::Power(n_th) => Row::each(n, |k| row(a).at(k).power(n_th)),
-            BoxOp::Scale => {
-                let factor = self.uniforms[b as usize];
-                if factor.bounds.lo == factor.bounds.hi && !factor.is_empty() {
-                    row(a).scale(factor.bounds.lo)
-                } else {
-                    row(a).mul(&Row::fill(factor))
-                }
-            }
-            BoxOp::Binary(operation) => match operation {
-                Binary::Add => row(a).add(row(b)),
-                Binary::Sub => row(a).sub(row(b)),
-                Binary::Mul => row(a).mul(row(b)),
-                Binary::Min => row(a).min(row(b)),
-                Binary::Max => row(a).max(row(b)),
-                _ => Row::each(n, |k| row(a).at(k).binary(operation, row(b).at(k))),
-            },
-            BoxOp::Smin => Row::each(n, |k| Range::smooth_minimum(row(a).at(k), row(b).at(k), row(c).at(k))),
-            BoxOp::If(at_most) => {
-                Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), at_most))
-            }
-        }
-    }
 }
 
-/// Bounds of a node, from those of the coordinates and of its operands.
-fn range_of(
+/// Bounds of a node over the first `n` boxes of a row, from those of the coordinates and of its operands.
+fn row_of<const N: usize, R: Borrow<Row<N>>>(
     node: Node,
+    n: usize,
     parameters: &[f64],
-    coordinate: impl Fn(u8) -> Range,
-    known: impl Fn(Id) -> Range,
-) -> Range {
+    coordinate: impl Fn(u8) -> Row<N>,
+    known: impl Fn(Id) -> R,
+) -> Row<N> {
     match node {
-        Node::Constant(bits) => Range::exactly(f64::from_bits(bits)),
-        Node::Parameter(index) => Range::exactly(parameters[index as usize]),
+        Node::Constant(bits) => Row::fill(Range::exactly(f64::from_bits(bits))),
+        Node::Parameter(index) => Row::fill(Range::exactly(parameters[index as usize])),
         Node::Coordinate(axis) => coordinate(axis),
-        Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => {
-            Row::fill(known(a)).sine(operation == Unary::Cos).at(0)
+        Node::Unary(operation, a) => {
+            let a = known(a);
+            let a = a.borrow();
+            match operation {
+                Unary::Neg => a.neg(),
+                Unary::Square => a.square(),
+                Unary::Abs => a.abs(),
+                Unary::Sqrt => a.sqrt(),
+                Unary::Sign => a.sign(),
+                Unary::Sin => a.sine(false),
+                Unary::Cos => a.sine(true),
+                _ => Row::each(n, |k| a.at(k).unary(operation)),
+            }
         }
-        Node::Unary(operation, a) => known(a).unary(operation),
-        Node::Power(a, n) => known(a).power(n),
-        Node::Binary(operation, a, b) => known(a).binary(operation, known(b)),
-        Node::Smin(a, b, k) => Range::smooth_minimum(known(a), known(b), known(k)),
-        Node::If(at_most, a, b, v) => Range::choice(known(a), known(b), known(v), at_most),
+        Node::Power(a, 2) => known(a).borrow().square(),
+        Node::Power(a, exponent) => {
+            let a = known(a);
+            Row::each(n, |k| a.borrow().at(k).power(exponent))
+        }
+        Node::Binary(operation, a, b) => {
+            let (a, b) = (known(a), known(b));
+            let (a, b) = (a.borrow(), b.borrow());
+            match operation {
+                Binary::Add => a.add(b),
+                Binary::Sub => a.sub(b),
+                Binary::Mul => a.mul(b),
+                Binary::Div => a.mul(&Row::each(n, |k| b.at(k).reciprocal())),
+                Binary::Min => a.min(b),
+                Binary::Max => a.max(b),
+                Binary::Pow => Row::each(n, |k| a.at(k).real_power(b.at(k))),
+                Binary::Atan2 => Row::each(n, |k| a.at(k).angle(b.at(k))),
+            }
+        }
+        Node::Smin(a, b, width) => {
+            let [a, b, width] = [a, b, width].map(known);
+            let at = |row: &R, k: usize| row.borrow().at(k);
+            Row::each(n, |k| Range::smooth_minimum(at(&a, k), at(&b, k), at(&width, k)))
+        }
+        Node::If(at_most, a, b, value) => {
+            let [a, b, value] = [a, b, value].map(known);
+            let at = |row: &R, k: usize| row.borrow().at(k);
+            Row::each(n, |k| Range::choice(at(&a, k), at(&b, k), at(&value, k), at_most))
+        }
     }
 }
 
-/// Bounds of `nodes` over a box: `ranges` gets those of each at its index. The operands of each have to be among them.
+/// Bounds of `nodes` over a box: `rows` gets those of each at its index. The operands of each have to be among them.
 pub(super) fn bounds(
     graph: &Graph,
     nodes: &[Id],
     parameters: &[f64],
     bounds: &Bounds,
-    ranges: &mut Vec<Range>,
+    rows: &mut Vec<Row<1>>,
 ) {
-    ranges.resize(graph.len().max(ranges.len()), Range::exactly(0.0));
+    rows.resize(graph.len().max(rows.len()), Row::ZERO);
     for &id in nodes {
-        let coordinate =
-            |axis: u8| Range::between(bounds.min[usize::from(axis)], bounds.max[usize::from(axis)]);
-        let range = range_of(graph.node(id), parameters, coordinate, |id| ranges[id as usize]);
-        ranges[id as usize] = range;
-    }
-}
-
-impl BoxOp {
-    /// Whether each of the operands is a row.
-    fn row_operands(self) -> [bool; 3] {
-        match self {
-            Self::Fill => [false; 3],
-            Self::Unary(_) | Self::Power(_) | Self::Scale => [true, false, false],
-            Self::Binary(_) => [true, true, false],
-            Self::Smin | Self::If(_) => [true; 3],
-        }
-    }
-}
-
-impl BoxStep {
-    /// Operands that are rows.
-    fn rows(&self) -> impl Iterator<Item = u32> {
-        let (used, operands) = (self.op.row_operands(), self.operands);
-        (0..3).filter(move |&k| used[k]).map(move |k| operands[k])
+        let coordinate = |axis: u8| Row::fill(Range::of_coordinate(bounds, axis));
+        rows[id as usize] = row_of(graph.node(id), 1, parameters, coordinate, |id| &rows[id as usize]);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
-use crate::field::formula::operations::{Binary, Unary, sign};
-use crate::math::Interval;
+use crate::field::formula::operations::Unary;
+use crate::math::{Bounds, Interval};
 
 /// Bounds of the values of an operation over a box, with its [other properties](super::flags).
 #[derive(Clone, Copy, Debug)]
@@ -35,9 +35,22 @@ pub(super) fn up(value: f64) -> f64 {
 }
 
 /// `value` moved by `share` of its magnitude, or `otherwise` for NaN.
-pub(super) fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
+fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
     let moved = value + value.abs() * share;
     if moved.is_nan() { otherwise } else { moved }
+}
+
+pub(super) fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+pub(super) fn greatest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The absolute values of numbers.
+pub(super) fn absolute(Interval { lo, hi }: Interval) -> Interval {
+    Interval::new(greatest(0.0, greatest(lo, -hi)), greatest(-lo, hi))
 }
 
 /// Lower bound of a result that a library function rounded to `value`.
@@ -79,9 +92,10 @@ impl Range {
         if value.is_nan() { NOTHING } else { Self { bounds: Interval::new(value, value), flags: REGULAR } }
     }
 
-    /// Everything from `lo` to `hi`, the ends in either order.
-    pub(super) fn between(lo: f64, hi: f64) -> Self {
-        Self { bounds: Interval::new(lo.min(hi), lo.max(hi)), flags: REGULAR }
+    /// The values of a coordinate in a box, whose corners may be in either order.
+    pub(super) fn of_coordinate(bounds: &Bounds, axis: u8) -> Self {
+        let [a, b] = [bounds.min, bounds.max].map(|corner| corner[usize::from(axis)]);
+        Self { bounds: Interval::new(a.min(b), a.max(b)), flags: REGULAR }
     }
 
     pub(super) fn is_empty(self) -> bool {
@@ -114,32 +128,15 @@ impl Range {
         )
     }
 
-    /// Range of an increasing step function.
-    fn steps(self, f: impl Fn(f64) -> f64) -> Self {
-        let (lo, hi) = (f(self.bounds.lo), f(self.bounds.hi));
-        let flags = joined(self.flags, self.flags);
-        Self { bounds: Interval::new(lo, hi), flags: if lo == hi { flags } else { flags & !CONTINUOUS } }
-    }
-
     /// The range of values that are no smaller than `least`, whatever rounding says.
     fn at_least(self, least: f64) -> Self {
         Self { bounds: Interval::new(self.bounds.lo.max(least), self.bounds.hi), flags: self.flags }
     }
 
-    fn neg(self) -> Self {
-        Self { bounds: -self.bounds, flags: self.flags }
-    }
-
-    fn add(self, other: Self) -> Self {
-        Self::rounded(self.bounds + other.bounds, joined(self.flags, other.flags))
-    }
-
-    fn mul(self, other: Self) -> Self {
-        let nonzero = if self.is_nonzero() && other.is_nonzero() { NONZERO } else { 0 };
-        Self::rounded(self.bounds * other.bounds, joined(self.flags, other.flags) | nonzero)
-    }
-
     pub(super) fn reciprocal(self) -> Self {
+        if self.is_empty() {
+            return NOTHING;
+        }
         let flags = joined(self.flags, self.flags);
         let Interval { lo, hi } = self.bounds;
         let inverse = Interval::new(1.0 / hi, 1.0 / lo);
@@ -158,14 +155,7 @@ impl Range {
     }
 
     fn abs(self) -> Self {
-        let Interval { lo, hi } = self.bounds;
-        if lo >= 0.0 {
-            self
-        } else if hi <= 0.0 {
-            self.neg()
-        } else {
-            Self { bounds: Interval::new(0.0, hi.max(-lo)), flags: self.flags }
-        }
+        Self { bounds: absolute(self.bounds), ..self }
     }
 
     fn tangent(self) -> Self {
@@ -188,22 +178,16 @@ impl Range {
             return NOTHING;
         }
         match operation {
-            Unary::Neg => self.neg(),
-            Unary::Square => self.mul(self),
-            Unary::Sqrt => {
-                let cut = self.cut(0.0, f64::INFINITY);
-                if cut.is_empty() {
-                    return NOTHING;
-                }
-                Self::rounded(
-                    Interval::new(cut.bounds.lo.sqrt(), cut.bounds.hi.sqrt()),
-                    joined(cut.flags, cut.flags),
-                )
+            Unary::Neg | Unary::Square | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos => {
+                unreachable!("computed in rows")
             }
             Unary::Cbrt => self.increasing(libm::cbrt),
-            Unary::Abs => self.abs(),
-            Unary::Sign => self.steps(sign),
-            Unary::Floor => self.steps(libm::floor),
+            Unary::Floor => {
+                let (lo, hi) = (libm::floor(self.bounds.lo), libm::floor(self.bounds.hi));
+                let flags = joined(self.flags, self.flags);
+                let flags = if lo == hi { flags } else { flags & !CONTINUOUS };
+                Self { bounds: Interval::new(lo, hi), flags }
+            }
             Unary::Exp => self.increasing(libm::exp).at_least(0.0),
             Unary::Ln | Unary::Log10 => {
                 let cut = self.cut(0.0, f64::INFINITY);
@@ -216,7 +200,6 @@ impl Range {
                     ..range
                 }
             }
-            Unary::Sin | Unary::Cos => unreachable!("computed in rows"),
             Unary::Tan => self.tangent(),
             Unary::Asin | Unary::Acos => {
                 let cut = self.cut(-1.0, 1.0);
@@ -239,26 +222,11 @@ impl Range {
         }
     }
 
-    pub(super) fn binary(self, operation: Binary, other: Self) -> Self {
-        if self.is_empty() || other.is_empty() {
+    /// Range of self^exponent for any exponent.
+    pub(super) fn real_power(self, exponent: Self) -> Self {
+        if self.is_empty() || exponent.is_empty() {
             return NOTHING;
         }
-        let flags = joined(self.flags, other.flags);
-        let (a, b) = (self.bounds, other.bounds);
-        match operation {
-            Binary::Add => self.add(other),
-            Binary::Sub => self.add(other.neg()),
-            Binary::Mul => self.mul(other),
-            Binary::Div => self.mul(other.reciprocal()),
-            Binary::Min => Self { bounds: Interval::new(a.lo.min(b.lo), a.hi.min(b.hi)), flags },
-            Binary::Max => Self { bounds: Interval::new(a.lo.max(b.lo), a.hi.max(b.hi)), flags },
-            Binary::Pow => self.real_power(other),
-            Binary::Atan2 => self.angle(other),
-        }
-    }
-
-    /// Range of self^exponent for any exponent.
-    fn real_power(self, exponent: Self) -> Self {
         let Interval { lo: least, hi: greatest } = exponent.bounds;
         let has_negative = self.bounds.lo < 0.0;
         if has_negative && least == greatest && least == libm::trunc(least) {
@@ -289,7 +257,10 @@ impl Range {
     }
 
     /// Range of the angle atan2(self, across) of the point (across, self).
-    fn angle(self, across: Self) -> Self {
+    pub(super) fn angle(self, across: Self) -> Self {
+        if self.is_empty() || across.is_empty() {
+            return NOTHING;
+        }
         let flags = joined(self.flags, across.flags);
         let (y, x) = (self.bounds, across.bounds);
         // The box meets the branch cut along the negative axis, or the origin.
@@ -362,7 +333,7 @@ impl Range {
 }
 
 /// x^n for n ≥ 1 by repeated products.
-pub(super) fn integer_power(x: f64, n: u32) -> f64 {
+fn integer_power(x: f64, n: u32) -> f64 {
     let (mut result, mut square, mut rest) = (1.0, x, n);
     while rest > 0 {
         if rest & 1 == 1 {

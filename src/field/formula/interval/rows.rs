@@ -1,35 +1,37 @@
-//! Interval arithmetic over many boxes at once, in arrays that the compiler vectorises.
+//! Interval arithmetic over many boxes at once, in arrays that the compiler vectorises, or over a single one.
 //!
 //! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use super::range::{Range, down, up};
+use super::range::{Range, absolute, down, greatest, least, up};
+use crate::field::formula::operations::sign;
 use crate::math::Interval;
 use crate::math::functions::ROUNDER_F64;
 use crate::math::interval::product;
 
-/// Number of boxes in a row.
-pub(super) const BOXES: usize = 32;
-
-/// Bounds of an operation over up to [`BOXES`] boxes.
+/// Bounds of an operation over up to `N` boxes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub(super) lo: [f64; BOXES],
-    pub(super) hi: [f64; BOXES],
-    pub(super) flags: [u8; BOXES],
+pub(in crate::field::formula) struct Row<const N: usize> {
+    lo: [f64; N],
+    hi: [f64; N],
+    flags: [u8; N],
 }
 
-impl Row {
-    pub(super) const ZERO: Self = Self { lo: [0.0; BOXES], hi: [0.0; BOXES], flags: [REGULAR; BOXES] };
+impl<const N: usize> Row<N> {
+    pub(super) const ZERO: Self = Self { lo: [0.0; N], hi: [0.0; N], flags: [REGULAR; N] };
 
     /// Bounds over box `k`.
-    pub(super) fn at(&self, k: usize) -> Range {
-        Range { bounds: Interval::new(self.lo[k], self.hi[k]), flags: self.flags[k] }
+    pub(in crate::field::formula) fn at(&self, k: usize) -> Range {
+        Range { bounds: self.interval(k), flags: self.flags[k] }
+    }
+
+    fn interval(&self, k: usize) -> Interval {
+        Interval::new(self.lo[k], self.hi[k])
     }
 
     /// Returns a row with the same bounds over every box.
     pub(super) fn fill(range: Range) -> Self {
-        Self { lo: [range.bounds.lo; BOXES], hi: [range.bounds.hi; BOXES], flags: [range.flags; BOXES] }
+        Self { lo: [range.bounds.lo; N], hi: [range.bounds.hi; N], flags: [range.flags; N] }
     }
 
     /// `f` over each of the first `n` boxes.
@@ -43,15 +45,15 @@ impl Row {
     }
 
     /// Row with the bounds that `f` gives for each box.
-    fn bounds(f: impl Fn(usize) -> (f64, f64), flags: [u8; BOXES]) -> Self {
+    fn bounds(f: impl Fn(usize) -> (f64, f64), flags: [u8; N]) -> Self {
         let mut out = Self { flags, ..Self::ZERO };
-        for k in 0..BOXES {
+        for k in 0..N {
             (out.lo[k], out.hi[k]) = f(k);
         }
         out
     }
 
-    fn joined(&self, other: &Self) -> [u8; BOXES] {
+    fn joined(&self, other: &Self) -> [u8; N] {
         core::array::from_fn(|k| joined(self.flags[k], other.flags[k]))
     }
 
@@ -78,22 +80,10 @@ impl Row {
             },
             self.joined(other),
         );
-        for k in 0..BOXES {
+        for k in 0..N {
             out.flags[k] |= self.nonzero(k) & other.nonzero(k);
         }
         out
-    }
-
-    /// Product with an exact number.
-    pub(super) fn scale(&self, factor: f64) -> Self {
-        let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
-        Self::bounds(
-            |k| {
-                let (p, q) = (product(self.lo[k], factor), product(self.hi[k], factor));
-                (down(least(p, q)), up(greatest(p, q)))
-            },
-            flags,
-        )
     }
 
     /// [`NONZERO`] if box `k` certainly has no value 0, else no flag.
@@ -115,8 +105,11 @@ impl Row {
     }
 
     pub(super) fn abs(&self) -> Self {
-        let far = |k: usize| greatest(-self.lo[k], self.hi[k]);
-        Self::bounds(|k| (greatest(0.0, greatest(self.lo[k], -self.hi[k])), far(k)), self.flags)
+        let absolute = |k: usize| {
+            let Interval { lo, hi } = absolute(self.interval(k));
+            (lo, hi)
+        };
+        Self::bounds(absolute, self.flags)
     }
 
     pub(super) fn min(&self, other: &Self) -> Self {
@@ -134,7 +127,7 @@ impl Row {
             |k| (down(greatest(self.lo[k], 0.0).sqrt()), up(greatest(self.hi[k], 0.0).sqrt())),
             core::array::from_fn(|k| joined(self.flags[k], self.flags[k])),
         );
-        for k in 0..BOXES {
+        for k in 0..N {
             out.flags[k] &= if self.lo[k] < 0.0 { !DEFINED } else { !0 };
             out.flags[k] |= if self.hi[k] < 0.0 { EMPTY } else { 0 };
         }
@@ -143,17 +136,8 @@ impl Row {
 
     /// Sign, as the derivative of the absolute value: between −1 and 1 where the argument changes its sign.
     pub(super) fn sign(&self) -> Self {
-        let sign = |x: f64| {
-            if x > 0.0 {
-                1.0
-            } else if x < 0.0 {
-                -1.0
-            } else {
-                0.0
-            }
-        };
         let mut out = Self::bounds(|k| (sign(self.lo[k]), sign(self.hi[k])), self.flags);
-        for k in 0..BOXES {
+        for k in 0..N {
             out.flags[k] = joined(self.flags[k], self.flags[k]);
             out.flags[k] &= if out.lo[k] == out.hi[k] { !0 } else { !CONTINUOUS };
         }
@@ -230,14 +214,6 @@ fn sine_cosine(x: f64) -> (f64, f64) {
     let s = if quadrant & 2 != 0 { -s } else { s };
     let c = if (quadrant + 1) & 2 != 0 { -c } else { c };
     (s, c)
-}
-
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-fn greatest(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]
