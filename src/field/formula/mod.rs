@@ -282,8 +282,8 @@ impl Formula {
     /// The period of the surface, which no box closes, along each axis: see [`Field::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
-        let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
-        [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
+        let (graph, root) = self.surface_graph();
+        [0, 1, 2].map(|axis| periods::period(&graph, root, axis, &self.values))
     }
 
     /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative where the distance from the surface
@@ -318,12 +318,18 @@ impl Formula {
         self.solid.closed
     }
 
-    /// Compiles what the surface is made to, anew from f.
-    fn make_solid(&mut self) {
+    /// The graph of the surface that is made to a solid, with its node.
+    fn surface_graph(&self) -> (graph::Graph, graph::Id) {
         let equation = self.simplified.as_ref().unwrap_or(&self.equation);
         let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let mut graph = graph::Graph::default();
         let f = build::build(&mut graph, equation, &names).expect("it was built before");
+        (graph, f)
+    }
+
+    /// Compiles what the surface is made to, anew from f.
+    fn make_solid(&mut self) {
+        let (mut graph, f) = self.surface_graph();
         let root = self.solid.made_of(&mut graph, f);
         let (graph, root) = graph.part(root);
         self.use_compiled(Compiled::from_graph(graph, root, &self.values));

@@ -1,6 +1,7 @@
-//! Periods of a formula along the axes, found in its syntax tree.
+//! Periods of a formula along the axes, found in its graph.
 
-use super::ast::{Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::graph::{Graph, Id, Node};
+use super::operations::{Binary, Unary};
 use core::f64::consts::{PI, TAU};
 
 /// Largest numerator and denominator of the ratio of two periods that have a common multiple. What comes together only after
@@ -12,7 +13,7 @@ const ROUNDING: f64 = 1e-9;
 /// The dependence of a value on one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Along {
-    /// The value does not depend on the coordinate. It is given where it is a number.
+    /// The value does not depend on the coordinate. It is given where it depends on none.
     Constant(Option<f64>),
     /// The value is linear in the coordinate, with this factor.
     Linear(f64),
@@ -22,15 +23,39 @@ enum Along {
     Other,
 }
 
-/// The period of f along an axis: 0 if f does not change along it, none if f is not known to be periodic.
-pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
-    let finder = PeriodFinder { axis, parameter };
-    let left = finder.along(&equation.left);
-    let whole = match &equation.right {
-        Some(right) => sum(left, negated(finder.along(right))),
-        None => left,
-    };
-    match whole {
+/// The period of node `root` along an axis, with these values of the parameters: 0 if it does not change along it, none if it is not known
+/// to be periodic.
+pub(super) fn period(graph: &Graph, root: Id, axis: u8, parameters: &[f64]) -> Option<f64> {
+    let mut known: Vec<Along> = Vec::with_capacity(graph.len());
+    for (id, &node) in (0..).zip(graph.nodes()) {
+        let of = |id: Id| known[id as usize];
+        let along = match node {
+            _ if graph.is_uniform(id) => {
+                let number =
+                    |id: Id| if let Along::Constant(Some(value)) = of(id) { value } else { f64::NAN };
+                Along::Constant(Some(node.evaluate(parameters, [f64::NAN; 3], number)))
+            }
+            _ if graph.axes(id) >> axis & 1 == 0 => Along::Constant(None),
+            Node::Coordinate(_) => Along::Linear(1.0),
+            Node::Unary(Unary::Neg, a) => negated(of(a)),
+            Node::Binary(Binary::Add, a, b) => sum(of(a), of(b)),
+            Node::Binary(Binary::Sub, a, b) => sum(of(a), negated(of(b))),
+            Node::Binary(Binary::Mul, a, b) => product(of(a), of(b)),
+            Node::Unary(operation @ (Unary::Sin | Unary::Cos | Unary::Tan), a) => match of(a) {
+                Along::Linear(factor) => {
+                    Along::Periodic(if operation == Unary::Tan { PI } else { TAU } / factor.abs())
+                }
+                other => joined(other, Along::Constant(None)),
+            },
+            node => {
+                let mut all = Along::Constant(None);
+                node.operands(|operand| all = joined(all, of(operand)));
+                all
+            }
+        };
+        known.push(along);
+    }
+    match known[root as usize] {
         Along::Constant(_) => Some(0.0),
         Along::Periodic(period) => Some(period),
         Along::Linear(_) | Along::Other => None,
@@ -47,70 +72,15 @@ pub(super) fn is_whole(width: f64, period: f64) -> bool {
     period == 0.0 || whole >= 1.0 && (whole * period - width).abs() <= SLACK * width
 }
 
-/// Finder of the dependence of expressions on one coordinate.
-struct PeriodFinder<'a> {
-    axis: u8,
-    parameter: &'a dyn Fn(&str) -> Option<f64>,
-}
-
-impl PeriodFinder<'_> {
-    fn along(&self, expr: &Expr) -> Along {
-        match &expr.kind {
-            ExprKind::Number(value) => Along::Constant(Some(*value)),
-            ExprKind::Constant(constant) => Along::Constant(Some(Constant::value(*constant))),
-            ExprKind::Parameter(name) => Along::Constant((self.parameter)(name)),
-            ExprKind::Coordinate(axis) if *axis == self.axis => Along::Linear(1.0),
-            ExprKind::Coordinate(_) => Along::Constant(None),
-            ExprKind::Negated(inner) => negated(self.along(inner)),
-            ExprKind::Sum(terms) => terms.iter().fold(Along::Constant(Some(0.0)), |before, (sign, term)| {
-                let term = self.along(term);
-                sum(before, if *sign == Sign::Minus { negated(term) } else { term })
-            }),
-            ExprKind::Product(factors) => {
-                factors.iter().fold(Along::Constant(Some(1.0)), |before, (factor, term)| {
-                    let term = self.along(term);
-                    product(before, if *factor == Factor::Over { inverse(term) } else { term })
-                })
-            }
-            ExprKind::Power(base, exponent) => joined(self.along(base), self.along(exponent)),
-            ExprKind::Call(function, arguments) => self.call(*function, arguments),
-        }
-    }
-
-    fn call(&self, function: Function, arguments: &[Expr]) -> Along {
-        let turn = match function {
-            Function::Sin | Function::Cos => Some(TAU),
-            Function::Tan => Some(PI),
-            _ => None,
-        };
-        let values: Vec<Along> = arguments.iter().map(|argument| self.along(argument)).collect();
-        match (turn, values.as_slice()) {
-            (Some(turn), [Along::Linear(factor)]) => Along::Periodic(turn / factor.abs()),
-            _ => values.into_iter().fold(Along::Constant(None), joined),
-        }
-    }
-}
-
 fn negated(value: Along) -> Along {
     match value {
-        Along::Constant(Some(value)) => Along::Constant(Some(-value)),
         Along::Linear(factor) => Along::Linear(-factor),
         other => other,
     }
 }
 
-fn inverse(value: Along) -> Along {
-    match value {
-        Along::Constant(Some(value)) if value != 0.0 => Along::Constant(Some(1.0 / value)),
-        Along::Constant(_) => Along::Constant(None),
-        Along::Periodic(period) => Along::Periodic(period),
-        Along::Linear(_) | Along::Other => Along::Other,
-    }
-}
-
 fn sum(a: Along, b: Along) -> Along {
     match (a, b) {
-        (Along::Constant(Some(a)), Along::Constant(Some(b))) => Along::Constant(Some(a + b)),
         (Along::Linear(a), Along::Linear(b)) if a + b == 0.0 => Along::Constant(None),
         (Along::Linear(a), Along::Linear(b)) => Along::Linear(a + b),
         (Along::Linear(factor), Along::Constant(_)) | (Along::Constant(_), Along::Linear(factor)) => {
@@ -122,7 +92,6 @@ fn sum(a: Along, b: Along) -> Along {
 
 fn product(a: Along, b: Along) -> Along {
     match (a, b) {
-        (Along::Constant(Some(a)), Along::Constant(Some(b))) => Along::Constant(Some(a * b)),
         (Along::Linear(factor), Along::Constant(Some(by)))
         | (Along::Constant(Some(by)), Along::Linear(factor))
             if by != 0.0 =>
