@@ -125,20 +125,6 @@ fn binary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lane
     }
 }
 
-/// Applies `f` to the operands a and c.
-fn binary_ac(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
-    for ((out, a), c) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.c)) {
-        out.set(f(a.get(), c.get()));
-    }
-}
-
-fn ternary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
-    let operands = registers.get(i.a).iter().zip(registers.get(i.b)).zip(registers.get(i.c));
-    for (out, ((a, b), c)) in registers.get(i.out).iter().zip(operands) {
-        out.set(f(a.get(), b.get(), c.get()));
-    }
-}
-
 /// Applies a long function `f` to a copy of the register, in one loop that the compiler vectorises. A function pointer,
 /// called once per register, keeps a single copy of this code.
 fn long(registers: &RegisterCells<'_>, i: &Instruction, f: fn(&mut [f32])) {
@@ -244,25 +230,14 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
                 _ => unreachable!("only differences and quotients are compiled reversed"),
             }
         }
-        Op::If(at_most) => ternary(registers, i, |a, b, c| {
-            Lanes(core::array::from_fn(|k| if (a.0[k] <= b.0[k]) == at_most { c.0[k] } else { 0.0 }))
-        }),
-        Op::MulAdd => ternary(registers, i, |a, b, c| a * b + c),
-        Op::MulSub => ternary(registers, i, |a, b, c| a * b - c),
-        Op::SubMul => ternary(registers, i, |a, b, c| c - a * b),
-        Op::MulAddUniform => {
-            let c = u(i.c);
-            binary(registers, i, |a, b| a * b + c);
+        Op::If(at_most) => {
+            let [a, b, c] = [i.a, i.b, i.c].map(|operand| registers.get(operand));
+            for (k, out) in registers.get(i.out).iter().enumerate() {
+                let [a, b, c] = [a, b, c].map(|operand| operand[k].get().0);
+                let value = |k: usize| if (a[k] <= b[k]) == at_most { c[k] } else { 0.0 };
+                out.set(Lanes(core::array::from_fn(value)));
+            }
         }
-        Op::ScaleAdd => {
-            let b = u(i.b);
-            binary_ac(registers, i, |a, c| a * b + c);
-        }
-        Op::ScaleAddUniform => {
-            let (b, c) = (u(i.b), u(i.c));
-            unary(registers, i, |a| a * b + c);
-        }
-        Op::SquareAdd => binary_ac(registers, i, |a, c| a * a + c),
     }
 }
 

@@ -2,8 +2,7 @@
 //!
 //! A node that depends on no coordinate is a *uniform*. It is computed once, in double precision, whenever a parameter
 //! changes, and enters the instructions as a broadcast operand. The varying nodes are lowered: integer powers become
-//! products, smooth minima their polynomial. A product with a single use is fused with the sum that uses it (still two
-//! roundings, but one pass over memory). A register is reused as soon as its value is dead, so that a block of points
+//! products, smooth minima their polynomial. A register is reused as soon as its value is dead, so that a block of points
 //! stays in the first-level cache.
 
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
@@ -33,20 +32,6 @@ pub(super) enum Op {
     Reversed(Binary),
     /// R[c] where R[a] ≤ R[b], or, with `false`, where it is not; else 0
     If(bool),
-    /// R[a] · R[b] + R[c]
-    MulAdd,
-    /// R[a] · R[b] − R[c]
-    MulSub,
-    /// R[c] − R[a] · R[b]
-    SubMul,
-    /// R[a] · R[b] + U[c]
-    MulAddUniform,
-    /// R[a] · U[b] + R[c]
-    ScaleAdd,
-    /// R[a] · U[b] + U[c]
-    ScaleAddUniform,
-    /// R[a]² + R[c]
-    SquareAdd,
 }
 
 /// An instruction. Unused operands are 0, and the result may overwrite an operand.
@@ -300,7 +285,7 @@ impl<'a> Compiler<'a> {
                     stack.push(operand);
                 }
             };
-            self.inputs(top, push);
+            self.graph.node(top).operands(push);
             // The operand that needs most registers is computed first, from the top of the stack: the result of any
             // other would occupy a register meanwhile.
             sort_few(&mut stack[before..], |&a, &b| {
@@ -311,46 +296,6 @@ impl<'a> Compiler<'a> {
                 self.register[top as usize] = Some(self.emit(top));
                 stack.pop();
             }
-        }
-    }
-
-    /// Calls `visit` with the nodes that the instruction of `id` reads.
-    fn inputs(&self, id: Id, mut visit: impl FnMut(Id)) {
-        // A fused product is not computed by itself, so its factors take its place.
-        match self.fusion(id) {
-            Some((product, other)) => {
-                visit(other);
-                self.graph.node(product).operands(visit);
-            }
-            None => self.graph.node(id).operands(visit),
-        }
-    }
-
-    /// Product that is fused into the sum or difference `id`, with the other operand.
-    fn fusion(&self, id: Id) -> Option<(Id, Id)> {
-        let Node::Binary(Binary::Add | Binary::Sub, a, b) = self.graph.node(id) else { return None };
-        let subtraction = matches!(self.graph.node(id), Node::Binary(Binary::Sub, _, _));
-        let fusable = |candidate: Id, other: Id| {
-            if self.graph.is_uniform(candidate)
-                || self.uses[candidate as usize] != 1
-                || self.register[candidate as usize].is_some()
-            {
-                return false;
-            }
-            match self.graph.node(candidate) {
-                Node::Unary(Unary::Square, _) => !subtraction && !self.graph.is_uniform(other),
-                Node::Binary(Binary::Mul, _, factor) => {
-                    !subtraction || !(self.graph.is_uniform(factor) || self.graph.is_uniform(other))
-                }
-                _ => false,
-            }
-        };
-        if fusable(b, a) {
-            Some((b, a))
-        } else if fusable(a, b) {
-            Some((a, b))
-        } else {
-            None
         }
     }
 
@@ -372,9 +317,6 @@ impl<'a> Compiler<'a> {
 
     /// Emits the instruction of a varying node and returns its virtual register.
     fn emit(&mut self, id: Id) -> u32 {
-        if let Some((product, other)) = self.fusion(id) {
-            return self.emit_fused(id, product, other);
-        }
         match self.graph.node(id) {
             Node::Coordinate(axis) => u32::from(axis),
             Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => self.emit_sine_or_cosine(operation, a),
@@ -436,44 +378,6 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn emit_fused(&mut self, id: Id, product: Id, other: Id) -> u32 {
-        let minuend = matches!(self.graph.node(id), Node::Binary(Binary::Sub, a, _) if a == product);
-        let subtrahend = matches!(self.graph.node(id), Node::Binary(Binary::Sub, _, b) if b == product);
-        match self.graph.node(product) {
-            Node::Unary(_, a) => {
-                let operands = [self.operand(a), 0, self.operand(other)];
-                self.push(Op::SquareAdd, operands)
-            }
-            Node::Binary(_, a, b) if self.graph.is_uniform(b) => {
-                let (a, b) = (self.operand(a), self.uniform(b));
-                if self.graph.is_uniform(other) {
-                    let operands = [a, b, self.uniform(other)];
-                    self.push(Op::ScaleAddUniform, operands)
-                } else {
-                    let operands = [a, b, self.operand(other)];
-                    self.push(Op::ScaleAdd, operands)
-                }
-            }
-            Node::Binary(_, a, b) => {
-                let (a, b) = (self.operand(a), self.operand(b));
-                if self.graph.is_uniform(other) {
-                    let operands = [a, b, self.uniform(other)];
-                    return self.push(Op::MulAddUniform, operands);
-                }
-                let operands = [a, b, self.operand(other)];
-                let op = if minuend {
-                    Op::MulSub
-                } else if subtrahend {
-                    Op::SubMul
-                } else {
-                    Op::MulAdd
-                };
-                self.push(op, operands)
-            }
-            _ => unreachable!("only products and squares are fused"),
-        }
-    }
-
     /// Assigns real registers to virtual ones.
     fn allocate(&mut self) {
         let steps = || self.code.iter().enumerate().skip(3);
@@ -516,15 +420,11 @@ fn index(length: usize) -> u32 {
 fn register_operands(op: Op) -> [bool; 3] {
     match op {
         Op::Splat | Op::Second => [false; 3],
-        Op::Unary(_)
-        | Op::Reciprocal
-        | Op::SineCosine
-        | Op::Uniform(_)
-        | Op::Reversed(_)
-        | Op::ScaleAddUniform => [true, false, false],
-        Op::Binary(_) | Op::MulAddUniform => [true, true, false],
-        Op::If(_) | Op::MulAdd | Op::MulSub | Op::SubMul => [true; 3],
-        Op::ScaleAdd | Op::SquareAdd => [true, false, true],
+        Op::Unary(_) | Op::Reciprocal | Op::SineCosine | Op::Uniform(_) | Op::Reversed(_) => {
+            [true, false, false]
+        }
+        Op::Binary(_) => [true, true, false],
+        Op::If(_) => [true; 3],
     }
 }
 
