@@ -6,7 +6,7 @@
 use super::operations::{Binary, Unary};
 use super::program::{Instruction, Location, Op, Program};
 use crate::math::functions;
-use crate::math::{LANES, Lanes, Sym3};
+use crate::math::{LANES, Lanes};
 use core::cell::Cell;
 use glam::Vec3;
 
@@ -16,44 +16,21 @@ pub(super) const BLOCK: usize = 16;
 /// Intended maximum size of the register file in bytes: half of a small first-level cache.
 const FILE_BYTES: usize = 16 * 1024;
 
-/// Register file for a block of points, which grows as needed and is reused.
-#[derive(Clone, Debug, Default)]
-pub(super) struct RegisterFile {
-    file: Vec<Lanes>,
-}
-
-/// Receiver of the results of each block.
-pub(super) trait Sink {
-    /// Takes the results of the points `first..first + count`.
-    fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>);
-}
-
-/// Results of a block.
-pub(super) struct Outputs<'a> {
-    program: &'a Program,
-    file: &'a [Lanes],
-    stride: usize,
-}
-
-impl Outputs<'_> {
-    /// Result `n` of the points `8 group..8 group + 8` of the block.
-    fn lanes(&self, n: usize, group: usize) -> Lanes {
-        match self.program.outputs[n] {
-            Location::Register(register) => self.file[register as usize * self.stride + group],
-            Location::Uniform(uniform) => Lanes::splat(self.program.uniforms[uniform as usize]),
-        }
-    }
-}
-
-/// Evaluates `program` at `points` and passes the results to `sink`, block by block.
-pub(super) fn run(program: &Program, scratch: &mut RegisterFile, points: &[Vec3], sink: &mut impl Sink) {
+/// Evaluates `program` at `points`, and calls `store` with the index of each and the first `N` results there. `file` is the memory of the
+/// registers, which grows as needed and is reused.
+pub(super) fn run<const N: usize>(
+    program: &Program,
+    file: &mut Vec<Lanes>,
+    points: &[Vec3],
+    mut store: impl FnMut(usize, [f32; N]),
+) {
     let bytes_per_group = size_of::<Lanes>() * program.registers.max(1);
     let stride = (FILE_BYTES / bytes_per_group).clamp(1, BLOCK);
     let needed = stride * program.registers;
-    if scratch.file.len() < needed {
-        scratch.file.resize(needed, Lanes::default());
+    if file.len() < needed {
+        file.resize(needed, Lanes::default());
     }
-    let file = &mut scratch.file[..needed];
+    let file = &mut file[..needed];
     let mut first = 0;
     for block in points.chunks(stride * LANES) {
         let groups = block.len().div_ceil(LANES);
@@ -66,8 +43,14 @@ pub(super) fn run(program: &Program, scratch: &mut RegisterFile, points: &[Vec3]
         for instruction in &program.instructions {
             execute(instruction, &program.uniforms, &RegisterCells { cells, stride, groups });
         }
-        sink.store(first, block.len(), &Outputs { program, file, stride });
-        first += block.len();
+        for (group, points) in block.chunks(LANES).enumerate() {
+            let results: [Lanes; N] = core::array::from_fn(|n| match program.outputs[n] {
+                Location::Register(register) => file[register as usize * stride + group],
+                Location::Uniform(uniform) => Lanes::splat(program.uniforms[uniform as usize]),
+            });
+            (0..points.len()).for_each(|lane| store(first + lane, results.map(|lanes| lanes.0[lane])));
+            first += points.len();
+        }
     }
 }
 
@@ -262,61 +245,5 @@ fn execute_unary(operation: Unary, i: &Instruction, registers: &RegisterCells<'_
         Unary::Sinh => long(registers, i, functions::sinh_all),
         Unary::Cosh => long(registers, i, functions::cosh_all),
         Unary::Tanh => long(registers, i, functions::tanh_all),
-    }
-}
-
-/// Sink of result 0 as value.
-pub(super) struct Values<'a>(pub(super) &'a mut [f32]);
-
-impl Sink for Values<'_> {
-    fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
-        for (group, chunk) in self.0[first..first + count].chunks_mut(LANES).enumerate() {
-            chunk.copy_from_slice(&outputs.lanes(0, group).0[..chunk.len()]);
-        }
-    }
-}
-
-/// Sink of results 0 … 3 as value and gradient.
-pub(super) struct Gradients<'a> {
-    pub(super) value: &'a mut [f32],
-    pub(super) gradient: &'a mut [Vec3],
-}
-
-impl Sink for Gradients<'_> {
-    fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
-        Values(self.value).store(first, count, outputs);
-        let (whole, rest) = self.gradient[first..first + count].as_chunks_mut::<LANES>();
-        for (group, chunk) in whole.iter_mut().enumerate() {
-            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, group).0);
-            for (k, gradient) in chunk.iter_mut().enumerate() {
-                *gradient = Vec3::new(x[k], y[k], z[k]);
-            }
-        }
-        let group = whole.len();
-        if !rest.is_empty() {
-            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, group).0);
-            for (k, gradient) in rest.iter_mut().enumerate() {
-                *gradient = Vec3::new(x[k], y[k], z[k]);
-            }
-        }
-    }
-}
-
-/// Sink of results 0 … 9 as value, gradient and Hessian (xx, xy, xz, yy, yz, zz).
-pub(super) struct Hessians<'a> {
-    pub(super) value: &'a mut [f32],
-    pub(super) gradient: &'a mut [Vec3],
-    pub(super) hessian: &'a mut [Sym3<f32>],
-}
-
-impl Sink for Hessians<'_> {
-    fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
-        Gradients { value: self.value, gradient: self.gradient }.store(first, count, outputs);
-        for (group, chunk) in self.hessian[first..first + count].chunks_mut(LANES).enumerate() {
-            let [xx, xy, xz, yy, yz, zz] = [4, 5, 6, 7, 8, 9].map(|n| outputs.lanes(n, group).0);
-            for (k, hessian) in chunk.iter_mut().enumerate() {
-                *hessian = Sym3 { xx: xx[k], xy: xy[k], xz: xz[k], yy: yy[k], yz: yz[k], zz: zz[k] };
-            }
-        }
     }
 }

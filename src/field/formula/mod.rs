@@ -60,7 +60,7 @@ pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Bounded, Enclosure, Field, Jet, UnitCell};
-use crate::math::{Bounds, Interval, Sym3};
+use crate::math::{Bounds, Interval, Lanes, Sym3};
 use crate::slices::Work;
 use ast::{COORDINATES, Constant, Equation, Function};
 use branches::Branches;
@@ -161,7 +161,7 @@ pub struct Formula {
 /// Memory that evaluations use again.
 #[derive(Clone, Debug, Default)]
 struct EvaluationScratch {
-    registers: eval::RegisterFile,
+    registers: Vec<Lanes>,
     /// Values of the nodes in double precision, with derivatives up to the second, with first ones, and alone.
     jets: scalar::JetScratch,
     slopes: Vec<scalar::ForwardJet<0>>,
@@ -573,7 +573,7 @@ impl Field for Formula {
             return;
         }
         let value = &mut value[..points.len()];
-        eval::run(&compiled.value_program, &mut self.scratch.registers, points, &mut eval::Values(value));
+        eval::run(&compiled.value_program, &mut self.scratch.registers, points, |k, [f]| value[k] = f);
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
@@ -590,9 +590,10 @@ impl Field for Formula {
             }
             return;
         }
-        let mut sink =
-            eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
-        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, &mut sink);
+        let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
+        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, |k, [f, x, y, z]| {
+            (value[k], gradient[k]) = (f, Vec3::new(x, y, z));
+        });
     }
 
     fn hessians(
@@ -612,12 +613,12 @@ impl Field for Formula {
             }
             return;
         }
-        let mut sink = eval::Hessians {
-            value: &mut value[..points.len()],
-            gradient: &mut gradient[..points.len()],
-            hessian: &mut hessian[..points.len()],
+        let program = compiled.hessian_program(&self.values);
+        let store = |k: usize, [f, x, y, z, xx, xy, xz, yy, yz, zz]: [f32; 10]| {
+            (value[k], gradient[k]) = (f, Vec3::new(x, y, z));
+            hessian[k] = Sym3 { xx, xy, xz, yy, yz, zz };
         };
-        eval::run(compiled.hessian_program(&self.values), &mut self.scratch.registers, points, &mut sink);
+        eval::run(program, &mut self.scratch.registers, points, store);
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
