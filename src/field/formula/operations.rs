@@ -4,8 +4,6 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Unary {
     Neg,
-    /// Only in lowered graphs; elsewhere a square is an integer power.
-    Square,
     Sqrt,
     Cbrt,
     Abs,
@@ -62,7 +60,6 @@ impl Unary {
     pub(super) fn evaluate(self, a: f64) -> f64 {
         match self {
             Self::Neg => -a,
-            Self::Square => a * a,
             Self::Sqrt => a.sqrt(),
             Self::Cbrt => libm::cbrt(a),
             Self::Abs => a.abs(),
@@ -88,7 +85,6 @@ impl Unary {
         let value = self.evaluate(a);
         let (first, second) = match self {
             Self::Neg => (-1.0, 0.0),
-            Self::Square => (2.0 * a, 2.0),
             Self::Sqrt => (0.5 / value, -0.25 / (value * a)),
             Self::Cbrt => (1.0 / (3.0 * value * value), -2.0 / (9.0 * value * value * a)),
             Self::Abs => (sign(a), 0.0),

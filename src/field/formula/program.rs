@@ -148,7 +148,7 @@ fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
     outputs.iter().map(|&output| map[output as usize]).collect()
 }
 
-/// Graph of `outputs` in which varying integer powers are products, squares and reciprocals (`Power(_, -1)`).
+/// Graph of `outputs` in which varying integer powers are products and reciprocals (`Power(_, -1)`).
 fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
     /// x^n for n ≥ 1 by squaring: x^(2m) = (x^m)², x^(2m+1) = x · x^(2m).
     fn product(low: &mut Graph, x: Id, n: u32) -> Id {
@@ -156,7 +156,7 @@ fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
             return x;
         }
         let half = product(low, x, n / 2);
-        let square = low.intern(Node::Unary(Unary::Square, half));
+        let square = low.intern(Node::Binary(Binary::Mul, half, half));
         if n.is_multiple_of(2) { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
     }
     let mut low = Graph::default();

@@ -117,7 +117,6 @@ fn row_of<const N: usize, R: Borrow<Row<N>>>(
             let a = a.borrow();
             match operation {
                 Unary::Neg => a.neg(),
-                Unary::Square => a.square(),
                 Unary::Abs => a.abs(),
                 Unary::Sqrt => a.sqrt(),
                 Unary::Sign => a.sign(),
@@ -234,14 +233,7 @@ pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Fac
             Node::Power(a, n) if n > 0 => open.push(a),
             Node::Power(_, _) => {}
             Node::Unary(
-                Unary::Neg
-                | Unary::Square
-                | Unary::Sqrt
-                | Unary::Cbrt
-                | Unary::Abs
-                | Unary::Atan
-                | Unary::Sinh
-                | Unary::Tanh,
+                Unary::Neg | Unary::Sqrt | Unary::Cbrt | Unary::Abs | Unary::Atan | Unary::Sinh | Unary::Tanh,
                 a,
             ) => open.push(a),
             _ if factors.contains(&id) => {}

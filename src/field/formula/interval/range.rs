@@ -178,7 +178,7 @@ impl Range {
             return NOTHING;
         }
         match operation {
-            Unary::Neg | Unary::Square | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos => {
+            Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos => {
                 unreachable!("computed in rows")
             }
             Unary::Cbrt => self.increasing(libm::cbrt),
