@@ -8,8 +8,6 @@
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::registers::RegisterAllocator;
-use crate::math::sort_few;
-use core::cmp::Reverse;
 
 /// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -179,48 +177,26 @@ struct Compiler<'a> {
     graph: &'a Graph,
     outputs: &'a [Id],
     program: Program,
+    /// The nodes that the outputs need, in the order of the graph, which is that of the instructions.
+    needed: Vec<Id>,
     /// Index in `uniform_nodes` of each uniform node that is needed.
-    uniform: Vec<Option<u32>>,
+    uniform: Vec<u32>,
     /// Instructions over virtual registers. The virtual register of an instruction is its index.
     code: Vec<Instruction>,
     /// Virtual register of each varying node.
     register: Vec<Option<u32>>,
-    /// Number of uses of each node.
-    uses: Vec<u32>,
-    /// Number of registers that it takes to compute each node if nothing is shared (R. Sethi & J. D. Ullman, "The
-    /// Generation of Optimal Code for Arithmetic Expressions", 1970).
-    registers_needed: Vec<u32>,
 }
 
 impl<'a> Compiler<'a> {
     fn new(graph: &'a Graph, outputs: &'a [Id]) -> Self {
-        let mut uses = vec![0; graph.len()];
-        for id in graph.needed_by(outputs) {
-            graph.node(id).operands(|operand| uses[operand as usize] += 1);
-        }
-        outputs.iter().for_each(|&output| uses[output as usize] += 1);
-        let mut registers_needed: Vec<u32> = Vec::with_capacity(graph.len());
-        for node in graph.nodes() {
-            let mut operands = Vec::new();
-            node.operands(|operand| {
-                if !graph.is_uniform(operand) {
-                    operands.push(registers_needed[operand as usize]);
-                }
-            });
-            sort_few(&mut operands, |a, b| a > b);
-            // The results of the operands computed before occupy a register each.
-            let needed = (0..).zip(&operands).map(|(before, own)| before + own).max();
-            registers_needed.push(needed.unwrap_or(0).max(1));
-        }
         Self {
             graph,
             outputs,
             program: Program::default(),
-            uniform: vec![None; graph.len()],
+            needed: graph.needed_by(outputs),
+            uniform: vec![0; graph.len()],
             code: Vec::new(),
             register: vec![None; graph.len()],
-            uses,
-            registers_needed,
         }
     }
 
@@ -229,74 +205,25 @@ impl<'a> Compiler<'a> {
             // The coordinates have the first three virtual registers, used or not.
             self.push(Op::Splat, [axis, 0, 0]);
         }
-        for index in 0..self.outputs.len() {
-            self.schedule(self.outputs[index]);
+        for at in 0..self.needed.len() {
+            let id = self.needed[at];
+            if self.graph.is_uniform(id) {
+                let node = self.graph.node(id).mapped(|operand| self.uniform[operand as usize]);
+                self.uniform[id as usize] = index(self.program.uniform_nodes.len());
+                self.program.uniform_nodes.push(node);
+            } else if self.register[id as usize].is_none() {
+                self.register[id as usize] = Some(self.emit(id));
+            }
         }
         for &output in self.outputs {
-            let location = if self.graph.is_uniform(output) {
-                Location::Uniform(self.uniform(output))
-            } else {
-                Location::Register(self.register[output as usize].expect("outputs are scheduled"))
+            let location = match self.register[output as usize] {
+                Some(register) => Location::Register(register),
+                None => Location::Uniform(self.uniform[output as usize]),
             };
             self.program.outputs.push(location);
         }
         self.allocate();
         self.program
-    }
-
-    /// Index of a uniform node in `uniform_nodes`, to which it is appended with its operands if it is new.
-    fn uniform(&mut self, id: Id) -> u32 {
-        let mut stack = vec![id];
-        while let Some(&top) = stack.last() {
-            if self.uniform[top as usize].is_some() {
-                stack.pop();
-                continue;
-            }
-            let before = stack.len();
-            self.graph.node(top).operands(|operand| {
-                if self.uniform[operand as usize].is_none() {
-                    stack.push(operand);
-                }
-            });
-            if stack.len() == before {
-                let node = self.graph.node(top).mapped(|operand| self.uniform[operand as usize].unwrap_or(0));
-                self.uniform[top as usize] = Some(index(self.program.uniform_nodes.len()));
-                self.program.uniform_nodes.push(node);
-                stack.pop();
-            }
-        }
-        self.uniform[id as usize].unwrap_or(0)
-    }
-
-    /// Emits the instructions of `root` and of its operands, operands first.
-    fn schedule(&mut self, root: Id) {
-        if self.graph.is_uniform(root) {
-            return;
-        }
-        let mut stack = vec![root];
-        while let Some(&top) = stack.last() {
-            if self.register[top as usize].is_some() {
-                stack.pop();
-                continue;
-            }
-            let before = stack.len();
-            let push = |operand: Id| {
-                if !self.graph.is_uniform(operand) && self.register[operand as usize].is_none() {
-                    stack.push(operand);
-                }
-            };
-            self.graph.node(top).operands(push);
-            // The operand that needs most registers is computed first, from the top of the stack: the result of any
-            // other would occupy a register meanwhile.
-            sort_few(&mut stack[before..], |&a, &b| {
-                (self.registers_needed[a as usize], Reverse(a))
-                    < (self.registers_needed[b as usize], Reverse(b))
-            });
-            if stack.len() == before {
-                self.register[top as usize] = Some(self.emit(top));
-                stack.pop();
-            }
-        }
     }
 
     fn push(&mut self, op: Op, [a, b, c]: [u32; 3]) -> u32 {
@@ -308,10 +235,9 @@ impl<'a> Compiler<'a> {
     /// Virtual register of an operand. A uniform operand is broadcast into a register.
     fn operand(&mut self, id: Id) -> u32 {
         if self.graph.is_uniform(id) {
-            let uniform = self.uniform(id);
-            self.push(Op::Splat, [uniform, 0, 0])
+            self.push(Op::Splat, [self.uniform[id as usize], 0, 0])
         } else {
-            self.register[id as usize].expect("operands are scheduled first")
+            self.register[id as usize].expect("operands come first")
         }
     }
 
@@ -334,7 +260,7 @@ impl<'a> Compiler<'a> {
                 self.push(Op::If(at_most), operands)
             }
             Node::Constant(_) | Node::Parameter(_) | Node::Smin(_, _, _) => {
-                unreachable!("uniform nodes are not scheduled, smooth minima were expanded")
+                unreachable!("uniform nodes have no instruction, smooth minima were expanded")
             }
         }
     }
@@ -344,10 +270,9 @@ impl<'a> Compiler<'a> {
     fn emit_sine_or_cosine(&mut self, operation: Unary, a: Id) -> u32 {
         let angle = self.operand(a);
         let other = if operation == Unary::Sin { Unary::Cos } else { Unary::Sin };
-        let partner = self
-            .graph
-            .find(Node::Unary(other, a))
-            .filter(|&partner| self.uses[partner as usize] > 0 && self.register[partner as usize].is_none());
+        let partner = self.graph.find(Node::Unary(other, a)).filter(|partner| {
+            self.needed.binary_search(partner).is_ok() && self.register[*partner as usize].is_none()
+        });
         let Some(partner) = partner else { return self.push(Op::Unary(operation), [angle, 0, 0]) };
         let sine = self.push(Op::SineCosine, [angle, 0, 0]);
         let cosine = self.push(Op::Second, [0, 0, 0]);
@@ -360,15 +285,15 @@ impl<'a> Compiler<'a> {
         let commutes = matches!(operation, Binary::Add | Binary::Mul | Binary::Min | Binary::Max);
         match (self.graph.is_uniform(a), self.graph.is_uniform(b)) {
             (false, true) if commutes || operation == Binary::Pow => {
-                let operands = [self.operand(a), self.uniform(b), 0];
+                let operands = [self.operand(a), self.uniform[b as usize], 0];
                 self.push(Op::Uniform(operation), operands)
             }
             (true, false) if commutes => {
-                let operands = [self.operand(b), self.uniform(a), 0];
+                let operands = [self.operand(b), self.uniform[a as usize], 0];
                 self.push(Op::Uniform(operation), operands)
             }
             (true, false) if matches!(operation, Binary::Sub | Binary::Div) => {
-                let operands = [self.operand(b), self.uniform(a), 0];
+                let operands = [self.operand(b), self.uniform[a as usize], 0];
                 self.push(Op::Reversed(operation), operands)
             }
             _ => {
