@@ -67,13 +67,16 @@ impl ByParameters {
         let parts = (0..count.max(1))
             .step_by(3)
             .map(|first| {
-                graph.part_with(root, &|node| match node {
-                    Node::Coordinate(axis) => Node::Parameter(count as u32 + u32::from(axis)),
-                    Node::Parameter(k) if (first..first + 3).contains(&(k as usize)) => {
-                        Node::Coordinate((k as usize - first) as u8)
-                    }
-                    node => node,
-                })
+                let (part, roots) = graph.rewritten(&[root], |part, node| {
+                    part.intern(match node {
+                        Node::Coordinate(axis) => Node::Parameter(count as u32 + u32::from(axis)),
+                        Node::Parameter(k) if (first..first + 3).contains(&(k as usize)) => {
+                            Node::Coordinate((k as usize - first) as u8)
+                        }
+                        node => node,
+                    })
+                });
+                (part, roots[0])
             })
             .collect();
         Self { parts, scratch: Vec::new() }

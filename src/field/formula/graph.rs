@@ -215,18 +215,22 @@ impl Graph {
 
     /// The graph of node `root` alone, in the same order, with the node's index in it.
     pub(super) fn part(&self, root: Id) -> (Self, Id) {
-        self.part_with(root, &|leaf| leaf)
+        let (part, roots) = self.rewritten(&[root], Self::intern);
+        (part, roots[0])
     }
 
-    /// [`Graph::part`] with other coordinates, parameters and constants.
-    pub(super) fn part_with(&self, root: Id, leaf: &dyn Fn(Node) -> Node) -> (Self, Id) {
-        let mut part = Self::default();
+    /// A graph of `outputs` with their indices in it: `write` adds each node that they need, in the same order.
+    pub(super) fn rewritten(
+        &self,
+        outputs: &[Id],
+        mut write: impl FnMut(&mut Self, Node) -> Id,
+    ) -> (Self, Vec<Id>) {
+        let mut other = Self::default();
         let mut map = vec![0; self.len()];
-        for id in self.needed_by(&[root]) {
-            let node = leaf(self.node(id)).mapped(|operand| map[operand as usize]);
-            map[id as usize] = part.intern(node);
+        for id in self.needed_by(outputs) {
+            map[id as usize] = write(&mut other, self.node(id).mapped(|operand| map[operand as usize]));
         }
-        (part, map[root as usize])
+        (other, outputs.iter().map(|&output| map[output as usize]).collect())
     }
 
     /// Index of `node`, or of its value if all operands are constants.

@@ -70,9 +70,11 @@ impl Program {
     /// Compiles the nodes `outputs` of `graph`. The uniforms have no values until [`Program::set_parameters`] is
     /// called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
-        let mut low = graph.clone();
-        let outputs = expand_smooth_minima(&mut low, outputs);
-        let (low, outputs) = expand_powers(&low, &outputs);
+        let (low, outputs) = graph.rewritten(outputs, |low, node| match node {
+            Node::Smin(a, b, k) => smooth_minimum(low, a, b, k),
+            Node::Power(a, n) => integer_power(low, a, n),
+            node => low.intern(node),
+        });
         Compiler::new(&low, &outputs).compile()
     }
 
@@ -117,37 +119,27 @@ pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
     graph.needed_by(outputs).into_iter().map(of_node).sum()
 }
 
-/// Replaces every smooth minimum by min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. Returns the new
-/// outputs.
-fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
-    let mut map: Vec<Id> = vec![0; graph.len()];
-    for id in graph.needed_by(outputs) {
-        let node = graph.node(id).mapped(|operand| map[operand as usize]);
-        map[id as usize] = if let Node::Smin(a, b, k) = node {
-            let (one, minus_one) = (graph.constant(1.0), graph.constant(-1.0));
-            let least = graph.constant(MIN_BLEND_WIDTH);
-            let width = graph.binary(Binary::Max, k, least);
-            let difference = graph.sub(a, b);
-            let ratio = graph.div(difference, width);
-            let below = graph.binary(Binary::Min, ratio, one);
-            let u = graph.binary(Binary::Max, below, minus_one);
-            let magnitude = graph.unary(Unary::Abs, u);
-            let gap = graph.sub(one, magnitude);
-            let cube = graph.power(gap, 3);
-            let sixth = graph.constant(1.0 / 6.0);
-            let depth = graph.mul(width, sixth);
-            let blend = graph.mul(cube, depth);
-            let least = graph.binary(Binary::Min, a, b);
-            graph.sub(least, blend)
-        } else {
-            graph.intern(node)
-        };
-    }
-    outputs.iter().map(|&output| map[output as usize]).collect()
+/// The smooth minimum as min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1.
+fn smooth_minimum(low: &mut Graph, a: Id, b: Id, k: Id) -> Id {
+    let (one, minus_one) = (low.constant(1.0), low.constant(-1.0));
+    let least = low.constant(MIN_BLEND_WIDTH);
+    let width = low.binary(Binary::Max, k, least);
+    let difference = low.sub(a, b);
+    let ratio = low.div(difference, width);
+    let below = low.binary(Binary::Min, ratio, one);
+    let u = low.binary(Binary::Max, below, minus_one);
+    let magnitude = low.unary(Unary::Abs, u);
+    let gap = low.sub(one, magnitude);
+    let cube = integer_power(low, gap, 3);
+    let sixth = low.constant(1.0 / 6.0);
+    let depth = low.mul(width, sixth);
+    let blend = low.mul(cube, depth);
+    let least = low.binary(Binary::Min, a, b);
+    low.sub(least, blend)
 }
 
-/// Graph of `outputs` in which varying integer powers are products and reciprocals (`Power(_, -1)`).
-fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
+/// x^n, as products and a reciprocal (`Power(_, -1)`) if it varies.
+fn integer_power(low: &mut Graph, x: Id, n: i32) -> Id {
     /// x^n for n ≥ 1 by squaring: x^(2m) = (x^m)², x^(2m+1) = x · x^(2m).
     fn product(low: &mut Graph, x: Id, n: u32) -> Id {
         if n == 1 {
@@ -157,19 +149,11 @@ fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
         let square = low.intern(Node::Binary(Binary::Mul, half, half));
         if n.is_multiple_of(2) { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
     }
-    let mut low = Graph::default();
-    let mut map: Vec<Id> = vec![0; graph.len()];
-    for id in graph.needed_by(outputs) {
-        let node = graph.node(id).mapped(|operand| map[operand as usize]);
-        map[id as usize] = match node {
-            Node::Power(a, n) if !low.is_uniform(a) => {
-                let base = if n < 0 { low.intern(Node::Power(a, -1)) } else { a };
-                product(&mut low, base, n.unsigned_abs())
-            }
-            _ => low.intern(node),
-        };
+    if low.is_uniform(x) {
+        return low.intern(Node::Power(x, n));
     }
-    (low, outputs.iter().map(|&output| map[output as usize]).collect())
+    let base = if n < 0 { low.intern(Node::Power(x, -1)) } else { x };
+    product(low, base, n.unsigned_abs())
 }
 
 /// Compiler of a lowered graph.
