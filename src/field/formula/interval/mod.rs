@@ -26,13 +26,11 @@ const BOXES: usize = 32;
 /// A graph compiled for boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BoxProgram {
-    /// The nodes that the results need; their operands are indices into this list.
-    nodes: Vec<Node>,
+    /// The nodes that the results need.
+    graph: Graph,
     /// Bounds of each node over the boxes at hand. Those of a node that depends on no coordinate stay, and as they contain the rounding
     /// errors they are seldom single numbers.
     rows: Vec<Row<BOXES>>,
-    /// The nodes that depend on a coordinate.
-    varying: Vec<Id>,
     /// Nodes of the results.
     outputs: Vec<Id>,
 }
@@ -40,32 +38,22 @@ pub(super) struct BoxProgram {
 impl BoxProgram {
     /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
-        let needed = graph.needed_by(outputs);
-        let mut new = vec![0; graph.len()];
-        (0..).zip(&needed).for_each(|(index, &id)| new[id as usize] = index);
-        let new = |id: Id| new[id as usize];
-        Self {
-            nodes: needed.iter().map(|&id| graph.node(id).mapped(new)).collect(),
-            rows: vec![Row::ZERO; needed.len()],
-            varying: needed.iter().filter(|&&id| !graph.is_uniform(id)).map(|&id| new(id)).collect(),
-            outputs: outputs.iter().map(|&id| new(id)).collect(),
-        }
+        let (graph, outputs) = graph.rewritten(outputs, Graph::intern);
+        Self { rows: vec![Row::ZERO; graph.len()], graph, outputs }
     }
 
     /// Recomputes the bounds of the nodes that depend on no coordinate from the values of the parameters.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
-        for (at, &node) in self.nodes.iter().enumerate() {
-            if self.varying.binary_search(&(at as Id)).is_err() {
-                let none = |_| unreachable!("a coordinate varies");
-                let of = |id: Id| Row::<1>::fill(self.rows[id as usize].at(0));
-                self.rows[at] = Row::fill(row_of(node, 1, parameters, none, of).at(0));
-            }
+        for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| self.graph.is_uniform(id)) {
+            let none = |_| unreachable!("a coordinate varies");
+            let of = |id: Id| Row::<1>::fill(self.rows[id as usize].at(0));
+            self.rows[id as usize] = Row::fill(row_of(node, 1, parameters, none, of).at(0));
         }
     }
 
     /// Number of operations for each box.
     pub(super) fn operations(&self) -> usize {
-        self.varying.len()
+        (0..self.graph.len() as Id).filter(|&id| !self.graph.is_uniform(id)).count()
     }
 
     /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
@@ -75,9 +63,8 @@ impl BoxProgram {
             // The last box pads the row: arbitrary numbers could be slow in some lanes.
             let coordinate =
                 |axis: u8| Row::each(BOXES, |k| Range::of_coordinate(&boxes[k.min(n - 1)], axis));
-            for &at in &self.varying {
-                let row = row_of(self.nodes[at as usize], n, &[], coordinate, |id| &self.rows[id as usize]);
-                self.rows[at as usize] = row;
+            for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| !self.graph.is_uniform(id)) {
+                self.rows[id as usize] = row_of(node, n, &[], coordinate, |id| &self.rows[id as usize]);
             }
             for k in 0..n {
                 take(first + k, &|output| self.rows[self.outputs[output] as usize].at(k));
