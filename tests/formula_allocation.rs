@@ -39,7 +39,7 @@ fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
     let mut gradient = vec![Vec3::ZERO; points.len()];
     let mut hessian = vec![Sym3::default(); points.len()];
     let mut enclosure = [Enclosure::UNKNOWN];
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let mut work = || {
             if let Some(parameter) = surface.parameters.first() {

@@ -238,7 +238,7 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
 
 #[test]
 fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         let mut field = surface.field();
         let settings = settings!(count: 1_500, relax_steps: 2; ..settings());
         let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);

@@ -126,7 +126,7 @@ fn a_fixed_box_is_that_of_the_surface_with_which_the_formula_began() {
 
 #[test]
 fn gallery_surfaces_keep_their_boxes() {
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         let mut session = Session::new();
         let request = FieldRequest { surface: Some(surface.id.to_owned()), ..FieldRequest::default() };
         session.set_field(&request).expect("a surface of the gallery");

@@ -204,7 +204,7 @@ fn an_origin_counts_for_branches_too() {
 
 #[test]
 fn the_branch_at_a_point_gives_the_value_of_the_gallery_there() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         for p in spread(&surface.bounds) {
             agrees(&mut field, p, surface.id);
@@ -280,7 +280,7 @@ proptest! {
 
 #[test]
 fn the_surfaces_of_the_gallery_have_no_creases() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         assert!(complete(field.find_creases(&surface.bounds, 0.05)).is_empty(), "{}", surface.id);
         assert!(spread(&surface.bounds).all(|p| field.branch_at(p) == 0), "{}", surface.id);

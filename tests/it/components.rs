@@ -203,7 +203,7 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         for share in [0.02, 0.006] {
             let mut session = Session::new();
             let request = FieldRequest { surface: Some(surface.id.into()), ..FieldRequest::default() };

@@ -107,7 +107,7 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
         let gradient = field.jet(p).gradient;
         gradient / gradient.length()
     };
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let diagonal = surface.bounds.diagonal();
         let mut compared = 0;
@@ -141,7 +141,7 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
 
 #[test]
 fn single_precision_and_lanes_agree_with_double() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let points: Vec<Vec3> =
             surface_points(&mut field, &surface.bounds, 203).iter().map(|p| p.as_vec3()).collect();

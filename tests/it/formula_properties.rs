@@ -362,7 +362,7 @@ fn written(node: &MathNode) -> String {
 
 #[test]
 fn mathml_of_the_gallery_is_well_formed() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         check_mathml(&surface.field().mathml());
     }
 }

@@ -263,7 +263,7 @@ fn fates_of_slots_agree_with_the_counts() {
 
 #[test]
 fn every_gallery_surface_is_sampled_with_finite_normals() {
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         let sampler = of_gallery(surface.id, &settings!(radius_share: 0.012; ..Settings::default()));
         assert_eq!(sampler.progress().stop_reason, Some(StopReason::Complete), "{}", surface.id);
         let particles = sampler.particles();

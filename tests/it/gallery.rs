@@ -36,7 +36,7 @@ fn derivatives_agree_with_central_differences() {
     // The error of a central difference is about h² times the third derivative, plus a rounding error of 1e-16/h.
     const STEP: f64 = 1e-5;
     const TOLERANCE: f64 = 1e-6;
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         for p in points(surface, 200) {
             let jet = field.jet(p);
@@ -63,7 +63,7 @@ fn derivatives_agree_with_central_differences() {
 
 #[test]
 fn batches_agree_with_double_precision() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let points: Vec<Vec3> = points(surface, 203).iter().map(|p| p.as_vec3()).collect();
         let n = points.len();
@@ -103,7 +103,7 @@ fn batches_agree_with_double_precision() {
 
 #[test]
 fn values_lie_within_the_bounds_of_boxes_around_the_point() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         // A sum has itself as its only factor.
         let text = match surface.formula.split_once('=') {
             Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
@@ -131,7 +131,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
 
 #[test]
 fn small_boxes_off_the_surface_are_proven_empty() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let half = DVec3::splat(surface.bounds.diagonal() * 1e-5);
         let mut proven = 0;
@@ -150,7 +150,7 @@ fn small_boxes_off_the_surface_are_proven_empty() {
 
 #[test]
 fn identifiers_are_unique_and_findable() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         assert!(core::ptr::eq(gallery::find(surface.id).unwrap(), surface), "{}", surface.id);
         let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
         assert!(surface.id.chars().all(plain), "{}", surface.id);
@@ -160,7 +160,7 @@ fn identifiers_are_unique_and_findable() {
 
 #[test]
 fn every_parameter_is_used_and_starts_inside_its_range() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         assert!(surface.bounds.is_valid(), "{}", surface.id);
         let field = surface.field();
         let used: Vec<&str> = field.parameters().iter().map(|p| p.name.as_str()).collect();
@@ -239,7 +239,7 @@ fn euler_number(surface: &Surface, n: u32) -> i64 {
 
 #[test]
 fn closed_surfaces_have_the_genus_they_claim() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let Some(genus) = surface.genus else { continue };
         assert!(surface.closed, "{}", surface.id);
         let euler = euler_number(surface, 96);
@@ -249,7 +249,7 @@ fn closed_surfaces_have_the_genus_they_claim() {
 
 #[test]
 fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let (mut inside, mut outside) = (0, 0);
         for p in points(surface, 20_000) {
@@ -280,7 +280,7 @@ fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
 
 #[test]
 fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let mut field = surface.field();
         let mut slopes = Vec::new();
         for p in points(surface, 4000) {
@@ -318,7 +318,7 @@ fn every_surface_and_model_has_its_picture_and_every_picture_its_surface() {
 
 #[test]
 fn stories_are_two_sentences() {
-    for surface in SURFACES {
+    for surface in SURFACES.iter() {
         let sentences = surface.story.matches(". ").count() + usize::from(surface.story.ends_with('.'));
         assert_eq!(sentences, 2, "{}: {}", surface.id, surface.story);
         assert!(!surface.story.contains("  "), "{}", surface.id);

@@ -160,7 +160,7 @@ fn holes_and_crowded_pairs_shrink() {
 
 #[test]
 fn relaxed_particles_stay_on_the_surface_and_in_the_box() {
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         let settings = settings!(radius_share: 0.012; ..Settings::default());
         let (_, sampler) = before_and_after(surface, &settings);
         let mut field = surface.field();

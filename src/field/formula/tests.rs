@@ -72,7 +72,7 @@ fn a_long_sum_needs_few_registers() {
 #[test]
 fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
     let point = [0.3, -0.7, 0.4];
-    for surface in gallery::SURFACES {
+    for surface in gallery::SURFACES.iter() {
         let declared = surface.declared();
         let names: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
         let values: Vec<f64> = declared.iter().map(|parameter| parameter.value).collect();

@@ -8,6 +8,7 @@ mod singular;
 
 use super::formula::{Formula, Parameter};
 use crate::math::Bounds;
+use std::sync::LazyLock;
 
 /// A parameter of a gallery surface.
 #[derive(Clone, Copy, Debug)]
@@ -139,30 +140,5 @@ pub static GROUPS: &[SurfaceGroup] = &[
 ];
 
 /// All surfaces of the gallery, group by group.
-pub static SURFACES: &[Surface] = &all::<{ count() }>();
-
-/// Number of surfaces in all groups.
-const fn count() -> usize {
-    let (mut count, mut group) = (0, 0);
-    while group < GROUPS.len() {
-        count += GROUPS[group].surfaces.len();
-        group += 1;
-    }
-    count
-}
-
-/// Joins the groups, `N` surfaces in all.
-const fn all<const N: usize>() -> [Surface; N] {
-    let mut joined = [closed::SURFACES[0]; N];
-    let (mut next, mut group) = (0, 0);
-    while group < GROUPS.len() {
-        let mut k = 0;
-        while k < GROUPS[group].surfaces.len() {
-            joined[next] = GROUPS[group].surfaces[k];
-            next += 1;
-            k += 1;
-        }
-        group += 1;
-    }
-    joined
-}
+pub static SURFACES: LazyLock<Vec<Surface>> =
+    LazyLock::new(|| GROUPS.iter().flat_map(|group| group.surfaces).copied().collect());
