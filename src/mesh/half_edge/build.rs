@@ -2,48 +2,21 @@
 
 use super::{HalfEdges, NONE, next};
 
-/// Why triangles are not a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// A corner is not below the number of vertices, or a triangle has a vertex twice.
-    #[error("triangle {triangle} has a corner that does not exist, or one corner twice")]
-    Triangle {
-        /// The triangle, by its place in the list.
-        triangle: usize,
-    },
-    /// Two triangles run along the same edge in the same direction: more than two meet there, or their orientations disagree.
-    #[error("more than one triangle runs from vertex {from} to vertex {to}")]
-    Edge {
-        /// Vertex at which the edge begins.
-        from: u32,
-        /// Vertex at which the edge ends.
-        to: u32,
-    },
-    /// The triangles at a vertex form more than one fan.
-    #[error("the triangles at vertex {vertex} form more than one fan")]
-    Fan {
-        /// The vertex.
-        vertex: u32,
-    },
-}
-
 impl HalfEdges {
-    /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside. Face `f` is triangle `f`.
+    /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside. Face `f` is triangle `f`. None if
+    /// they are not an oriented surface: a corner does not exist or is there twice, two triangles run along the same edge in the same
+    /// direction, or those at a vertex form more than one fan.
     ///
     /// Vertices in no triangle have no half-edge. Edges of one triangle form the border.
     ///
     /// Cost: linear, and n log n where a vertex has very many triangles.
-    ///
-    /// # Errors
-    ///
-    /// If the triangles are not an oriented surface with one fan at each vertex.
-    pub fn from_triangles(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, BuildError> {
-        for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
-            let is_within = [a, b, c].iter().all(|&v| (v as usize) < vertices);
-            if !is_within || a == b || b == c || c == a {
-                return Err(BuildError::Triangle { triangle });
-            }
+    #[must_use]
+    pub fn from_triangles(vertices: usize, triangles: &[[u32; 3]]) -> Option<Self> {
+        let is_triangle = |&[a, b, c]: &[u32; 3]| {
+            a != b && b != c && c != a && [a, b, c].iter().all(|&v| (v as usize) < vertices)
+        };
+        if !triangles.iter().all(is_triangle) {
+            return None;
         }
         let origin: Vec<u32> = triangles.iter().flatten().copied().collect();
         let mut mesh = Self {
@@ -52,13 +25,12 @@ impl HalfEdges {
             origin,
             ..Self::default()
         };
-        mesh.pair()?;
-        mesh.choose_outgoing()?;
-        Ok(mesh)
+        (mesh.pair() && mesh.choose_outgoing()).then_some(mesh)
     }
 
-    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and within it by the larger.
-    fn pair(&mut self) -> Result<(), BuildError> {
+    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and within it by the larger. Whether no two
+    /// of them run between the same vertices in the same direction.
+    fn pair(&mut self) -> bool {
         let mut start = vec![0_u32; self.outgoing.len() + 1];
         let ends = |mesh: &Self, h: u32| {
             let (a, b) = (mesh.origin(h), mesh.target(h));
@@ -89,18 +61,18 @@ impl HalfEdges {
                 let (g, h) = (bucket[at - 1] as u32, bucket[at] as u32);
                 let is_third = self.twin(g) != NONE;
                 if is_third || self.origin(g) == self.origin(h) {
-                    return Err(BuildError::Edge { from: self.origin(h), to: self.target(h) });
+                    return false;
                 }
                 self.twin[g as usize] = h;
                 self.twin[h as usize] = g;
             }
         }
-        Ok(())
+        true
     }
 
-    /// Chooses the half-edge kept for each vertex, and sees to it that its faces form one fan.
-    fn choose_outgoing(&mut self) -> Result<(), BuildError> {
-        let mut faces_at = vec![0_u32; self.outgoing.len()];
+    /// Chooses the half-edge kept for each vertex. Whether the faces of each form one fan.
+    fn choose_outgoing(&mut self) -> bool {
+        let mut faces_at = vec![0_usize; self.outgoing.len()];
         for h in 0..self.origin.len() as u32 {
             let v = self.origin(h) as usize;
             faces_at[v] += 1;
@@ -108,12 +80,7 @@ impl HalfEdges {
                 self.outgoing[v] = h;
             }
         }
-        for (vertex, &faces) in (0..).zip(&faces_at) {
-            if self.around(vertex).take(faces as usize + 1).count() != faces as usize {
-                return Err(BuildError::Fan { vertex });
-            }
-        }
-        Ok(())
+        (0..).zip(faces_at).all(|(v, faces)| self.around(v).take(faces + 1).count() == faces)
     }
 
     /// The first half-edge of the fan in which `h` is one that leaves a vertex: the one without a twin, or `h` itself.

@@ -22,8 +22,7 @@ mod build;
 mod edit;
 mod subdivide;
 
-pub use build::BuildError;
-pub use subdivide::{Stage, Subdivision};
+pub use subdivide::Subdivision;
 
 /// No half-edge, vertex or face.
 pub const NONE: u32 = u32::MAX;

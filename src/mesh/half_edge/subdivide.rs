@@ -2,19 +2,6 @@
 
 use super::{HalfEdges, NONE, next};
 
-/// The stages of a subdivision, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Make room for the finer surface.
-    Room,
-    /// Number the vertices of the finer surface.
-    Vertices,
-    /// Write the faces of the finer surface.
-    Faces,
-    /// The subdivision is complete.
-    Done,
-}
-
 /// A subdivision under way: it can be left and gone on with.
 ///
 /// Old vertices keep their valence and new ones have six neighbours, four on the border: a subdivision adds no defect. A vertex is
@@ -24,15 +11,15 @@ pub enum Stage {
 pub struct Subdivision {
     fine: HalfEdges,
     ends: Vec<[u32; 2]>,
-    /// Vertex of the finer surface at each old one.
+    /// Vertex of the finer surface at each old one that is there.
     kept: Vec<u32>,
-    /// Vertex of the finer surface on the middle of each old half-edge.
+    /// Vertex of the finer surface on the middle of each old half-edge; 0 before it is numbered, which is that of an old vertex.
     middle: Vec<u32>,
-    /// Place of each old face among those that are there.
+    /// Place of each old face among those that are there, in the order in which the vertices come to them.
     rank: Vec<u32>,
     ranked: u32,
-    stage: Stage,
-    next: u32,
+    /// Number of vertices of the coarse surface, and of its faces after them, that are done.
+    done: u32,
 }
 
 impl Subdivision {
@@ -43,89 +30,44 @@ impl Subdivision {
         let slots = coarse.half_edge_slots();
         // A closed surface has half as many edges as half-edges; a border adds a few, for which there is room to grow.
         let expected = vertices + 3 * faces / 2;
+        // Zeros are had without touching the memory, which takes longer for the first time than what is then done with it.
         let fine = HalfEdges {
-            origin: Vec::with_capacity(12 * faces),
-            twin: Vec::with_capacity(12 * faces),
+            origin: vec![0; 12 * faces],
+            twin: vec![0; 12 * faces],
             outgoing: Vec::with_capacity(expected),
             ..HalfEdges::default()
         };
         Self {
             fine,
             ends: Vec::with_capacity(expected),
-            kept: Vec::with_capacity(vertices),
-            middle: Vec::with_capacity(slots),
-            rank: Vec::with_capacity(slots / 3),
+            kept: vec![0; vertices],
+            middle: vec![0; slots],
+            rank: vec![NONE; slots / 3],
             ranked: 0,
-            stage: Stage::Room,
-            next: 0,
+            done: 0,
         }
     }
 
-    /// The stage of the subdivision.
-    #[must_use]
-    pub fn stage(&self) -> Stage {
-        self.stage
-    }
-
-    /// Goes on with up to `budget` vertices or faces of `coarse`, and returns what is left of it.
-    pub fn step(&mut self, coarse: &HalfEdges, mut budget: u32) -> u32 {
-        while budget > 0 && self.stage != Stage::Done {
-            let vertices = coarse.vertex_slots() as u32;
-            let faces = (coarse.half_edge_slots() / 3) as u32;
-            let slots = match self.stage {
-                Stage::Room => vertices.max(faces),
-                Stage::Vertices => vertices,
-                Stage::Faces | Stage::Done => faces,
-            };
-            let end = slots.min(self.next.saturating_add(budget));
-            if self.stage == Stage::Room {
-                self.make_room(coarse, end as usize);
-            }
-            for at in self.next..end {
-                match self.stage {
-                    Stage::Vertices => self.number(coarse, at),
-                    Stage::Faces => self.write(coarse, at),
-                    Stage::Room | Stage::Done => {}
-                }
-            }
-            budget -= end - self.next;
-            self.next = end;
-            if end == slots {
-                self.next = 0;
-                self.stage = match self.stage {
-                    Stage::Room => Stage::Vertices,
-                    Stage::Vertices => Stage::Faces,
-                    Stage::Faces | Stage::Done => Stage::Done,
-                };
-            }
+    /// Goes on with up to `budget` vertices or faces of `coarse`. Whether the subdivision is complete.
+    pub fn step(&mut self, coarse: &HalfEdges, budget: u32) -> bool {
+        let vertices = coarse.vertex_slots() as u32;
+        let all = vertices + (coarse.half_edge_slots() / 3) as u32;
+        let end = all.min(self.done.saturating_add(budget));
+        for at in self.done..end {
+            if at < vertices { self.number(coarse, at) } else { self.write(coarse, at - vertices) }
         }
-        budget
+        self.done = end;
+        end == all
     }
 
-    /// Fills the columns up to vertex or face `end` of `coarse`: memory that is first touched takes longer than what is then done
-    /// with it.
-    fn make_room(&mut self, coarse: &HalfEdges, end: usize) {
-        self.kept.resize(coarse.vertex_slots().min(end), NONE);
-        let end = (coarse.half_edge_slots() / 3).min(end);
-        self.rank.resize(end, NONE);
-        self.middle.resize(3 * end, NONE);
-        let fine = (12 * end).min(12 * coarse.faces());
-        self.fine.origin.resize(fine, NONE);
-        self.fine.twin.resize(fine, NONE);
-    }
-
-    /// The finer surface, and for each of its vertices the two ends of the edge that it halves; `[v, NONE]` where it is the old
-    /// vertex v.
-    ///
-    /// # Panics
-    ///
-    /// If the subdivision is not complete.
+    /// The finer surface, once the subdivision is complete, and for each of its vertices the two ends of the edge that it halves;
+    /// `[v, NONE]` where it is the old vertex v.
     #[must_use]
     pub fn finish(self) -> (HalfEdges, Vec<[u32; 2]>) {
-        assert!(self.stage == Stage::Done, "the subdivision is not at its end");
         (self.fine, self.ends)
     }
 
+    /// Numbers the vertices of the finer surface at an old vertex and on its edges.
     fn number(&mut self, coarse: &HalfEdges, v: u32) {
         if !coarse.has_vertex(v) {
             return;
@@ -136,7 +78,7 @@ impl Subdivision {
                 self.rank[h as usize / 3] = self.ranked;
                 self.ranked += 1;
             }
-            if self.middle[h as usize] == NONE {
+            if self.middle[h as usize] == 0 {
                 let m = self.add([v, coarse.target(h)]);
                 self.middle[h as usize] = m;
                 if coarse.twin(h) != NONE {
@@ -177,11 +119,10 @@ impl Subdivision {
             self.fine.twin[across as usize] = here as u32 + 1;
             let second = self.corner(next(h)) + 2;
             let twin = coarse.twin(h);
-            if twin != NONE {
-                // Each half of the edge lies beside the other half of the twin.
-                self.fine.twin[here] = self.corner(next(twin)) + 2;
-                self.fine.twin[second as usize] = self.corner(twin);
-            }
+            // Each half of the edge lies beside the other half of the twin.
+            let beside =
+                if twin == NONE { [NONE; 2] } else { [self.corner(next(twin)) + 2, self.corner(twin)] };
+            [self.fine.twin[here], self.fine.twin[second as usize]] = beside;
             if h < twin {
                 self.fine.outgoing[m as usize] = second;
             }

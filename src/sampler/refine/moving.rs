@@ -147,7 +147,7 @@ impl Net {
         };
         let largest = size.iter().copied().reduce(f32::max).unwrap_or(1.0);
         Some(Self {
-            mesh: HalfEdges::from_triangles(particles.len(), triangles).ok()?,
+            mesh: HalfEdges::from_triangles(particles.len(), triangles)?,
             position: particles.position.clone(),
             normal: particles.normal.clone(),
             slots: vec![Slots::default(); particles.len()],

@@ -132,7 +132,7 @@ fn drop_beyond(net: &mut Net, plane: usize) -> Result<(), Refusal> {
     let kept: Vec<[u32; 3]> =
         net.mesh.triangles().filter(|corners| !corners.iter().any(|&v| is_beyond(net, v, plane))).collect();
     let at = net.position.first().copied().unwrap_or_default().into();
-    net.mesh = HalfEdges::from_triangles(net.position.len(), &kept).map_err(|_| Refusal::Cut { at })?;
+    net.mesh = HalfEdges::from_triangles(net.position.len(), &kept).ok_or(Refusal::Cut { at })?;
     if kept.is_empty() { Err(Refusal::Cut { at }) } else { Ok(()) }
 }
 
