@@ -80,16 +80,14 @@ pub(super) fn join(
     let spacing = 2.0 * particles.radius.first().copied().unwrap_or(0.0);
     let mut triangles = triangles.to_vec();
     let rows = split_fans(&mut triangles, particles);
-    let mesh = HalfEdges::from_triangles(rows.len(), &triangles).map_err(|_| doubtful(particles, 0))?;
+    let mesh = HalfEdges::from_triangles(rows.len(), &triangles).ok_or_else(|| doubtful(particles, 0))?;
     let mut net = Net {
         mesh,
         position: rows.iter().map(|&row| particles.position[row as usize]).collect(),
         normal: rows.iter().map(|&row| particles.normal[row as usize]).collect(),
         slots: rows.iter().map(|&row| particles.slots[row as usize]).collect(),
-        size: Vec::new(),
         walls: Walls::new(bounds, &particles.position, spacing),
-        on_crease: Vec::new(),
-        is_born: Vec::new(),
+        ..Net::default()
     };
     match ladder {
         None => judge_size(&net.mesh, particles, bounds, halvings)?,
@@ -181,28 +179,25 @@ fn judge_size(
     halvings: u32,
 ) -> Result<(), Refusal> {
     // At full resolution there are no more to be had.
-    let least = if halvings > 0 { LEAST_PARTICLES } else { 0 };
-    let mut is_met = vec![false; particles.len()];
-    for root in 0..particles.len() as u32 {
-        if is_met[root as usize] || !mesh.has_vertex(root) {
-            continue;
-        }
-        is_met[root as usize] = true;
-        let (mut open, mut count, mut is_inside) = (vec![root], 0, false);
-        while let Some(v) = open.pop() {
-            count += 1;
-            is_inside |= bounds.contains(particles.position[v as usize]);
-            for other in mesh.neighbours(v) {
-                if !core::mem::replace(&mut is_met[other as usize], true) {
-                    open.push(other);
-                }
-            }
-        }
-        if is_inside && count < least {
-            return Err(Refusal::Small { at: particles.position[root as usize].into() });
-        }
+    if halvings == 0 {
+        return Ok(());
     }
-    Ok(())
+    let mut components = Forest::new(particles.len());
+    for [a, b, c] in mesh.triangles() {
+        components.join(a, b);
+        components.join(b, c);
+    }
+    // Of each component, at its first particle: the number of particles, and whether one is in the box.
+    let mut sizes = vec![(0, false); particles.len()];
+    for v in (0..particles.len() as u32).filter(|&v| mesh.has_vertex(v)) {
+        let (count, is_inside) = &mut sizes[components.find(v) as usize];
+        *count += 1;
+        *is_inside |= bounds.contains(particles.position[v as usize]);
+    }
+    match sizes.iter().position(|&(count, is_inside)| is_inside && count < LEAST_PARTICLES) {
+        Some(root) => Err(Refusal::Small { at: particles.position[root].into() }),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -317,11 +317,6 @@ struct Joint {
     particles: Particles,
     /// Levels after the one that is put together.
     to_come: u32,
-    /// Whether the particles on creases are all there.
-    has_creases: bool,
-    /// The component under way, and its first particle that is not copied yet.
-    component: usize,
-    next: usize,
 }
 
 impl Components {
@@ -460,45 +455,42 @@ impl RowPlaces {
     fn row(self, own: u32) -> u32 {
         if own < self.on_creases { self.crease + own } else { self.inner + own - self.on_creases }
     }
+
+    /// The component to which a row of all belongs, and the row there.
+    fn own(places: &[Self], row: u32) -> (usize, usize) {
+        let is_on_crease = row < places[0].inner;
+        let first = |place: &Self| if is_on_crease { place.crease } else { place.inner };
+        // Of those that begin at the same row all but the last have none.
+        let component = places.partition_point(|place| first(place) <= row) - 1;
+        let before = if is_on_crease { 0 } else { places[component].on_creases };
+        (component, (before + row - first(&places[component])) as usize)
+    }
 }
 
 impl Joint {
     /// Goes on for a slice. Returns whether all particles are there.
     fn step(&mut self, components: &[AcceptedComponent]) -> bool {
         let places = RowPlaces::of(components);
+        let all = components.iter().map(|component| component.particles.len()).sum();
         if self.particles.is_empty() {
-            self.particles.reserve(components.iter().map(|component| component.particles.len()).sum());
+            self.particles.reserve(all);
         }
-        let Some(AcceptedComponent { refinement, particles: own, .. }) = components.get(self.component)
-        else {
-            return true;
-        };
-        let places = places[self.component];
-        let on_creases = own.twins.len();
-        let (start, last) = if self.has_creases { (on_creases, own.len()) } else { (0, on_creases) };
-        let first = self.next.max(start);
-        let end = last.min(first + SLICE);
-        for i in first..end {
+        let first = self.particles.len();
+        for row in first..all.min(first + SLICE) {
+            let (component, i) = RowPlaces::own(&places, row as u32);
+            let AcceptedComponent { refinement, particles: own, .. } = &components[component];
             let (position, normal, radius) = (own.position[i], own.normal[i], own.radius[i]);
             match own.parent[i] {
                 Particles::NO_PARENT => self.particles.push_seed(position, normal, radius, refinement.patch),
                 parent => {
-                    let parent = places.row(parent);
+                    let parent = places[component].row(parent);
                     self.particles.push(position, normal, radius, parent, own.level[i], own.slots[i]);
                 }
             }
-            self.particles.slots[places.row(i as u32) as usize] = own.slots[i];
+            self.particles.slots[row] = own.slots[i];
             self.particles.twins.extend(own.twins.get(i));
         }
-        self.next = end;
-        if end == last {
-            self.component += 1;
-            self.next = 0;
-        }
-        if self.component == components.len() && !self.has_creases {
-            (self.component, self.has_creases) = (0, true);
-        }
-        self.component == components.len()
+        self.particles.len() == all
     }
 
     /// Names the first row of every particle on a crease in place of its number, and the pairs of rows that follow each other.

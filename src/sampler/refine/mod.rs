@@ -38,7 +38,7 @@ pub(crate) use moving::MovingMesh;
 pub use refusal::{Refusal, Spot};
 
 use crate::math::SQRT_3;
-use crate::mesh::half_edge::{NONE, Stage, Subdivision};
+use crate::mesh::half_edge::{NONE, Subdivision};
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;
@@ -58,8 +58,6 @@ const TRIAL_UNITS: u32 = 32;
 const HALF_EDGES_PER_UNIT: u32 = 12;
 /// Faces measured for a unit.
 const FACES_PER_UNIT: u32 = 4;
-/// Corners of the finished mesh that are named in one slice of work.
-const CORNERS: usize = 6_144;
 
 /// Fewest particles of a component of the coarse front, by which its shape can be told.
 const LEAST_PARTICLES: u32 = 180;
@@ -161,9 +159,6 @@ enum Task {
     /// The particles of the finer level are put onto the surface and into the columns of the net, in the order of `ends`. `defects`
     /// counts the particles so far that have a defect.
     Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
-    /// The corners of the finished mesh are named by their particles. The next corner is `next`, and `kept` of the corners before it
-    /// belong to a face. The particles are handed on after the last corner.
-    Name { rings: Rings, next: usize, kept: usize },
     /// All levels are finished and handed on.
     Done,
 }
@@ -261,7 +256,7 @@ impl Refinement {
     fn pending(&self) -> u32 {
         match self.task {
             Task::Divide(_) | Task::Lift { .. } => self.level.to_come - 1,
-            Task::Pass { .. } | Task::Show(_) | Task::Name { .. } | Task::Done => self.level.to_come,
+            Task::Pass { .. } | Task::Show(_) | Task::Done => self.level.to_come,
         }
     }
 
@@ -302,16 +297,15 @@ impl Refinement {
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let task = core::mem::replace(&mut self.task, Task::Done);
-            let was_whole = matches!(task, Task::Show(_) | Task::Name { .. });
+            let was_whole = matches!(task, Task::Show(_));
             let (next, units) = match task {
                 Task::Pass { pass, next, end } => self.pass(probe, surface, pass, next, end)?,
                 Task::Show(rings) => self.show(rings, particles),
                 Task::Divide(subdivision) => self.divide(subdivision),
                 Task::Lift { coarse, ends, defects } => self.lift(probe, surface, coarse, ends, defects)?,
-                Task::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
                 Task::Done => (Task::Done, 0),
             };
-            has_changed |= was_whole && !matches!(next, Task::Show(_) | Task::Name { .. });
+            has_changed |= was_whole && !matches!(next, Task::Show(_));
             self.task = next;
             done += units;
         }
@@ -327,8 +321,7 @@ impl Refinement {
                 Count::Total(count) => count,
                 Count::PerCell(packing) => {
                     // Half of the cell of a particle on the border lies beyond it.
-                    packing * tally.area() / (2.0 * SQRT_3 * radius * radius)
-                        + tally.border() / (4.0 * radius)
+                    packing * tally.area() / (2.0 * SQRT_3 * radius * radius) + tally.border / (4.0 * radius)
                 }
             };
         }
@@ -349,10 +342,10 @@ impl Refinement {
             spacing_sq.sqrt()
         };
         let mut faces = closed;
-        if tally.border() > 0.0 {
+        if tally.border > 0.0 {
             // With a border there are as many fewer as there are edges on it, and a division makes two of each of those.
             for _ in 0..BORDER_ROUNDS {
-                faces = (closed - tally.border() / (spacing(faces) * share.sqrt())).max(1.0);
+                faces = (closed - tally.border / (spacing(faces) * share.sqrt())).max(1.0);
             }
         }
         self.level.faces = faces as f32;
@@ -478,10 +471,10 @@ impl Refinement {
                 self.memory.crowded.extend((next..last).filter(|&h| net.is_crowded(h, self.level.spacing)));
             }
             Pass::Land => {
-                net.land(&mut ground, self.level.spacing, next..last);
+                net.land(&mut ground, self.level.spacing, next..last, false);
             }
             Pass::Follow => {
-                net.follow(&mut ground, self.level.spacing, next..last);
+                net.land(&mut ground, self.level.spacing, next..last, true);
                 net.rescue_refused(&mut ground, self.level.spacing, true)?;
             }
             Pass::Clip => border::clip(net, &mut ground, self.level.spacing)?,
@@ -519,10 +512,10 @@ impl Refinement {
             Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
             Pass::Thin => self.net.thin(&mut self.memory.crowded, self.level.spacing),
             Pass::Inspect => {
-                if let Some(at) = self.tally.inverted() {
+                if let Some(at) = self.tally.inverted {
                     return Err(Refusal::Folded { at: at.into() });
                 }
-                if let Some(at) = self.tally.stretched() {
+                if let Some(at) = self.tally.stretched {
                     return Err(Refusal::Bent { at: at.into() });
                 }
             }
@@ -539,34 +532,18 @@ impl Refinement {
             rings.hand_on(particles);
             Task::Divide(Subdivision::new(&self.net.mesh))
         } else {
-            // Of the net nothing else is needed any more.
-            self.corners = core::mem::take(&mut self.net).mesh.into_corners();
-            Task::Name { rings, next: 0, kept: 0 }
+            // Of the net nothing else is needed any more. Surgery, which removes faces, may have been at work on a last level that is the
+            // first one too. To name the corners takes a nanosecond or two for each.
+            let corners = core::mem::take(&mut self.net).mesh.into_corners();
+            self.corners = corners.into_iter().filter_map(|v| rings.place(v)).collect();
+            rings.hand_on(particles);
+            Task::Done
         };
         (task, BLOCK as u32)
     }
 
-    /// Goes on naming the corners of the mesh for a slice.
-    fn name(&mut self, rings: Rings, next: usize, mut kept: usize, particles: &mut Particles) -> Task {
-        let end = self.corners.len().min(next + CORNERS);
-        for k in next..end {
-            // Surgery, which removes faces, may have been at work on a last level that is the first one too.
-            if let Some(place) = rings.place(self.corners[k]) {
-                self.corners[kept] = place;
-                kept += 1;
-            }
-        }
-        if end < self.corners.len() {
-            return Task::Name { rings, next: end, kept };
-        }
-        self.corners.truncate(kept);
-        rings.hand_on(particles);
-        Task::Done
-    }
-
     fn divide(&mut self, mut subdivision: Subdivision) -> (Task, u32) {
-        subdivision.step(&self.net.mesh, BLOCK as u32);
-        if subdivision.stage() != Stage::Done {
+        if !subdivision.step(&self.net.mesh, BLOCK as u32) {
             return (Task::Divide(subdivision), BLOCK as u32);
         }
         let (mesh, ends) = subdivision.finish();
@@ -592,7 +569,7 @@ impl Refinement {
             defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
         }
         let mut ground = Ground { probe, block: &mut self.memory.block };
-        net.land(&mut ground, self.level.spacing, start as u32..end as u32);
+        net.land(&mut ground, self.level.spacing, start as u32..end as u32, false);
         net.rescue_refused(&mut ground, self.level.spacing, false)?;
         if end < ends.len() {
             return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));

@@ -110,10 +110,7 @@ impl Net {
             position: Vec::with_capacity(count),
             normal: Vec::with_capacity(count),
             slots: Vec::with_capacity(count),
-            size: Vec::new(),
-            walls: Walls::default(),
-            on_crease: Vec::new(),
-            is_born: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -277,17 +274,9 @@ impl Net {
         if step.is_finite() { p + step } else { p }
     }
 
-    /// Brings particles that were put near the surface onto it.
-    pub(super) fn land(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
-        self.land_all(ground, spacing, particles, false);
-    }
-
-    /// Brings particles to a surface that has moved, out of the box if it leads there.
-    pub(super) fn follow(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
-        self.land_all(ground, spacing, particles, true);
-    }
-
-    fn land_all(
+    /// Brings particles that were put near the surface onto it, or those of a surface that has moved to it: out of the box if they
+    /// `may_leave` it.
+    pub(super) fn land(
         &mut self,
         ground: &mut Ground,
         spacing: f32,
@@ -475,9 +464,27 @@ impl Net {
         if first.planes.count() > second.planes.count() { first } else { second }
     }
 
-    /// Puts a new particle of this size to a site. Its number may be that of one which was merged into another.
+    /// Gives every column that is filled so many rows: those that are new are to be [put](Self::put_new) somewhere.
+    pub(super) fn resize(&mut self, rows: usize) {
+        fn resize<T: Copy>(column: &mut Vec<T>, rows: usize, value: T) {
+            if !column.is_empty() {
+                column.resize(rows, value);
+            }
+        }
+        resize(&mut self.position, rows, Vec3::ZERO);
+        resize(&mut self.normal, rows, Vec3::ZERO);
+        resize(&mut self.slots, rows, Slots::default());
+        resize(&mut self.size, rows, 1.0);
+        resize(&mut self.walls.planes, rows, Planes::INNER);
+        resize(&mut self.on_crease, rows, NONE);
+        resize(&mut self.is_born, rows, true);
+    }
+
+    /// Puts a new particle of this size to a site. Its number is the next one, or that of one which was merged into another.
     pub(super) fn put_new(&mut self, v: u32, site: Site, size: f32) {
+        self.resize(self.position.len().max(v as usize + 1));
         self.put(v, site);
+        self.slots[v as usize] = Slots::default();
         if let Some(own) = self.size.get_mut(v as usize) {
             *own = size;
         }
@@ -486,22 +493,8 @@ impl Net {
         }
     }
 
-    /// Puts a particle, which may be the next new one, to a site.
+    /// Puts a particle to a site.
     pub(super) fn put(&mut self, v: u32, site: Site) {
-        if self.position.len() == v as usize {
-            self.position.push(site.position);
-            self.normal.push(site.normal);
-            self.slots.push(Slots::default());
-            if self.is_graded() {
-                self.size.push(1.0);
-            }
-            if !self.on_crease.is_empty() {
-                self.on_crease.push(site.number);
-            }
-            if !self.is_born.is_empty() {
-                self.is_born.push(true);
-            }
-        }
         self.position[v as usize] = site.position;
         self.normal[v as usize] = site.normal;
         self.walls.set(v, site.planes);

@@ -179,10 +179,10 @@ impl Recipe {
             1 if !is_first => losses().skip(TUNING.rounds / 2).collect(),
             _ => losses().collect(),
         };
-        match (is_graded, is_first) {
-            (false, _) => recipe.even(plan, &losses),
-            (true, true) => recipe.blend(plan, &losses),
-            (true, false) => recipe.graded(plan, &losses),
+        if is_graded && is_first {
+            recipe.blend(plan, &losses);
+        } else {
+            recipe.rounds(plan, &losses, is_graded);
         }
         // Lloyd's method is for one size: it would draw small particles and large ones to one distance.
         if is_last && !is_graded {
@@ -221,9 +221,16 @@ impl Recipe {
         recipe
     }
 
-    fn even(&mut self, plan: Plan, losses: &[f32]) {
+    /// The sweeps of a plan, and rounds of surgery with a sweep after each. Sizes that differ are found anew before each round.
+    fn rounds(&mut self, plan: Plan, losses: &[f32], is_graded: bool) {
+        if is_graded {
+            self.size(true);
+        }
         self.sweep(plan.sweeps);
         for &loss in losses {
+            if is_graded {
+                self.size(true);
+            }
             self.passes.push(Pass::Mend { loss });
             self.sweep(1);
         }
@@ -241,16 +248,6 @@ impl Recipe {
                 self.sweep(1);
                 self.size(is_whole);
             }
-        }
-    }
-
-    fn graded(&mut self, plan: Plan, losses: &[f32]) {
-        self.size(true);
-        self.sweep(plan.sweeps);
-        for &loss in losses {
-            self.size(true);
-            self.passes.push(Pass::Mend { loss });
-            self.sweep(1);
         }
     }
 

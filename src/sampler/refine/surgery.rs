@@ -4,7 +4,6 @@ use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
 use crate::math::sort_by_key;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
-use crate::particles::Slots;
 use core::cmp::Ordering;
 use glam::Vec3;
 
@@ -35,13 +34,6 @@ pub(super) struct Aim {
     pub(super) loss: f32,
     /// Share by which the edges of a particle without a defect are too short or too long on average where it is tried as well.
     pub(super) stretch: f32,
-}
-
-/// Change of the number of particles that may mend a defect.
-#[derive(Clone, Copy, PartialEq)]
-enum Remedy {
-    OneFewer,
-    OneMore,
 }
 
 /// Operation of a trial.
@@ -165,7 +157,7 @@ impl Surgeon {
             }
         }
         if gain > least && !is_flat {
-            net.land(ground, springs.spacing, self.patch.iter().copied());
+            net.land(ground, springs.spacing, self.patch.iter().copied(), false);
             if ground.block.refused.is_empty() {
                 net.mesh.keep();
                 self.add_rings(&net.mesh, 1);
@@ -179,13 +171,7 @@ impl Surgeon {
         for (&v, &site) in self.patch.iter().zip(&self.saved) {
             net.put(v, site);
         }
-        net.position.truncate(slots);
-        net.normal.truncate(slots);
-        net.slots.truncate(slots);
-        net.size.truncate(slots);
-        net.walls.truncate(slots);
-        net.on_crease.truncate(slots);
-        net.is_born.truncate(slots);
+        net.resize(slots);
         false
     }
 
@@ -281,25 +267,23 @@ impl Surgeon {
                 let added = if twin == NONE { -0.5 } else { -1.0 };
                 Effect { at: b, badness: badness(net, around) - before, added }
             }
-            Operation::Insert(h) => {
+            Operation::Insert(h) | Operation::Split(h) => {
                 let corners = [h, next(h), previous(h)].map(|h| net.mesh.origin(h));
                 let before = badness(net, &corners);
-                let mean = |of: &[Vec3]| corners.iter().map(|&v| of[v as usize]).sum::<Vec3>() / 3.0;
-                let (position, normal) = (mean(&net.position), mean(&net.normal));
-                let normal = normal.normalize_or(net.normal[corners[0] as usize]);
-                let size = corners.iter().map(|&v| net.size_of(v)).sum::<f32>() / 3.0;
-                let v = net.mesh.insert(h);
-                self.add(net, v, Site::smooth(position, normal, Planes::INNER), size);
-                Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added: 1.0 }
-            }
-            Operation::Split(h) => {
-                let corners = [h, next(h), previous(h)].map(|h| net.mesh.origin(h));
-                let before = badness(net, &corners);
-                let middle = net.halfway(corners[0], corners[1]);
-                let size = net.size_between(corners[0], corners[1]);
-                let v = net.mesh.split(h);
-                self.add(net, v, middle, size);
-                Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added: 0.5 }
+                let is_split = matches!(operation, Operation::Split(_));
+                let (site, size, added) = if is_split {
+                    let [a, b, _] = corners;
+                    (net.halfway(a, b), net.size_between(a, b), 0.5)
+                } else {
+                    let mean = |of: &[Vec3]| corners.iter().map(|&v| of[v as usize]).sum::<Vec3>() / 3.0;
+                    let (position, normal) = (mean(&net.position), mean(&net.normal));
+                    let normal = normal.normalize_or(net.normal[corners[0] as usize]);
+                    let size = corners.iter().map(|&v| net.size_of(v)).sum::<f32>() / 3.0;
+                    (Site::smooth(position, normal, Planes::INNER), size, 1.0)
+                };
+                let v = if is_split { net.mesh.split(h) } else { net.mesh.insert(h) };
+                self.add(net, v, site, size);
+                Effect { at: v, badness: badness(net, &corners) + badness(net, &[v]) - before, added }
             }
         }
     }
@@ -307,7 +291,6 @@ impl Surgeon {
     /// Adds a new particle to the columns and to the patch.
     fn add(&mut self, net: &mut Net, v: u32, site: Site, size: f32) {
         net.put_new(v, site, size);
-        net.slots[v as usize] = Slots::default();
         self.stamp[v as usize] = self.trial;
         self.patch.push(v);
     }
@@ -358,30 +341,23 @@ fn badness(net: &Net, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// Returns the remedy to be tried at `v`: one particle fewer where its valence is below the wanted one, one more where it is above.
-/// Where both are equal, the lengths of the edges decide.
-fn remedy(net: &Net, aim: Aim, v: u32) -> Option<Remedy> {
-    match net.excess(v).cmp(&0) {
-        Ordering::Less => Some(Remedy::OneFewer),
-        Ordering::Greater => Some(Remedy::OneMore),
-        Ordering::Equal => match net.mean_stretch(aim.springs, v) {
-            stretch if stretch < 1.0 - aim.stretch => Some(Remedy::OneFewer),
-            stretch if stretch > 1.0 + aim.stretch => Some(Remedy::OneMore),
-            _ => None,
-        },
-    }
-}
-
-/// The operation that may mend a particle inside, if there is one.
+/// The operation that may mend a particle inside, if there is one: with too few neighbours it is merged with the nearest of them, with
+/// too many another one is inserted into the widest of its faces. With as many as wanted, the lengths of its edges decide.
 fn operation(net: &Net, aim: Aim, v: u32) -> Option<Operation> {
     let mesh = &net.mesh;
     let p = net.position[v as usize];
-    match remedy(net, aim, v)? {
-        Remedy::OneFewer => {
+    let by_length = || match net.mean_stretch(aim.springs, v) {
+        stretch if stretch < 1.0 - aim.stretch => Ordering::Less,
+        stretch if stretch > 1.0 + aim.stretch => Ordering::Greater,
+        _ => Ordering::Equal,
+    };
+    match net.excess(v).cmp(&0).then_with(by_length) {
+        Ordering::Less => {
             let length = |h: u32| (net.position[mesh.target(h) as usize] - p).length_squared();
             let shortest = mesh.around(v).min_by(|&g, &h| length(g).total_cmp(&length(h)));
             shortest.filter(|&h| net.can_merge(h)).map(Operation::Collapse)
         }
-        Remedy::OneMore => net.widest(v).map(Operation::Insert),
+        Ordering::Greater => net.widest(v).map(Operation::Insert),
+        Ordering::Equal => None,
     }
 }

@@ -15,11 +15,11 @@ pub(super) struct Tally {
     /// Area of the faces in units of the faces that are wanted where they are.
     cells: f64,
     /// Length of the border in units of the spacing that is wanted where it is.
-    border: f64,
+    pub(super) border: f64,
     /// A corner of the first face that looks against the normal of a corner.
-    inverted: Option<Vec3>,
+    pub(super) inverted: Option<Vec3>,
     /// A corner of the first face that is stretched.
-    stretched: Option<Vec3>,
+    pub(super) stretched: Option<Vec3>,
 }
 
 /// A face is stretched if its circumcircle is wider than this, over that of the lattice's faces. The front that would stand in its place has
@@ -79,11 +79,6 @@ impl Tally {
         }
     }
 
-    /// Area of the faces.
-    pub(super) fn flat_area(&self) -> f64 {
-        0.5 * self.coarse
-    }
-
     /// Area of the surface, by Richardson's extrapolation.
     pub(super) fn area(&self) -> f64 {
         0.5 * (4.0 * self.fine - self.coarse) / 3.0
@@ -91,21 +86,6 @@ impl Tally {
 
     /// Number of equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
     pub(super) fn cells(&self) -> f64 {
-        self.cells * self.area() / self.flat_area()
-    }
-
-    /// Length of the border, where the spacing is 1.
-    pub(super) fn border(&self) -> f64 {
-        self.border
-    }
-
-    /// A place where a face looks against the normal of a corner, if there is one.
-    pub(super) fn inverted(&self) -> Option<Vec3> {
-        self.inverted
-    }
-
-    /// A place where a face is stretched, if there is one.
-    pub(super) fn stretched(&self) -> Option<Vec3> {
-        self.stretched
+        self.cells * self.area() / (0.5 * self.coarse)
     }
 }

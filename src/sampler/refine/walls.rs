@@ -138,18 +138,11 @@ impl Walls {
         if self.is_near() { self.planes[v as usize] } else { Planes::INNER }
     }
 
-    /// Sets the planes of a particle, which may be the next new one.
+    /// Sets the planes of a particle.
     pub(super) fn set(&mut self, v: u32, planes: Planes) {
         if self.is_near() {
-            if self.planes.len() == v as usize {
-                self.planes.push(planes);
-            }
             self.planes[v as usize] = planes;
         }
-    }
-
-    pub(super) fn truncate(&mut self, len: usize) {
-        self.planes.truncate(len);
     }
 
     /// Distance of a point from a plane, negative beyond it.

@@ -53,7 +53,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Net {
     // Formulas are moved to one side: which way is up depends on that.
     let mut tally = Tally::default();
     tally.inspect(&net, 0..triangles.len() as u32);
-    if tally.inverted().is_some() {
+    if tally.inverted.is_some() {
         net.normal.iter_mut().for_each(|n| *n = -*n);
     }
     net
