@@ -332,12 +332,6 @@ impl CellGrid {
             self.table[slot] = brick;
         }
     }
-
-    /// Returns the number of bytes allocated.
-    #[must_use]
-    pub fn bytes(&self) -> usize {
-        self.table.capacity() * size_of::<Brick>() + self.blocks.capacity() * size_of::<Block>()
-    }
 }
 
 /// The integer nearest to `x`, offset so that it is not negative: non-decreasing in `x`.

@@ -173,18 +173,13 @@ impl<'a> Patch<'a> {
         fans
     }
 
-    /// Gives `v` a list of its own, so that it is looked at where holes are searched for.
-    pub(super) fn touch(&mut self, v: u32) {
-        self.list(v);
-    }
-
     /// Whether the triangle with a number has been removed.
     pub(super) fn is_removed(&self, id: u32) -> bool {
         self.triangles[id as usize] == REMOVED
     }
 
-    /// The own list of `v`.
-    fn list(&mut self, v: u32) -> &mut Vec<u32> {
+    /// The own list of `v`, which from now on has one, and so is looked at where holes are searched for.
+    pub(super) fn list(&mut self, v: u32) -> &mut Vec<u32> {
         if self.list_of[v as usize] == NONE {
             let list = self.around(v).collect();
             self.list_of[v as usize] = self.lists.len() as u32;

@@ -75,8 +75,8 @@ impl Rim {
     /// Clears the way for the edges of the rim, and removes the triangles beyond it.
     pub(super) async fn clear(&self, patch: &mut Patch<'_>) {
         for (k, &[a, b]) in self.edges.iter().enumerate() {
-            patch.touch(a);
-            patch.touch(b);
+            patch.list(a);
+            patch.list(b);
             if !patch.has_edge(a, b) {
                 clear_between(patch, a, b);
             }
