@@ -49,7 +49,8 @@ use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
-/// Rounds in which the spacing and the number of edges on the border are found from each other.
+/// Rounds in which the spacing and the number of edges on the border are found from each other. Each leaves of the error half the share
+/// that edges of the border have among the faces: with one in ten, four leave 10⁻⁵ of it.
 const BORDER_ROUNDS: u32 = 4;
 
 /// Units that a trial of surgery counts for: it moves some twenty particles twice.
