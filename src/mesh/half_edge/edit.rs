@@ -221,20 +221,12 @@ impl HalfEdges {
             self.set_twin(x2, x1);
         }
         // x1 leaves c, x2 leaves b, and each is followed by one that leaves the other.
-        let from_c = if x1 != NONE {
-            x1
-        } else if x2 != NONE {
-            next(x2)
-        } else {
-            NONE
+        let leaving = |own: u32, other: u32| match (own, other) {
+            (NONE, NONE) => NONE,
+            (NONE, other) => next(other),
+            (own, _) => own,
         };
-        let from_b = if x2 != NONE {
-            x2
-        } else if x1 != NONE {
-            next(x1)
-        } else {
-            NONE
-        };
+        let (from_c, from_b) = (leaving(x1, x2), leaving(x2, x1));
         if from_c != NONE {
             let first = self.first_of_fan(from_c);
             self.set_outgoing(c, first);

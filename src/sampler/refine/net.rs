@@ -527,9 +527,8 @@ impl Net {
 
     /// The number and the position of the particle that halves an edge along a crease; none for other edges.
     pub(super) fn middle_on_crease(&self, ladder: &CreaseLadder, a: u32, b: u32) -> Option<(u32, Vec3)> {
-        let is_border = |a: u32, b: u32| self.mesh.find(a, b).is_some_and(|h| self.mesh.twin(h) == NONE);
         let [m, n] = [a, b].map(|v| self.on_crease[v as usize]);
-        let is_between = m != NONE && n != NONE && (is_border(a, b) || is_border(b, a));
+        let is_between = m != NONE && n != NONE && self.is_border_edge(a, b);
         if is_between { ladder.middle(m, n) } else { None }
     }
 

@@ -119,8 +119,13 @@ impl Net {
         if common.is_inner() {
             return common;
         }
+        if self.is_border_edge(a, b) { common } else { Planes::INNER }
+    }
+
+    /// Whether the border of the surface runs along the edge between two particles.
+    pub(super) fn is_border_edge(&self, a: u32, b: u32) -> bool {
         let is_border = |a: u32, b: u32| self.mesh.find(a, b).is_some_and(|h| self.mesh.twin(h) == NONE);
-        if is_border(a, b) || is_border(b, a) { common } else { Planes::INNER }
+        is_border(a, b) || is_border(b, a)
     }
 
     /// Brings the border particles back that one step of Newton's method could not, out of the box if they `may_leave` it. Without that, 3 of
