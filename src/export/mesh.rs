@@ -94,12 +94,8 @@ pub(super) fn obj(
     let n = particles.len();
     for row in rows {
         if row < n {
-            out.write_all(b"v")?;
-            for axis in 0..3 {
-                out.write_all(b" ")?;
-                super::coordinate(particles, row, axis).write_text(out)?;
-            }
-            out.write_all(b"\n")?;
+            let [x, y, z] = super::coordinates(particles, row);
+            writeln!(out, "v {x} {y} {z}")?;
         } else if let Some(normal) = particles.normal.get(row - n) {
             writeln!(out, "vn {} {} {}", normal.x, normal.y, normal.z)?;
         } else {

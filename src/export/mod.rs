@@ -15,6 +15,7 @@ pub(crate) use file::File;
 
 use crate::particles::Particles;
 use crate::quality;
+use core::fmt;
 use core::ops::Range;
 use glam::DVec3;
 use serde::Serialize;
@@ -85,24 +86,37 @@ pub struct Column {
     pub name: &'static str,
     /// Type of the values.
     pub kind: ColumnKind,
-    /// Whether the column is known only once the particles are measured.
+    /// What the column is there for.
     #[serde(skip)]
-    pub measured: bool,
-    /// Whether the column is there only where the surface has creases.
-    #[serde(skip)]
-    pub creases: bool,
-    /// Whether the column is there only where opposite faces of the box have the same particles.
-    #[serde(skip)]
-    pub periodic: bool,
-    /// Whether the column is there only where the surface has moved.
-    #[serde(skip)]
-    pub moved: bool,
+    pub(crate) presence: Presence,
     /// Returns the value of a particle, given by its index.
     #[serde(skip)]
     read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
 }
 
-/// A value of a column.
+impl Column {
+    /// The column where it is not in every file.
+    const fn only(self, presence: Presence) -> Self {
+        Self { presence, ..self }
+    }
+}
+
+/// What a column is there for: the particles of every run, or of some.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Presence {
+    /// All particles.
+    Always,
+    /// Particles that are measured.
+    Measured,
+    /// Particles of a surface with creases.
+    Creased,
+    /// Particles of a cell whose opposite faces have the same ones.
+    Periodic,
+    /// Particles that have followed a moving surface.
+    Moved,
+}
+
+/// A value of a column; `Display` gives it as text.
 #[derive(Clone, Copy)]
 enum CellValue {
     Double(f64),
@@ -122,14 +136,16 @@ impl CellValue {
             Self::Uchar(value) => out.write_all(&[value]),
         }
     }
+}
 
-    fn write_text(self, out: &mut dyn Write) -> io::Result<()> {
+impl fmt::Display for CellValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Double(value) => write!(out, "{value}"),
-            Self::Float(value) => write!(out, "{value}"),
-            Self::Int(value) => write!(out, "{value}"),
-            Self::Uint(value) => write!(out, "{value}"),
-            Self::Uchar(value) => write!(out, "{value}"),
+            Self::Double(value) => value.fmt(f),
+            Self::Float(value) => value.fmt(f),
+            Self::Int(value) => value.fmt(f),
+            Self::Uint(value) => value.fmt(f),
+            Self::Uchar(value) => value.fmt(f),
         }
     }
 }
@@ -139,103 +155,72 @@ fn is_double(particles: &Particles) -> bool {
     particles.origin != DVec3::ZERO
 }
 
-/// A coordinate of a particle in those of the formula.
-fn coordinate(particles: &Particles, i: usize, axis: usize) -> CellValue {
+/// The place of a particle in the coordinates of the formula.
+fn coordinates(particles: &Particles, i: usize) -> [CellValue; 3] {
     if is_double(particles) {
-        CellValue::Double(particles.place(i)[axis])
+        particles.place(i).to_array().map(CellValue::Double)
     } else {
-        CellValue::Float(particles.position[i][axis])
+        particles.position[i].to_array().map(CellValue::Float)
     }
 }
 
-type Read = fn(&Particles, &quality::Measurements, usize) -> CellValue;
-
-const fn float(name: &'static str, read: Read) -> Column {
-    Column {
-        name,
-        kind: ColumnKind::Float,
-        measured: false,
-        creases: false,
-        periodic: false,
-        moved: false,
-        read,
-    }
+const fn column(
+    name: &'static str,
+    kind: ColumnKind,
+    read: fn(&Particles, &quality::Measurements, usize) -> CellValue,
+) -> Column {
+    Column { name, kind, presence: Presence::Always, read }
 }
 
 /// The columns of PLY and CSV files, in their order.
 pub const COLUMNS: &[Column] = &[
-    Column { kind: ColumnKind::Coordinate, ..float("x", |particles, _, i| coordinate(particles, i, 0)) },
-    Column { kind: ColumnKind::Coordinate, ..float("y", |particles, _, i| coordinate(particles, i, 1)) },
-    Column { kind: ColumnKind::Coordinate, ..float("z", |particles, _, i| coordinate(particles, i, 2)) },
-    float("nx", |particles, _, i| CellValue::Float(particles.normal[i].x)),
-    float("ny", |particles, _, i| CellValue::Float(particles.normal[i].y)),
-    float("nz", |particles, _, i| CellValue::Float(particles.normal[i].z)),
-    float("radius", |particles, _, i| CellValue::Float(particles.radius[i])),
-    Column {
-        kind: ColumnKind::Uint,
-        ..float("level", |particles, _, i| CellValue::Uint(particles.level[i]))
-    },
+    column("x", ColumnKind::Coordinate, |particles, _, i| coordinates(particles, i)[0]),
+    column("y", ColumnKind::Coordinate, |particles, _, i| coordinates(particles, i)[1]),
+    column("z", ColumnKind::Coordinate, |particles, _, i| coordinates(particles, i)[2]),
+    column("nx", ColumnKind::Float, |particles, _, i| CellValue::Float(particles.normal[i].x)),
+    column("ny", ColumnKind::Float, |particles, _, i| CellValue::Float(particles.normal[i].y)),
+    column("nz", ColumnKind::Float, |particles, _, i| CellValue::Float(particles.normal[i].z)),
+    column("radius", ColumnKind::Float, |particles, _, i| CellValue::Float(particles.radius[i])),
+    column("level", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.level[i])),
     // All ones, the mark of a seed, is −1.
-    Column {
-        kind: ColumnKind::Int,
-        ..float("parent", |particles, _, i| CellValue::Int(particles.parent[i].cast_signed()))
-    },
-    Column {
-        kind: ColumnKind::Uchar,
-        measured: true,
-        ..float("valence", |_, measured, i| CellValue::Uchar(measured.valence.get(i).copied().unwrap_or(0)))
-    },
-    Column {
-        measured: true,
-        ..float("nearest", |_, measured, i| {
-            CellValue::Float(measured.nearest.get(i).copied().unwrap_or(f32::NAN))
-        })
-    },
-    Column {
-        measured: true,
-        ..float("residual", |_, measured, i| {
-            CellValue::Float(measured.residual.get(i).copied().unwrap_or(f32::NAN))
-        })
-    },
-    Column {
-        kind: ColumnKind::Uchar,
-        ..float("singular", |particles, _, i| CellValue::Uchar(particles.slots[i].is_singular().into()))
-    },
-    Column {
-        kind: ColumnKind::Uint,
-        creases: true,
-        ..float("patch", |particles, _, i| CellValue::Uint(particles.patch.get(i).copied().unwrap_or(0)))
-    },
+    column("parent", ColumnKind::Int, |particles, _, i| CellValue::Int(particles.parent[i].cast_signed())),
+    column("valence", ColumnKind::Uchar, |_, measured, i| {
+        CellValue::Uchar(measured.valence.get(i).copied().unwrap_or(0))
+    })
+    .only(Presence::Measured),
+    column("nearest", ColumnKind::Float, |_, measured, i| {
+        CellValue::Float(measured.nearest.get(i).copied().unwrap_or(f32::NAN))
+    })
+    .only(Presence::Measured),
+    column("residual", ColumnKind::Float, |_, measured, i| {
+        CellValue::Float(measured.residual.get(i).copied().unwrap_or(f32::NAN))
+    })
+    .only(Presence::Measured),
+    column("singular", ColumnKind::Uchar, |particles, _, i| {
+        CellValue::Uchar(particles.slots[i].is_singular().into())
+    }),
+    column("patch", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.patch[i]))
+        .only(Presence::Creased),
     // The first row of the particle: a particle on a crease has one for each patch.
-    Column {
-        kind: ColumnKind::Uint,
-        creases: true,
-        ..float("particle", |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
-    },
+    column("particle", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.first_row(i) as u32))
+        .only(Presence::Creased),
     // The particle that it is on the lowest faces of a cell: itself, but for the images on the opposite ones.
-    Column {
-        kind: ColumnKind::Uint,
-        creases: true,
-        periodic: true,
-        ..float("periodic", |particles, _, i| CellValue::Uint(particles.periodic[i]))
-    },
-    Column {
-        kind: ColumnKind::Uint,
-        moved: true,
-        ..float("identity", |particles, _, i| CellValue::Uint(particles.identity[i]))
-    },
+    column("periodic", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.periodic[i]))
+        .only(Presence::Periodic),
+    column("identity", ColumnKind::Uint, |particles, _, i| CellValue::Uint(particles.identity[i]))
+        .only(Presence::Moved),
 ];
 
-/// The columns of a file: all, but those of measurements where nothing was measured, and those of patches where there are no creases.
-fn columns(particles: &Particles, measured: &quality::Measurements) -> impl Iterator<Item = &'static Column> {
-    let (is_measured, is_creased) = (!measured.valence.is_empty(), !particles.patch.is_empty());
-    let (is_periodic, has_moved) = (!particles.periodic.is_empty(), !particles.identity.is_empty());
-    COLUMNS.iter().filter(move |column| {
-        (is_measured || !column.measured)
-            && (is_creased || !column.creases)
-            && (is_periodic || !column.periodic)
-            && (has_moved || !column.moved)
-    })
+/// The columns of a file: those that its particles have.
+fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'static Column> {
+    let is_there = |column: &&Column| match column.presence {
+        Presence::Always => true,
+        Presence::Measured => !measured.valence.is_empty(),
+        Presence::Creased => !particles.patch.is_empty(),
+        Presence::Periodic => !particles.periodic.is_empty(),
+        Presence::Moved => !particles.identity.is_empty(),
+    };
+    COLUMNS.iter().filter(is_there).collect()
 }
 
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them:
@@ -268,12 +253,12 @@ fn ply(
     rows: Range<usize>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let n = particles.len();
+    let (n, columns) = (particles.len(), columns(particles, measured));
     if rows.start == 0 {
-        ply_header(particles, measured, triangles, record, out)?;
+        ply_header(particles, &columns, triangles, record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
-        for column in columns(particles, measured) {
+        for column in &columns {
             (column.read)(particles, measured, i).write_binary(out)?;
         }
     }
@@ -290,7 +275,7 @@ fn ply(
 
 fn ply_header(
     particles: &Particles,
-    measured: &quality::Measurements,
+    columns: &[&Column],
     triangles: Option<&[[u32; 3]]>,
     record: &RecordText,
     out: &mut dyn Write,
@@ -298,7 +283,7 @@ fn ply_header(
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     write!(out, "{}", record.comment("comment"))?;
     writeln!(out, "element vertex {}", particles.len())?;
-    for column in columns(particles, measured) {
+    for column in columns {
         let kind = match column.kind {
             ColumnKind::Coordinate if is_double(particles) => "double",
             ColumnKind::Coordinate | ColumnKind::Float => "float",
@@ -320,12 +305,13 @@ fn csv(
     record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let names: Vec<&str> = columns(particles, measured).map(|column| column.name).collect();
+    let columns = columns(particles, measured);
+    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
     writeln!(out, "{}{}", record.comment("#"), names.join(","))?;
     for i in 0..particles.len() {
-        for (k, column) in columns(particles, measured).enumerate() {
+        for (k, column) in columns.iter().enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;
-            (column.read)(particles, measured, i).write_text(out)?;
+            write!(out, "{}", (column.read)(particles, measured, i))?;
         }
         out.write_all(b"\n")?;
     }
@@ -334,11 +320,8 @@ fn csv(
 
 fn xyz(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     for (i, n) in particles.normal.iter().enumerate() {
-        for axis in 0..3 {
-            coordinate(particles, i, axis).write_text(out)?;
-            out.write_all(b" ")?;
-        }
-        writeln!(out, "{} {} {}", n.x, n.y, n.z)?;
+        let [x, y, z] = coordinates(particles, i);
+        writeln!(out, "{x} {y} {z} {} {} {}", n.x, n.y, n.z)?;
     }
     Ok(())
 }
@@ -356,13 +339,11 @@ fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(&length.to_le_bytes())?;
     out.write_all(header.as_bytes())?;
     for (i, n) in particles.normal.iter().enumerate() {
-        for axis in 0..3 {
-            coordinate(particles, i, axis).write_binary(out)?;
-        }
-        for value in n.to_array() {
-            let cell =
-                if is_double(particles) { CellValue::Double(value.into()) } else { CellValue::Float(value) };
-            cell.write_binary(out)?;
+        let normal = n.to_array().map(|value| {
+            if is_double(particles) { CellValue::Double(value.into()) } else { CellValue::Float(value) }
+        });
+        for value in coordinates(particles, i).into_iter().chain(normal) {
+            value.write_binary(out)?;
         }
     }
     Ok(())

@@ -60,14 +60,8 @@ fn model(particles: &Particles, triangles: &[[u32; 3]], unit: Unit, record: &Rec
         if number[row] == NONE {
             number[row] = vertices;
             vertices += 1;
-            let p = particles.place(row);
-            // Of a particle near the origin the shortest text that gives its single precision.
-            let _ = if super::is_double(particles) {
-                write!(text, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z)
-            } else {
-                let p = p.as_vec3();
-                write!(text, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z)
-            };
+            let [x, y, z] = super::coordinates(particles, row);
+            let _ = write!(text, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>");
         }
     }
     text += "</vertices><triangles>";

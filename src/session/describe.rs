@@ -2,7 +2,7 @@
 //! or figure needs no new code anywhere else.
 
 use super::setting::{self, Setting};
-use crate::export::{COLUMNS, Column};
+use crate::export::{COLUMNS, Column, Presence};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
 use crate::field::gallery::{self, Surface, SurfaceGroup};
 use crate::field::model::{self, MODELS, Model};
@@ -190,7 +190,7 @@ pub fn describe() -> Description {
         functions: FUNCTIONS,
         colours: COLOURS,
         // What the page saves is the result of a run.
-        columns: COLUMNS.iter().filter(|column| !column.moved).collect(),
+        columns: COLUMNS.iter().filter(|column| column.presence != Presence::Moved).collect(),
         new_parameter: Parameter::automatic(""),
         limits: Limits {
             formula_bytes: MAX_FORMULA_BYTES,
