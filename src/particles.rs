@@ -47,6 +47,31 @@ pub struct Particles {
     pub identity: Vec<u32>,
 }
 
+/// A column of the particles, whatever it is of.
+trait Column {
+    /// Keeps the first `len` values.
+    fn truncate(&mut self, len: usize);
+    /// Keeps the values of the rows that have a new place, in their order.
+    fn keep(&mut self, place: &[u32]);
+    /// Frees the memory that the values do not use.
+    fn shrink(&mut self);
+}
+
+impl<T> Column for Vec<T> {
+    fn truncate(&mut self, len: usize) {
+        self.truncate(len);
+    }
+
+    fn keep(&mut self, place: &[u32]) {
+        let mut place = place.iter();
+        self.retain(|_| place.next().is_some_and(|&place| place != Particles::NO_PARENT));
+    }
+
+    fn shrink(&mut self) {
+        self.shrink_to_fit();
+    }
+}
+
 /// Two opposite faces of a cell with the same particles: their coordinates are the same bit for bit but that across the faces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OppositeFaces {
@@ -170,13 +195,14 @@ impl Particles {
 
     /// Frees the memory that the particles do not use.
     pub(crate) fn shrink(&mut self) {
-        self.position.shrink_to_fit();
-        self.normal.shrink_to_fit();
-        self.radius.shrink_to_fit();
-        self.parent.shrink_to_fit();
-        self.level.shrink_to_fit();
-        self.slots.shrink_to_fit();
-        self.patch.shrink_to_fit();
+        self.columns().into_iter().for_each(|column| column.shrink());
+    }
+
+    /// The columns with a value for each row, and those that only some runs have.
+    fn columns(&mut self) -> [&mut dyn Column; 10] {
+        let Self { position, normal, radius, parent, level, slots, patch, twins, periodic, identity, .. } =
+            self;
+        [position, normal, radius, parent, level, slots, patch, twins, periodic, identity]
     }
 
     /// The first row of the particle of row `i`: `i` itself, but for the further rows of a particle on a crease.
@@ -273,16 +299,7 @@ impl Particles {
 
     /// Keeps the first `len` particles.
     pub fn truncate(&mut self, len: usize) {
-        self.position.truncate(len);
-        self.normal.truncate(len);
-        self.radius.truncate(len);
-        self.parent.truncate(len);
-        self.level.truncate(len);
-        self.slots.truncate(len);
-        self.patch.truncate(len);
-        self.twins.truncate(len);
-        self.periodic.truncate(len);
-        self.identity.truncate(len);
+        self.columns().into_iter().for_each(|column| column.truncate(len));
         self.keep_segments(len);
     }
 
@@ -321,77 +338,32 @@ impl Particles {
     /// [`Self::NO_PARENT`] for one that is removed.
     pub(crate) fn keep(&mut self, is_kept: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut place = vec![Self::NO_PARENT; self.len()];
-        let mut kept = 0;
-        for i in (0..self.len()).filter(|&i| is_kept(i)) {
-            place[i] = kept as u32;
-            self.position[kept] = self.position[i];
-            self.normal[kept] = self.normal[i];
-            self.radius[kept] = self.radius[i];
-            self.level[kept] = self.level[i];
-            self.slots[kept] = self.slots[i];
-            if !self.patch.is_empty() {
-                self.patch[kept] = self.patch[i];
-            }
-            if !self.identity.is_empty() {
-                self.identity[kept] = self.identity[i];
-            }
-            // Parents come before their children, so its new place is known.
-            self.parent[kept] = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
-            kept += 1;
-        }
+        let kept = (0..self.len()).filter(|&i| is_kept(i));
+        (0..).zip(kept).for_each(|(new, i)| place[i] = new);
+        let parents = self.parent.iter_mut();
+        parents.for_each(|parent| *parent = place.get(*parent as usize).copied().unwrap_or(Self::NO_PARENT));
         self.name_twins(&place);
-        self.truncate(kept);
+        self.columns().into_iter().for_each(|column| column.keep(&place));
+        self.keep_segments(self.len());
         place
     }
 
     /// Names the first row that is kept of every particle on a crease, where each row has got a new place.
     fn name_twins(&mut self, place: &[u32]) {
         let mut first = vec![Self::NO_PARENT; self.twins.len()];
-        let mut kept = Vec::with_capacity(self.twins.len());
-        for (&twin, &place) in self.twins.iter().zip(place).filter(|(_, place)| **place != Self::NO_PARENT) {
-            let first = &mut first[twin as usize];
+        for (twin, &place) in self.twins.iter_mut().zip(place) {
+            let first = &mut first[*twin as usize];
             *first = place.min(*first);
-            kept.push(*first);
+            *twin = *first;
         }
-        self.twins = kept;
         // A segment of which a row is removed is none of the first rows any more.
         self.segments.iter_mut().flatten().for_each(|row| *row = first[*row as usize]);
     }
 
-    /// Takes the first `len` particles of others in place of its own.
-    pub(crate) fn copy_first(&mut self, len: usize, others: &Self) {
-        self.clear();
-        self.origin = others.origin;
-        self.position.extend_from_slice(&others.position[..len]);
-        self.normal.extend_from_slice(&others.normal[..len]);
-        self.radius.extend_from_slice(&others.radius[..len]);
-        self.parent.extend_from_slice(&others.parent[..len]);
-        self.level.extend_from_slice(&others.level[..len]);
-        self.slots.extend_from_slice(&others.slots[..len]);
-        self.patch.extend_from_slice(&others.patch[..len.min(others.patch.len())]);
-        self.twins.extend_from_slice(&others.twins[..len.min(others.twins.len())]);
-        self.segments.extend_from_slice(&others.segments);
-        self.sides.extend_from_slice(&others.sides);
-        self.opposite.clone_from(&others.opposite);
-        self.periodic.extend_from_slice(&others.periodic[..len.min(others.periodic.len())]);
-        self.keep_segments(len);
-    }
-
     /// Removes all particles and keeps the memory.
     pub fn clear(&mut self) {
-        self.position.clear();
-        self.normal.clear();
-        self.radius.clear();
-        self.parent.clear();
-        self.level.clear();
-        self.slots.clear();
-        self.patch.clear();
-        self.twins.clear();
-        self.segments.clear();
-        self.sides.clear();
+        self.truncate(0);
         self.opposite.clear();
-        self.periodic.clear();
-        self.identity.clear();
     }
 
     /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,

@@ -84,8 +84,8 @@ impl Meshing {
         known: &[[u32; 3]],
         bounds: Bounds,
     ) -> Work<'static, Triangulation> {
-        let mut copy = Particles::default();
-        copy.copy_first(count, particles);
+        let mut copy = particles.clone();
+        copy.truncate(count);
         let known = known.to_vec();
         Box::pin(async move {
             if known.is_empty() {

@@ -584,12 +584,12 @@ impl Sampler {
         };
         let settled = self.settled();
         let is_beyond = |p: &Vec3| !self.bounds.contains(*p);
+        self.output.inside = None;
         if !is_marching || !self.output.particles.position[..settled].iter().any(is_beyond) {
-            self.output.inside = None;
             return;
         }
-        let mut inside = self.output.inside.take().unwrap_or_default();
-        inside.copy_first(settled, &self.output.particles);
+        let mut inside = self.output.particles.clone();
+        inside.truncate(settled);
         inside.keep_within(&self.bounds);
         self.output.inside = Some(inside);
     }

@@ -202,8 +202,8 @@ impl Creases {
         for &[lower, upper] in particles.opposite.iter().flat_map(|faces| &faces.rows) {
             image[lower as usize] = upper;
         }
-        let mut next = Particles::default();
-        next.copy_first(on_creases, particles);
+        let mut next = particles.clone();
+        next.truncate(on_creases);
         for i in on_creases..particles.len() {
             if face_at(i, 1).is_some() {
                 place[i] = NONE;
