@@ -201,31 +201,29 @@ impl Session {
     /// The description of the present field.
     #[must_use]
     pub fn answer(&self) -> FieldAnswer {
+        let answer = FieldAnswer {
+            kind: FieldKind::Formula,
+            model: None,
+            surface: self.surface.map(|surface| surface.id),
+            formula: String::new(),
+            parameters: Vec::new(),
+            auto: Vec::new(),
+            bounds: self.clip,
+            reach: self.reach,
+            mathml: None,
+            grip: None,
+        };
         match self.source() {
             Source::Formula(field) => FieldAnswer {
-                kind: FieldKind::Formula,
-                model: None,
-                surface: self.surface.map(|surface| surface.id),
                 formula: field.text().to_owned(),
                 parameters: field.parameters().to_vec(),
                 auto: field.auto().to_vec(),
-                bounds: self.clip,
-                reach: self.reach,
                 mathml: Some(field.mathml()),
-                grip: None,
+                ..answer
             },
-            Source::Points { info, .. } => FieldAnswer {
-                kind: FieldKind::Points,
-                model: Some(info.clone()),
-                surface: None,
-                formula: String::new(),
-                parameters: Vec::new(),
-                auto: Vec::new(),
-                bounds: self.clip,
-                reach: self.reach,
-                mathml: None,
-                grip: None,
-            },
+            Source::Points { info, .. } => {
+                FieldAnswer { kind: FieldKind::Points, model: Some(info.clone()), ..answer }
+            }
         }
     }
 

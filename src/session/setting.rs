@@ -39,9 +39,6 @@ pub struct Setting {
     pub choices: &'static [Choice],
     /// The setting has an effect, and is shown, while all of these hold; always if there is none.
     pub when: &'static [Condition],
-    /// Reads the value of this setting.
-    #[serde(skip)]
-    read: fn(&Settings) -> SettingValue,
 }
 
 impl Setting {
@@ -82,12 +79,6 @@ impl Setting {
             "relax_steps" => "relax".to_owned(),
             name => name.replace('_', "-"),
         }
-    }
-
-    /// The value of this setting in `settings`.
-    #[must_use]
-    pub fn value(&self, settings: &Settings) -> SettingValue {
-        (self.read)(settings)
     }
 }
 
@@ -195,12 +186,12 @@ pub struct Condition {
 /// A setting that is a number, with the range that is accepted.
 fn number(
     name: &'static str,
-    read: fn(&Settings) -> SettingValue,
+    default: impl Into<SettingValue>,
     label: &'static str,
     help: &'static str,
 ) -> Setting {
     let (min, max) = Settings::range(name).unwrap_or(0.0..=0.0).into_inner();
-    let default = read(&Settings::DEFAULT);
+    let default = default.into();
     Setting {
         name,
         label,
@@ -216,19 +207,18 @@ fn number(
         unit: "",
         choices: &[],
         when: &[],
-        read,
     }
 }
 
 /// A setting that is one of a few named values.
 fn choice(
     name: &'static str,
-    read: fn(&Settings) -> SettingValue,
+    default: impl Into<SettingValue>,
     label: &'static str,
     help: &'static str,
     choices: &'static [Choice],
 ) -> Setting {
-    Setting { step: 0.0, choices, ..number(name, read, label, help) }
+    Setting { step: 0.0, choices, ..number(name, default, label, help) }
 }
 
 const fn when(name: &'static str, value: &'static str) -> Condition {
@@ -275,18 +265,19 @@ pub fn settings() -> Vec<Setting> {
     let particles = |setting| Setting { unit: "particles", ..log(setting) };
     let advanced = |setting| Setting { group: SettingGroup::Advanced, ..setting };
     let of_box = |setting| Setting { group: SettingGroup::Box, ..setting };
+    let run = Settings::DEFAULT;
     let thicknesses = SolidSettings::THICKNESSES;
     vec![
         of_box(choice(
             "box_mode",
-            |_| BoxMode::default().into(),
+            BoxMode::default(),
             "Box",
             "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
             BOXES,
         )),
         of_box(choice(
             "box_faces",
-            |_| BoxFaces::default().into(),
+            BoxFaces::default(),
             "Faces",
             "Closed: the faces of the box close what they cut, the solid f ≤ 0 in the box, with sharp edges. Of formulas.",
             FACES,
@@ -295,7 +286,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[CLOSED],
             ..of_box(choice(
                 "box_cell",
-                |_| BoxCell::default().into(),
+                BoxCell::default(),
                 "Cell",
                 "Periodic: opposite faces have the same particles and triangles, bit for bit but for the shift, along every axis on which the box is a whole number of periods wide. Of closed solids.",
                 CELLS,
@@ -307,21 +298,21 @@ pub fn settings() -> Vec<Setting> {
             accepted_max: *thicknesses.end(),
             ..of_box(number(
                 "thickness",
-                |_| SolidSettings::default().thickness.into(),
+                SolidSettings::default().thickness,
                 "Thickness",
                 "Thickness t of a sheet that is sampled in place of the surface, |f| ≤ t/2 |∇f|, in the units of x, y and z; 0 for the surface itself. Of formulas.",
             ))
         },
         choice(
             "sampling",
-            |settings| settings.sampling.into(),
+            run.sampling,
             "Sampling",
             "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
             SAMPLINGS,
         ),
         choice(
             "size_mode",
-            |settings| settings.size_mode.into(),
+            run.size_mode,
             "Size by",
             "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
             SIZES,
@@ -330,7 +321,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[UNIFORM, BY_RADIUS],
             ..share(number(
                 "radius_share",
-                |settings| settings.radius_share.into(),
+                run.radius_share,
                 "Radius",
                 "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
             ))
@@ -339,7 +330,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[BY_COUNT],
             ..particles(number(
                 "count",
-                |settings| settings.count.into(),
+                run.count,
                 "Count",
                 "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
             ))
@@ -348,7 +339,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE],
             ..choice(
                 "radius_law",
-                |settings| settings.radius_law.into(),
+                run.radius_law,
                 "Radius law",
                 "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
                 LAWS,
@@ -358,7 +349,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE, BY_CHORD],
             ..share(number(
                 "chord_error",
-                |settings| settings.chord_error.into(),
+                run.chord_error,
                 "Chord error",
                 "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
             ))
@@ -368,7 +359,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE, BY_CURVATURE],
             ..log(number(
                 "curvature_scale",
-                |settings| settings.curvature_scale.into(),
+                run.curvature_scale,
                 "Curvature scale",
                 "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
             ))
@@ -377,7 +368,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE],
             ..advanced(share(number(
                 "radius_min_share",
-                |settings| settings.radius_min_share.into(),
+                run.radius_min_share,
                 "Smallest radius",
                 "No particle is smaller than this share of the box diagonal.",
             )))
@@ -386,7 +377,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE],
             ..advanced(share(number(
                 "radius_max_share",
-                |settings| settings.radius_max_share.into(),
+                run.radius_max_share,
                 "Largest radius",
                 "No particle is larger than this share of the box diagonal.",
             )))
@@ -395,7 +386,7 @@ pub fn settings() -> Vec<Setting> {
             when: &[ADAPTIVE],
             ..advanced(number(
                 "grading",
-                |settings| settings.grading.into(),
+                run.grading,
                 "Grading",
                 "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
             ))
@@ -408,14 +399,14 @@ pub fn settings() -> Vec<Setting> {
             when: &[BY_FRONT],
             ..number(
                 "relax_steps",
-                |settings| settings.relax_steps.into(),
+                run.relax_steps,
                 "Relaxation",
                 "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
             )
         },
         advanced(choice(
             "method",
-            |settings| settings.method.into(),
+            run.method,
             "Method",
             "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even.",
             METHODS,
@@ -424,14 +415,14 @@ pub fn settings() -> Vec<Setting> {
             unit: "× 2r",
             ..advanced(number(
                 "match_tolerance",
-                |settings| settings.match_tolerance.into(),
+                run.match_tolerance,
                 "Match tolerance",
                 "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
             ))
         },
         advanced(choice(
             "gaps",
-            |settings| settings.gaps.into(),
+            run.gaps,
             "Gaps",
             "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
             GAPS,
@@ -441,14 +432,14 @@ pub fn settings() -> Vec<Setting> {
             step: 1.0,
             ..advanced(number(
                 "seed",
-                |settings| settings.seed.into(),
+                run.seed,
                 "Seed",
                 "Chooses the point on the surface where the front begins.",
             ))
         },
         advanced(particles(number(
             "max_particles",
-            |settings| settings.max_particles.into(),
+            run.max_particles,
             "Limit",
             "The run stops when it has placed this many.",
         ))),
@@ -468,10 +459,8 @@ mod tests {
         };
         let Json::Object(of_box) = json!(SolidSettings::default()) else { panic!("settings are an object") };
         text.extend(of_box);
-        let shown: Map<String, Json> = settings()
-            .iter()
-            .map(|setting| (setting.name.to_owned(), json!(setting.value(&Settings::DEFAULT))))
-            .collect();
+        let shown: Map<String, Json> =
+            settings().iter().map(|setting| (setting.name.to_owned(), json!(setting.default))).collect();
         assert_eq!(shown, text);
     }
 
@@ -481,7 +470,7 @@ mod tests {
             for choice in setting.choices {
                 let settings: Settings =
                     serde_json::from_value(json!({ setting.name: choice.value })).expect("settings");
-                assert_eq!(setting.value(&settings), SettingValue::Choice(choice.value), "{}", setting.name);
+                assert_eq!(json!(settings)[setting.name], choice.value, "{}", setting.name);
             }
         }
     }
