@@ -131,9 +131,7 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if OBJ_WORDS.contains(&word) {
         return Ok(InputFormat::Obj);
     }
-    if xyz::words(line).next().is_some_and(|word| number(word).is_some())
-        || xyz::ColumnLayout::named(line).is_some()
-    {
+    if xyz::words(line).next().is_some_and(|word| number(word).is_some()) || xyz::named(line).is_some() {
         return Ok(InputFormat::Xyz);
     }
     let unknown = |found, advice| Err(ReadError::Unknown { found, advice });

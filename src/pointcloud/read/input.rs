@@ -1,7 +1,8 @@
 //! The bytes of a file, consumed by lines or by records, and the numbers in them.
 
 use super::ReadError;
-use core::ops::Range;
+use crate::slices::{MEDIUM, pause};
+use glam::DVec3;
 
 /// Largest magnitude of a coordinate. Areas and volumes computed from such coordinates do not overflow.
 const LARGEST: f64 = 1e30;
@@ -10,28 +11,42 @@ const LARGEST: f64 = 1e30;
 /// -2.2250738585072014e-308.
 const SHOWN: usize = 24;
 
-/// A file with a read position.
-pub(super) struct Input {
-    bytes: Vec<u8>,
-    at: usize,
-    line: u64,
+/// Names of the components of a point and its normal, in headers and messages.
+pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// Place in a file that an error names.
+enum Place {
+    /// Number of the line, from 1.
+    Line(u64),
+    /// A row of a binary file: its kind, its number among its kind, from 1, and its offset.
+    Row { element: String, row: u64, byte: u64 },
 }
 
-impl Input {
-    pub(super) fn new(bytes: Vec<u8>) -> Self {
+/// A file with a read position.
+pub(super) struct Input<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    place: Place,
+    /// Number of slices' ends that were asked for.
+    rows: usize,
+    tell: &'a dyn Fn(f64),
+}
+
+impl<'a> Input<'a> {
+    /// The file from its beginning; `tell` gets the fraction of the bytes consumed.
+    pub(super) fn new(bytes: &'a [u8], tell: &'a dyn Fn(f64)) -> Self {
         // Skip the byte-order mark, with which some editors begin a text.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Self { bytes, at, line: 0 }
+        Self { bytes, at, place: Place::Line(0), rows: 0, tell }
     }
 
-    /// Fraction of the bytes consumed.
-    pub(super) fn fraction(&self) -> f64 {
-        self.at as f64 / self.bytes.len().max(1) as f64
-    }
-
-    /// Offset of the next byte.
-    pub(super) fn offset(&self) -> usize {
-        self.at
+    /// Ends a slice of work after every [`MEDIUM`] rows: called once for each row, a line or a record.
+    pub(super) async fn end_row(&mut self) {
+        self.rows += 1;
+        if self.rows.is_multiple_of(MEDIUM) {
+            (self.tell)(self.at as f64 / self.bytes.len() as f64);
+            pause().await;
+        }
     }
 
     /// Number of remaining bytes.
@@ -39,23 +54,12 @@ impl Input {
         self.bytes.len() - self.at
     }
 
-    /// Number, from 1, of the line consumed last.
-    pub(super) fn line_number(&self) -> u64 {
-        self.line
-    }
-
-    /// Upper bound of the number of remaining lines.
-    pub(super) fn count_lines(&self) -> usize {
-        self.bytes[self.at..].iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1
-    }
-
-    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns its range without the end.
-    pub(super) fn line(&mut self) -> Option<Range<usize>> {
-        if self.at == self.bytes.len() {
+    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns it without the end.
+    pub(super) fn line(&mut self) -> Option<&'a [u8]> {
+        let rest = &self.bytes[self.at..];
+        if rest.is_empty() {
             return None;
         }
-        let start = self.at;
-        let rest = &self.bytes[start..];
         let length = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(rest.len());
         let end = match rest[length..] {
             [b'\r', b'\n', ..] => 2,
@@ -63,45 +67,86 @@ impl Input {
             [] => 0,
         };
         self.at += length + end;
-        self.line += 1;
-        Some(start..start + length)
+        if let Place::Line(number) = &mut self.place {
+            *number += 1;
+        }
+        Some(&rest[..length])
     }
 
-    /// Consumes lines up to and including one that is not blank, and returns its range.
-    pub(super) fn line_with_text(&mut self) -> Option<Range<usize>> {
-        loop {
-            let line = self.line()?;
-            if !self.bytes[line.clone()].trim_ascii().is_empty() {
-                return Some(line);
+    /// Consumes lines up to and including one that is not blank, and returns it.
+    pub(super) fn line_with_text(&mut self) -> Option<&'a [u8]> {
+        core::iter::from_fn(|| self.line()).find(|line| !line.trim_ascii().is_empty())
+    }
+
+    /// Consumes `count` bytes. If fewer remain, there is none, and nothing is consumed.
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let bytes = self.bytes[self.at..].get(..count)?;
+        self.at += count;
+        Some(bytes)
+    }
+
+    /// From here on follow rows of a binary file, of this kind.
+    pub(super) fn begin_records(&mut self, element: &str) {
+        self.place = Place::Row { element: element.to_owned(), row: 0, byte: 0 };
+    }
+
+    /// Begins a row of a binary file.
+    pub(super) fn begin_record(&mut self) {
+        if let Place::Row { row, byte, .. } = &mut self.place {
+            (*row, *byte) = (*row + 1, self.at as u64);
+        }
+    }
+
+    /// Error in the line consumed last or the row begun last.
+    #[cold]
+    pub(super) fn error(&self, message: impl Into<String>) -> ReadError {
+        let message = message.into();
+        match &self.place {
+            &Place::Line(line) => ReadError::Line { line, message },
+            Place::Row { element, row, byte } => {
+                ReadError::Row { element: element.clone(), row: *row, byte: *byte, message }
             }
         }
     }
 
-    /// Consumes `N` bytes.
-    pub(super) fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let bytes = self.bytes.get(self.at..self.at + N)?.try_into().ok()?;
-        self.at += N;
-        Some(bytes)
-    }
-
-    /// Consumes `count` bytes. Returns false, and consumes nothing, if fewer remain.
-    pub(super) fn skip(&mut self, count: u64) -> bool {
-        let within = count <= self.remaining() as u64;
-        if within {
-            self.at += count as usize;
+    /// `value`, if it can be a coordinate. The error message calls the coordinate `name`.
+    pub(super) fn coordinate(&self, value: f64, name: &str) -> Result<f64, ReadError> {
+        if value.abs() <= LARGEST {
+            Ok(value)
+        } else if value.is_finite() {
+            Err(self.error(format!("{name} is {value:e}; up to {LARGEST:e} can be used")))
+        } else {
+            let how = "remove this point or export the file again";
+            Err(self.error(format!("{name} is not a finite number; {how}")))
         }
-        within
     }
 
-    /// Bytes of a range that [`Input::line`] has returned.
-    pub(super) fn slice(&self, range: Range<usize>) -> &[u8] {
-        &self.bytes[range]
+    /// Coordinate that a word spells. The error message calls the coordinate `name`.
+    pub(super) fn coordinate_of(&self, word: &[u8], name: &str) -> Result<f64, ReadError> {
+        if let Some(value) = number(word) {
+            return self.coordinate(value, name);
+        }
+        let with_points: Vec<u8> = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect();
+        let word = quoted(word);
+        Err(self.error(if number(&with_points).is_some() {
+            format!("`{word}` has a decimal comma; write decimal points")
+        } else {
+            format!("{name} is `{word}`, which is not a number")
+        }))
     }
 
-    /// Error in the line consumed last.
-    #[cold]
-    pub(super) fn line_error(&self, message: impl Into<String>) -> ReadError {
-        ReadError::Line { line: self.line, message: message.into() }
+    /// Vector whose components are the next three of `words`. Error messages call them by these names.
+    pub(super) fn vector<'w>(
+        &self,
+        words: &mut impl Iterator<Item = &'w [u8]>,
+        names: &[&str],
+    ) -> Result<DVec3, ReadError> {
+        let mut vector = DVec3::ZERO;
+        for (k, name) in names.iter().enumerate() {
+            let missing = || self.error(format!("three numbers are needed, {name} is missing"));
+            vector[k] = self.coordinate_of(words.next().ok_or_else(missing)?, name)?;
+        }
+        Ok(vector)
     }
 }
 
@@ -124,31 +169,4 @@ pub(super) fn quoted(word: &[u8]) -> String {
 /// Number that a word spells, including `nan` and `inf`.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     core::str::from_utf8(word).ok()?.parse().ok()
-}
-
-/// `value`, if it can be a coordinate. The error message calls the coordinate `name`.
-pub(super) fn coordinate(value: f64, name: &str) -> Result<f64, String> {
-    if value.abs() <= LARGEST {
-        Ok(value)
-    } else if value.is_finite() {
-        Err(format!("{name} is {value:e}; up to {LARGEST:e} can be used"))
-    } else {
-        Err(format!("{name} is not a finite number; remove this point or export the file again"))
-    }
-}
-
-/// Coordinate that a word spells. The error message calls the coordinate `name`.
-pub(super) fn coordinate_word(word: &[u8], name: &str) -> Result<f64, String> {
-    match number(word) {
-        Some(value) => coordinate(value, name),
-        None if word.contains(&b',') && number(&decimal_point(word)).is_some() => {
-            Err(format!("`{}` has a decimal comma; write decimal points", quoted(word)))
-        }
-        None => Err(format!("{name} is `{}`, which is not a number", quoted(word))),
-    }
-}
-
-/// Word with decimal points in place of commas.
-fn decimal_point(word: &[u8]) -> Vec<u8> {
-    word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect()
 }

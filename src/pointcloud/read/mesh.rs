@@ -5,7 +5,7 @@ use crate::field::model::{GivenMesh, GivenTopology};
 use crate::math::IndexTable;
 use crate::pointcloud::thin::find_or_add;
 use crate::pointcloud::{Cloud, NormalSource};
-use crate::slices::{MEDIUM, pause, ranges};
+use crate::slices::{MEDIUM, pause};
 use crate::topology::Topology;
 use glam::DVec3;
 
@@ -28,6 +28,27 @@ pub struct FileMesh {
 }
 
 impl FileMesh {
+    /// Appends a point with these components, of which the last three are its normal, if the file `has_normal`s.
+    pub(super) fn add_point(
+        &mut self,
+        [x, y, z, nx, ny, nz]: [f64; 6],
+        has_normal: bool,
+    ) -> Result<(), ReadError> {
+        push(&mut self.position, DVec3::new(x, y, z))?;
+        if has_normal {
+            push(&mut self.normal, DVec3::new(nx, ny, nz))?;
+        }
+        Ok(())
+    }
+
+    /// Pads the normals with zeros to the number of positions.
+    pub(super) fn pad_normals(&mut self) -> Result<(), ReadError> {
+        let missing = self.position.len() - self.normal.len();
+        self.normal.try_reserve(missing).map_err(|_| ReadError::Memory)?;
+        self.normal.resize(self.position.len(), DVec3::ZERO);
+        Ok(())
+    }
+
     /// Appends a face. One with fewer than three corners has no area and is dropped.
     pub(super) fn add_polygon(&mut self, corners: &[u32]) -> Result<(), ReadError> {
         if corners.len() < 3 {
@@ -147,12 +168,17 @@ impl FileMesh {
         Ok(Some(GivenMesh { area, topology }))
     }
 
+    /// The corners of each face.
+    fn polygons(&self) -> impl Iterator<Item = &[u32]> {
+        let mut from = 0;
+        self.faces
+            .iter()
+            .map(move |&to| &self.corners[core::mem::replace(&mut from, to as usize)..to as usize])
+    }
+
     /// The triangles into which the faces are divided, by the indices of their corners.
     fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
-        let mut from = 0;
-        self.faces.iter().flat_map(move |&to| {
-            let corners = &self.corners[from..to as usize];
-            from = to as usize;
+        self.polygons().flat_map(|corners| {
             (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]].map(|corner| corner as usize))
         })
     }
@@ -173,20 +199,17 @@ impl FileMesh {
         }
         area.try_reserve_exact(self.position.len()).map_err(|_| ReadError::Memory)?;
         area.resize(self.position.len(), DVec3::ZERO);
-        let mut from = 0;
-        for faces in ranges(self.faces.len(), MEDIUM) {
-            tell(faces.start as f64 / self.faces.len() as f64);
-            for &to in &self.faces[faces] {
-                let corners = &self.corners[from..to as usize];
-                from = to as usize;
-                let at = |k: usize| self.position[corners[k] as usize];
-                let origin = at(0);
-                let sum: DVec3 = (2..corners.len()).map(|k| (at(k - 1) - origin).cross(at(k) - origin)).sum();
-                for &corner in corners {
-                    area[corner as usize] += sum;
-                }
+        for (k, corners) in self.polygons().enumerate() {
+            if k.is_multiple_of(MEDIUM) {
+                tell(k as f64 / self.faces.len() as f64);
+                pause().await;
             }
-            pause().await;
+            let at = |k: usize| self.position[corners[k] as usize];
+            let origin = at(0);
+            let sum: DVec3 = (2..corners.len()).map(|k| (at(k - 1) - origin).cross(at(k) - origin)).sum();
+            for &corner in corners {
+                area[corner as usize] += sum;
+            }
         }
         Ok(area)
     }

@@ -18,7 +18,6 @@ pub use mesh::FileMesh;
 
 use super::thin;
 use crate::field::model::MAX_FILE_BYTES;
-use crate::slices::{MEDIUM, pause};
 use input::Input;
 
 /// Maximum size of a file in bytes.
@@ -129,45 +128,29 @@ fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
     thin::push(column, item).ok_or(ReadError::Memory)
 }
 
-/// Reader of the rows of one format.
-trait RowReader {
-    /// Reads a row into `mesh`. Returns false after the last one.
-    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError>;
-}
-
-/// Reader of a file whose header has been read.
+/// Reader of a file whose format is known.
 pub struct Reader {
     format: InputFormat,
-    input: Input,
-    rows: Box<dyn RowReader>,
+    bytes: Vec<u8>,
     mesh: FileMesh,
 }
 
 impl Reader {
-    /// Checks the size, detects the format and reads the header. Only the extension of `name` is used, where the
-    /// content is ambiguous.
+    /// Checks the size and detects the format. Only the extension of `name` is used, where the content is ambiguous.
     ///
     /// # Errors
     ///
-    /// If the file is empty, too large or of an unknown format, or if its header is wrong.
+    /// If the file is empty, too large or of an unknown format.
     pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         check_size(bytes.len() as u64)?;
         let format = format::sniff(name, &bytes)?;
-        let mut input = Input::new(bytes);
         let mut mesh = FileMesh::default();
-        let rows: Box<dyn RowReader> = match format {
-            InputFormat::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
-            InputFormat::Obj => Box::new(obj::Obj::default()),
-            InputFormat::StlText => Box::new(stl::TextStl::default()),
-            InputFormat::StlBinary => Box::new(stl::BinaryStl::new(&mut input)?),
-            InputFormat::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
-        };
         if let Some(extension) = format.contradicting_extension(name) {
             mesh.warnings.push(format!(
                 "The name ends in .{extension}, the content is {format}; it was read as {format}."
             ));
         }
-        Ok(Self { format, input, rows, mesh })
+        Ok(Self { format, bytes, mesh })
     }
 
     /// Detected format.
@@ -176,23 +159,25 @@ impl Reader {
         self.format
     }
 
-    /// Reads all rows, which are lines or records: the points and faces. `tell` gets the fraction of the file that is read.
+    /// Reads the header and all rows, which are lines or records: the points and faces. `tell` gets the fraction of the file that is
+    /// read.
     ///
     /// # Errors
     ///
-    /// An error with the number of the row that cannot be read, or [`ReadError::NoPoints`].
-    pub async fn read(mut self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
-        let mut read: usize = 0;
-        while self.rows.row(&mut self.input, &mut self.mesh)? {
-            read += 1;
-            if read.is_multiple_of(MEDIUM) {
-                tell(self.input.fraction());
-                pause().await;
-            }
+    /// An error with the number of the row that cannot be read, one of the header, or [`ReadError::NoPoints`].
+    pub async fn read(self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
+        let Self { format, bytes, mut mesh } = self;
+        let mut input = Input::new(&bytes, &tell);
+        match format {
+            InputFormat::Ply => ply::read(&mut input, &mut mesh).await,
+            InputFormat::Obj => obj::read(&mut input, &mut mesh).await,
+            InputFormat::StlText => stl::read_text(&mut input, &mut mesh).await,
+            InputFormat::StlBinary => stl::read_binary(&mut input, &mut mesh).await,
+            InputFormat::Xyz => xyz::read(&mut input, &mut mesh).await,
+        }?;
+        if mesh.position.is_empty() {
+            return Err(ReadError::NoPoints { format });
         }
-        if self.mesh.position.is_empty() {
-            return Err(ReadError::NoPoints { format: self.format });
-        }
-        Ok(self.mesh)
+        Ok(mesh)
     }
 }

@@ -1,180 +1,138 @@
 //! Reader of PLY files, with any elements and properties in any order, as text or binary in either byte order.
 
-use super::input::{Input, coordinate, coordinate_word, number, quoted, words};
+use super::ReadError;
+use super::input::{COMPONENTS, Input, number, quoted};
 use super::mesh::FileMesh;
-use super::ply_header::{self, COMPONENTS, Element, Encoding, Role, ScalarType};
-use super::{ReadError, RowReader, push};
-use glam::DVec3;
+use super::ply_header::{self, Element, Encoding, Role, ScalarType};
 
-pub(super) struct Ply {
-    encoding: Encoding,
-    elements: Vec<Element>,
-    /// Index of the next row's element, and of the row among its rows.
-    element: usize,
-    row: u64,
-    vertices: u64,
-    corners: Vec<u32>,
-}
-
-impl Ply {
-    pub(super) fn new(input: &mut Input, mesh: &mut FileMesh) -> Result<Self, ReadError> {
-        let (encoding, mut elements) = ply_header::read(input)?;
-        // Elements after the last one that is used are not read.
-        let end = elements.iter().rposition(Element::is_used).map_or(0, |last| last + 1);
-        elements.truncate(end);
-        let vertex = elements.iter().find(|element| element.is_vertex());
-        let vertices = vertex.map_or(0, |vertex| vertex.count);
-        // The header was compared with the size of the file, so this allocation is bounded by it.
-        let count = vertices as usize;
-        mesh.position.try_reserve_exact(count).map_err(|_| ReadError::Memory)?;
-        if vertex.is_some_and(Element::has_normal) {
-            mesh.normal.try_reserve_exact(count).map_err(|_| ReadError::Memory)?;
+/// Reads the header and the rows.
+pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
+    let (encoding, elements) = ply_header::read(input)?;
+    // Elements after the last one that is used are not read.
+    let end = elements.iter().rposition(Element::is_used).map_or(0, |last| last + 1);
+    let vertices = elements.iter().find(|element| element.is_vertex()).map_or(0, |vertex| vertex.count);
+    let mut corners = Vec::new();
+    for element in elements[..end].iter().filter(|element| !element.properties.is_empty()) {
+        if encoding != Encoding::Text {
+            input.begin_records(&element.name);
         }
-        Ok(Self { encoding, elements, element: 0, row: 0, vertices, corners: Vec::new() })
-    }
-}
-
-impl RowReader for Ply {
-    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
-        let Some(element) = self.elements.get(self.element) else { return Ok(false) };
-        if self.row == element.count || element.properties.is_empty() {
-            self.element += 1;
-            self.row = 0;
-            return Ok(true);
-        }
-        self.row += 1;
-        let byte = input.offset() as u64;
-        let mut values = [0.0; COMPONENTS.len()];
-        self.corners.clear();
-        let result = match self.encoding {
-            Encoding::Text => text_row(element, input, &mut values, &mut self.corners, self.vertices),
-            encoding => binary_row(encoding, element, input, &mut values, &mut self.corners, self.vertices),
-        };
-        result.map_err(|message| match self.encoding {
-            Encoding::Text => input.line_error(message),
-            _ => ReadError::Row { element: element.name.clone(), row: self.row, byte, message },
-        })?;
-        if element.is_vertex() {
-            let [x, y, z, nx, ny, nz] = values;
-            push(&mut mesh.position, DVec3::new(x, y, z))?;
-            if element.has_normal() {
-                push(&mut mesh.normal, DVec3::new(nx, ny, nz))?;
-            }
-        }
-        mesh.add_polygon(&self.corners)?;
-        Ok(true)
-    }
-}
-
-fn text_row(
-    element: &Element,
-    input: &mut Input,
-    values: &mut [f64],
-    corners: &mut Vec<u32>,
-    vertices: u64,
-) -> Result<(), String> {
-    let Some(range) = input.line_with_text() else {
-        return Err(format!(
-            "the file ends before all {} {} rows; it is cut off: export it again",
-            element.count, element.name
-        ));
-    };
-    let mut words = words(input.slice(range));
-    let mut next = || {
-        words.next().ok_or_else(|| format!("this {} has fewer numbers than the header says", element.name))
-    };
-    for property in &element.properties {
-        let Some(_) = property.length else {
-            let word = next()?;
-            if let Role::Component(component) = property.role {
-                values[component] = coordinate_word(word, COMPONENTS[component])?;
-            }
-            continue;
-        };
-        let word = next()?;
-        let length = number(word).filter(|length| *length >= 0.0 && length.fract() == 0.0);
-        let length = length.ok_or_else(|| format!("`{}` is no length of a list", quoted(word)))?;
-        for _ in 0..length as u64 {
-            let word = next()?;
-            if property.role == Role::Corners {
-                let value =
-                    number(word).ok_or_else(|| format!("`{}` is no number of a vertex", quoted(word)))?;
-                corners.push(corner(value, vertices)?);
-            }
-        }
-    }
-    Ok(())
-}
-
-fn binary_row(
-    encoding: Encoding,
-    element: &Element,
-    input: &mut Input,
-    values: &mut [f64],
-    corners: &mut Vec<u32>,
-    vertices: u64,
-) -> Result<(), String> {
-    let cut_off = || "the file ends here; it is cut off, or its header is wrong: export it again".to_owned();
-    for property in &element.properties {
-        let Some(length) = property.length else {
-            match property.role {
-                Role::Component(component) => {
-                    let value = value(property.scalar, encoding, input).ok_or_else(cut_off)?;
-                    values[component] = coordinate(value, COMPONENTS[component])?;
+        let has_normal = element.has_components(3..6);
+        for _ in 0..element.count {
+            let mut row = Row::begin(input, encoding, element)?;
+            let mut values = [0.0; COMPONENTS.len()];
+            corners.clear();
+            for property in &element.properties {
+                let count = match property.length {
+                    Some(length) => row.length(length, property.scalar)?,
+                    None => 1,
+                };
+                for _ in 0..count {
+                    match property.role {
+                        Role::Component(k) => {
+                            values[k] = row.coordinate(property.scalar, COMPONENTS[k])?;
+                        }
+                        Role::Corners => corners.push(row.corner(property.scalar, vertices)?),
+                        Role::Unused => row.skip(property.scalar)?,
+                    }
                 }
-                _ if input.skip(property.scalar.size()) => {}
-                _ => return Err(cut_off()),
             }
-            continue;
-        };
-        let length = value(length, encoding, input).ok_or_else(cut_off)?;
-        let size = length * property.scalar.size() as f64;
-        if !(0.0..=input.remaining() as f64).contains(&size) {
-            let left = input.remaining();
-            return Err(format!(
-                "a list of {length} numbers, and {left} bytes are left; the file is damaged: export it again"
-            ));
-        }
-        if property.role != Role::Corners {
-            input.skip(size as u64);
-            continue;
-        }
-        for _ in 0..length as u64 {
-            let value = value(property.scalar, encoding, input).ok_or_else(cut_off)?;
-            corners.push(corner(value, vertices)?);
+            if element.is_vertex() {
+                mesh.add_point(values, has_normal)?;
+            }
+            mesh.add_polygon(&corners)?;
+            input.end_row().await;
         }
     }
     Ok(())
 }
 
-/// Consumes a number of a binary file.
-fn value(scalar: ScalarType, encoding: Encoding, input: &mut Input) -> Option<f64> {
-    macro_rules! take {
-        ($number:ty) => {{
-            let bytes = input.take()?;
-            f64::from(match encoding {
-                Encoding::BigEndian => <$number>::from_be_bytes(bytes),
-                _ => <$number>::from_le_bytes(bytes),
-            })
-        }};
-    }
-    Some(match scalar {
-        ScalarType::I8 => take!(i8),
-        ScalarType::U8 => take!(u8),
-        ScalarType::I16 => take!(i16),
-        ScalarType::U16 => take!(u16),
-        ScalarType::I32 => take!(i32),
-        ScalarType::U32 => take!(u32),
-        ScalarType::F32 => take!(f32),
-        ScalarType::F64 => take!(f64),
-    })
+/// A row that is read number by number: words of a line, or bytes.
+struct Row<'r, 'a> {
+    input: &'r mut Input<'a>,
+    encoding: Encoding,
+    element: &'r Element,
+    /// The words of the line that are left.
+    line: &'a [u8],
 }
 
-/// Vertex index that a number stands for.
-fn corner(value: f64, vertices: u64) -> Result<u32, String> {
-    if value >= 0.0 && value < vertices as f64 && value.fract() == 0.0 && value < f64::from(u32::MAX) {
-        Ok(value as u32)
-    } else {
-        Err(format!("the face has vertex {value}, and the {vertices} vertices are counted from 0"))
+impl<'r, 'a> Row<'r, 'a> {
+    fn begin(input: &'r mut Input<'a>, encoding: Encoding, element: &'r Element) -> Result<Self, ReadError> {
+        input.begin_record();
+        let line = if encoding == Encoding::Text { input.line_with_text() } else { Some(&b""[..]) };
+        match line {
+            Some(line) => Ok(Self { input, encoding, element, line }),
+            None => Err(input.error(format!(
+                "the file ends before all {} {} rows; it is cut off: export it again",
+                element.count, element.name
+            ))),
+        }
+    }
+
+    /// The text of the next number: a word, or bytes.
+    fn next(&mut self, scalar: ScalarType) -> Result<&'a [u8], ReadError> {
+        if self.encoding != Encoding::Text {
+            let cut_off = "the file ends here; it is cut off, or its header is wrong: export it again";
+            return self.input.take(scalar.size).ok_or_else(|| self.input.error(cut_off));
+        }
+        let line = self.line.trim_ascii_start();
+        let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+        let word;
+        (word, self.line) = line.split_at(end);
+        if word.is_empty() {
+            let name = &self.element.name;
+            return Err(self.input.error(format!("this {name} has fewer numbers than the header says")));
+        }
+        Ok(word)
+    }
+
+    fn skip(&mut self, scalar: ScalarType) -> Result<(), ReadError> {
+        self.next(scalar).map(drop)
+    }
+
+    fn coordinate(&mut self, scalar: ScalarType, name: &str) -> Result<f64, ReadError> {
+        let next = self.next(scalar)?;
+        match self.encoding {
+            Encoding::Text => self.input.coordinate_of(next, name),
+            encoding => self.input.coordinate(scalar.decode(next, encoding), name),
+        }
+    }
+
+    /// The next number, of which a message says that it is no `what` where it is none.
+    fn number(&mut self, scalar: ScalarType, what: &str) -> Result<f64, ReadError> {
+        let next = self.next(scalar)?;
+        match self.encoding {
+            Encoding::Text => {
+                number(next).ok_or_else(|| self.input.error(format!("`{}` is no {what}", quoted(next))))
+            }
+            encoding => Ok(scalar.decode(next, encoding)),
+        }
+    }
+
+    /// Length of a list of such numbers.
+    fn length(&mut self, length: ScalarType, scalar: ScalarType) -> Result<u64, ReadError> {
+        let length = self.number(length, "length of a list")?;
+        let left = self.input.remaining();
+        if self.encoding == Encoding::Text {
+            if !(length >= 0.0 && length.fract() == 0.0) {
+                return Err(self.input.error(format!("`{length}` is no length of a list")));
+            }
+        } else if !(0.0..=left as f64).contains(&(length * scalar.size as f64)) {
+            return Err(self.input.error(format!(
+                "a list of {length} numbers, and {left} bytes are left; the file is damaged: export it again"
+            )));
+        }
+        Ok(length as u64)
+    }
+
+    /// Index of a corner of a face.
+    fn corner(&mut self, scalar: ScalarType, vertices: u64) -> Result<u32, ReadError> {
+        let value = self.number(scalar, "number of a vertex")?;
+        if value >= 0.0 && value < vertices as f64 && value.fract() == 0.0 && value < f64::from(u32::MAX) {
+            Ok(value as u32)
+        } else {
+            Err(self.input.error(format!(
+                "the face has vertex {value}, and the {vertices} vertices are counted from 0"
+            )))
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Header of a PLY file (G. Turk, "The PLY Polygon File Format", 1994).
 
 use super::ReadError;
-use super::input::{Input, quoted, words};
+use super::input::{COMPONENTS, Input, quoted, words};
+use core::ops::Range;
 
 /// Encoding of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,46 +12,55 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// Type of a scalar property.
+/// Kind of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ScalarType {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
+pub(super) enum NumberKind {
+    Signed,
+    Unsigned,
+    Float,
+}
+
+/// Type of a scalar property.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ScalarType {
+    pub(super) kind: NumberKind,
+    /// Size in bytes in a binary file.
+    pub(super) size: usize,
 }
 
 impl ScalarType {
     fn named(name: &[u8]) -> Option<Self> {
-        Some(match name {
-            b"char" | b"int8" => Self::I8,
-            b"uchar" | b"uint8" => Self::U8,
-            b"short" | b"int16" => Self::I16,
-            b"ushort" | b"uint16" => Self::U16,
-            b"int" | b"int32" => Self::I32,
-            b"uint" | b"uint32" => Self::U32,
-            b"float" | b"float32" => Self::F32,
-            b"double" | b"float64" => Self::F64,
+        let (kind, size) = match name {
+            b"char" | b"int8" => (NumberKind::Signed, 1),
+            b"uchar" | b"uint8" => (NumberKind::Unsigned, 1),
+            b"short" | b"int16" => (NumberKind::Signed, 2),
+            b"ushort" | b"uint16" => (NumberKind::Unsigned, 2),
+            b"int" | b"int32" => (NumberKind::Signed, 4),
+            b"uint" | b"uint32" => (NumberKind::Unsigned, 4),
+            b"float" | b"float32" => (NumberKind::Float, 4),
+            b"double" | b"float64" => (NumberKind::Float, 8),
             _ => return None,
-        })
+        };
+        Some(Self { kind, size })
     }
 
-    /// Size in bytes in a binary file.
-    pub(super) fn size(self) -> u64 {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+    /// The number that bytes of this size are, the least significant one first or last.
+    pub(super) fn decode(self, bytes: &[u8], encoding: Encoding) -> f64 {
+        let mut word = [0; 8];
+        word[..self.size].copy_from_slice(bytes);
+        if encoding == Encoding::BigEndian {
+            word[..self.size].reverse();
         }
-    }
-
-    pub(super) fn is_integer(self) -> bool {
-        !matches!(self, Self::F32 | Self::F64)
+        let bits = u64::from_le_bytes(word);
+        match self.kind {
+            NumberKind::Unsigned => bits as f64,
+            NumberKind::Signed => {
+                let above = u64::BITS - 8 * self.size as u32;
+                ((bits << above) as i64 >> above) as f64
+            }
+            NumberKind::Float if self.size == 4 => f32::from_bits(bits as u32).into(),
+            NumberKind::Float => f64::from_bits(bits),
+        }
     }
 }
 
@@ -81,14 +91,11 @@ pub(super) struct Element {
     pub(super) properties: Vec<Property>,
 }
 
-/// Names of the components of a vertex.
-pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
-
 /// Maximum number of lines of a header. Real headers have some dozens at most.
-const MAX_LINES: u64 = 10_000;
+const MAX_LINES: usize = 10_000;
 
-/// Number of bytes of a line that are looked at. Only comments are longer.
-const MAX_LINE_BYTES: usize = 1024;
+/// Words of a line that are looked at: one more than the longest statement has.
+const MAX_WORDS: usize = 6;
 
 impl Element {
     pub(super) fn is_vertex(&self) -> bool {
@@ -99,8 +106,9 @@ impl Element {
         self.properties.iter().any(|property| property.role == role)
     }
 
-    pub(super) fn has_normal(&self) -> bool {
-        (3..6).all(|component| self.has(Role::Component(component)))
+    /// Whether it has all of these components.
+    pub(super) fn has_components(&self, mut components: Range<usize>) -> bool {
+        components.all(|component| self.has(Role::Component(component)))
     }
 
     /// Whether any of its properties is used.
@@ -113,7 +121,7 @@ impl Element {
         let of_property = |property: &Property| match encoding {
             // A digit and a separator.
             Encoding::Text => 2,
-            _ => property.length.unwrap_or(property.scalar).size(),
+            _ => property.length.unwrap_or(property.scalar).size as u64,
         };
         self.properties.iter().map(of_property).sum()
     }
@@ -138,102 +146,83 @@ impl Element {
 pub(super) fn read(input: &mut Input) -> Result<(Encoding, Vec<Element>), ReadError> {
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    loop {
-        let Some(range) = input.line().filter(|_| input.line_number() <= MAX_LINES) else {
-            return Err(
-                input.line_error("the header has no `end_header`; the file is cut off: export it again")
-            );
-        };
-        let line = input.slice(range);
-        let line = line[..line.len().min(MAX_LINE_BYTES)].to_vec();
-        let words: Vec<&[u8]> = words(&line).collect();
-        match words[..] {
-            [b"format", format, version] => {
-                if version != b"1.0" {
-                    return Err(
-                        input.line_error(format!("version {} of the format; 1.0 is read", quoted(version)))
-                    );
-                }
-                encoding = Some(match format {
-                    b"ascii" => Encoding::Text,
-                    b"binary_little_endian" => Encoding::LittleEndian,
-                    b"binary_big_endian" => Encoding::BigEndian,
-                    _ => {
-                        return Err(
-                            input.line_error(format!("`{}` is no format of a PLY file", quoted(format)))
-                        );
-                    }
-                });
-            }
-            [b"element", name, count] => {
-                let number = core::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
-                let Some(count) = number else {
-                    return Err(input.line_error(format!("`{}` is no number of rows", quoted(count))));
-                };
-                let name = quoted(name);
-                if elements.iter().any(|element| element.name == name) {
-                    return Err(input.line_error(format!("the element `{name}` is declared twice")));
-                }
-                elements.push(Element { name, count, properties: Vec::new() });
-            }
-            [b"property", b"list", length, scalar, name] => {
-                add(&mut elements, Some(length), scalar, name, input)?;
-            }
-            [b"property", scalar, name] => add(&mut elements, None, scalar, name, input)?,
-            [b"end_header"] => break,
-            [] | [b"ply" | b"comment" | b"obj_info", ..] => {}
-            [word, ..] => {
-                let word = quoted(word);
-                return Err(
-                    input.line_error(format!("`{word}` begins no line of a PLY header that can be read"))
-                );
-            }
+    let mut is_complete = false;
+    for _ in 0..MAX_LINES {
+        let Some(line) = input.line() else { break };
+        let words: Vec<&[u8]> = words(line).take(MAX_WORDS).collect();
+        if words == [b"end_header"] {
+            is_complete = true;
+            break;
         }
+        statement(&words, &mut encoding, &mut elements).map_err(|message| input.error(message))?;
     }
-    let Some(encoding) = encoding else {
-        return Err(
-            input.line_error("the header does not say in which format the rows are; export the file again")
-        );
+    let vertex = elements.iter().find(|element| element.is_vertex());
+    let message = match (encoding, vertex) {
+        _ if !is_complete => "the header has no `end_header`; the file is cut off: export it again",
+        (None, _) => "the header does not say in which format the rows are; export the file again",
+        (_, None) => "the header declares no vertices; choose a file that holds points",
+        (_, Some(vertex)) if !vertex.has_components(0..3) => {
+            "the vertices have no x, y and z; choose a file that holds points in space"
+        }
+        (Some(encoding), Some(_)) => {
+            check_claims(encoding, &elements, input)?;
+            return Ok((encoding, elements));
+        }
     };
-    let complete = |element: &Element| (0..3).all(|component| element.has(Role::Component(component)));
-    match elements.iter().find(|element| element.is_vertex()) {
-        None => {
-            return Err(input.line_error("the header declares no vertices; choose a file that holds points"));
+    Err(input.error(message))
+}
+
+/// Reads a line of the header, and returns what is wrong with it.
+fn statement(
+    words: &[&[u8]],
+    encoding: &mut Option<Encoding>,
+    elements: &mut Vec<Element>,
+) -> Result<(), String> {
+    match *words {
+        [b"format", format, version] => {
+            if version != b"1.0" {
+                return Err(format!("version {} of the format; 1.0 is read", quoted(version)));
+            }
+            *encoding = Some(match format {
+                b"ascii" => Encoding::Text,
+                b"binary_little_endian" => Encoding::LittleEndian,
+                b"binary_big_endian" => Encoding::BigEndian,
+                _ => return Err(format!("`{}` is no format of a PLY file", quoted(format))),
+            });
         }
-        Some(vertex) if !complete(vertex) => {
-            return Err(
-                input.line_error("the vertices have no x, y and z; choose a file that holds points in space")
-            );
+        [b"element", name, count] => {
+            let number = core::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
+            let count = number.ok_or_else(|| format!("`{}` is no number of rows", quoted(count)))?;
+            let name = quoted(name);
+            if elements.iter().any(|element| element.name == name) {
+                return Err(format!("the element `{name}` is declared twice"));
+            }
+            elements.push(Element { name, count, properties: Vec::new() });
         }
-        Some(_) => {}
+        [b"property", b"list", length, scalar, name] => add(elements, Some(length), scalar, name)?,
+        [b"property", scalar, name] => add(elements, None, scalar, name)?,
+        [] | [b"ply" | b"comment" | b"obj_info", ..] => {}
+        [word, ..] => {
+            return Err(format!("`{}` begins no line of a PLY header that can be read", quoted(word)));
+        }
     }
-    check_claims(encoding, &elements, input)?;
-    Ok((encoding, elements))
+    Ok(())
 }
 
 /// Adds a property to the last element.
-fn add(
-    elements: &mut [Element],
-    length: Option<&[u8]>,
-    scalar: &[u8],
-    name: &[u8],
-    input: &Input,
-) -> Result<(), ReadError> {
+fn add(elements: &mut [Element], length: Option<&[u8]>, scalar: &[u8], name: &[u8]) -> Result<(), String> {
     let of_type = |word: &[u8]| {
-        ScalarType::named(word)
-            .ok_or_else(|| input.line_error(format!("`{}` is no type of a number", quoted(word))))
+        ScalarType::named(word).ok_or_else(|| format!("`{}` is no type of a number", quoted(word)))
     };
     let length = length.map(of_type).transpose()?;
     let scalar = of_type(scalar)?;
-    if length.is_some_and(|length| !length.is_integer()) {
-        return Err(input.line_error("the length of a list must be a whole number"));
+    if length.is_some_and(|length| length.kind == NumberKind::Float) {
+        return Err("the length of a list must be a whole number".to_owned());
     }
-    let Some(element) = elements.last_mut() else {
-        return Err(input.line_error("a property stands before the first element"));
-    };
+    let element = elements.last_mut().ok_or("a property stands before the first element")?;
     let role = element.role(name, length.is_some());
     if role != Role::Unused && element.has(role) {
-        return Err(input.line_error(format!("the property `{}` is declared twice", quoted(name))));
+        return Err(format!("the property `{}` is declared twice", quoted(name)));
     }
     element.properties.push(Property { scalar, length, role });
     Ok(())

@@ -1,12 +1,8 @@
 //! Reader of XYZ files, with one point per line, with or without a normal, and of CSV files with a header.
 
-use super::input::{Input, coordinate_word, number, quoted};
+use super::ReadError;
+use super::input::{COMPONENTS, Input, number, quoted};
 use super::mesh::FileMesh;
-use super::{ReadError, RowReader, push};
-use glam::DVec3;
-
-/// Names of the components of a point, in headers and messages.
-const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
 /// Lengths at which a vector may be a unit normal that was written with few digits: with one digit after the point each component
 /// is off by 0.05 at most, and the length by 0.087.
@@ -16,64 +12,25 @@ const UNIT: core::ops::Range<f64> = 0.9..1.1;
 /// With half of it twelve random clouds are read the same.
 const UNIT_SHARE: f64 = 0.9;
 
-/// Columns of a line that hold the components of a point.
-pub(super) struct ColumnLayout {
-    /// Column of each component.
-    index: [usize; 6],
-    /// Number of columns.
-    count: usize,
-    has_normal: bool,
-    /// Whether the file names its columns.
-    named: bool,
+/// Component of a point and its normal that each column of a file holds, if it holds one.
+type Columns = Vec<Option<usize>>;
+
+/// Columns by a header; `None` if the line does not name x, y and z.
+pub(super) fn named(line: &[u8]) -> Option<Columns> {
+    let found =
+        COMPONENTS.map(|name| words(line).position(|word| word.eq_ignore_ascii_case(name.as_bytes())));
+    let used = if found.contains(&None) { 3 } else { 6 };
+    let mut columns = vec![None; words(line).count()];
+    for (component, column) in found.into_iter().enumerate().take(used) {
+        columns[column?] = Some(component);
+    }
+    Some(columns)
 }
 
-impl ColumnLayout {
-    /// Columns by a header; `None` if the line does not name x, y and z.
-    pub(super) fn named(line: &[u8]) -> Option<Self> {
-        let found = NAMES.map(|name| {
-            words(line).position(|word| word.trim_ascii_start().eq_ignore_ascii_case(name.as_bytes()))
-        });
-        let [Some(x), Some(y), Some(z), normal @ ..] = found else { return None };
-        let (nx, ny, nz, has_normal) = match normal {
-            [Some(nx), Some(ny), Some(nz)] => (nx, ny, nz, true),
-            _ => (0, 0, 0, false),
-        };
-        Some(Self { index: [x, y, z, nx, ny, nz], count: words(line).count(), has_normal, named: true })
-    }
-
-    /// Columns of lines of `count` numbers without a header.
-    fn usual(count: usize) -> Self {
-        Self { index: [0, 1, 2, 3, 4, 5], count, has_normal: count >= 6, named: false }
-    }
-}
-
-#[derive(Default)]
-pub(super) struct Xyz {
-    columns: Option<ColumnLayout>,
-    /// Number of rows whose columns 4 to 6 may be a unit normal.
-    unit_normals: usize,
-}
-
-impl Xyz {
-    /// Allocates memory for as many points as there are lines, if there is enough: growing would take twice the memory.
-    pub(super) fn new(input: &Input, mesh: &mut FileMesh) -> Self {
-        /// Minimum number of bytes of a line with a point: three digits, two spaces and the end of the line.
-        const SHORTEST: usize = 6;
-        let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.remaining() / SHORTEST + 1));
-        Self::default()
-    }
-
-    /// Drops the normals if they are probably colours, which columns without names may be.
-    fn finish(&self, mesh: &mut FileMesh) {
-        let named = self.columns.as_ref().is_some_and(|columns| columns.named);
-        if !named && (self.unit_normals as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
-            mesh.normal = Vec::new();
-            mesh.warnings.push(
-                "Columns 4 to 6 are not of unit length, so they are no normals (colours?) and were left out."
-                    .into(),
-            );
-        }
-    }
+/// Columns of lines of `count` numbers without a header.
+fn usual(count: usize) -> Columns {
+    let used = if count < 6 { 3 } else { 6 };
+    (0..count).map(|column| Some(column).filter(|&column| column < used)).collect()
 }
 
 /// Words of a line, separated by white space, commas or semicolons.
@@ -89,7 +46,6 @@ fn has_decimal_commas(line: &[u8]) -> bool {
     const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')
-        .map(|word| word.trim_ascii())
         .filter(|word| !word.is_empty())
         .take(LOOKED_AT)
         .collect();
@@ -102,61 +58,58 @@ fn has_decimal_commas(line: &[u8]) -> bool {
         })
 }
 
-impl RowReader for Xyz {
-    fn row(&mut self, input: &mut Input, mesh: &mut FileMesh) -> Result<bool, ReadError> {
-        let Some(range) = input.line() else {
-            self.finish(mesh);
-            return Ok(false);
-        };
-        let line = input.slice(range);
+/// Reads the points.
+pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
+    let mut header = None;
+    let mut columns = Columns::new();
+    let mut unit_normals = 0_usize;
+    while let Some(line) = input.line() {
+        input.end_row().await;
         let line = line.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
         if line.is_empty() || line.starts_with(b"//") {
-            return Ok(true);
+            continue;
         }
         if line.contains(&b',') && has_decimal_commas(line) {
-            return Err(input.line_error("the numbers have decimal commas; write decimal points"));
+            return Err(input.error("the numbers have decimal commas; write decimal points"));
         }
         let count = words(line).count();
-        let columns = match &self.columns {
-            Some(columns) => columns,
-            None => {
-                if let Some(columns) = ColumnLayout::named(line) {
-                    self.columns = Some(columns);
-                    return Ok(true);
-                }
-                self.columns.insert(ColumnLayout::usual(count))
+        if columns.is_empty() {
+            header = named(line);
+            columns = header.clone().unwrap_or_else(|| usual(count));
+            if header.is_some() {
+                continue;
             }
-        };
+        }
         if count < 3 {
-            return Err(input.line_error(match words(line).next() {
+            return Err(input.error(match words(line).next() {
                 Some(word) if number(word).is_none() => {
                     format!("`{}` is no number; a point is x y z", quoted(word))
                 }
                 _ => format!("a point takes three numbers, x y z, or six with a normal; here is {count}"),
             }));
         }
-        if count != columns.count {
-            return Err(
-                input.line_error(format!("{count} columns, where the lines before have {}", columns.count))
-            );
+        if count != columns.len() {
+            let before = columns.len();
+            return Err(input.error(format!("{count} columns, where the lines before have {before}")));
         }
-        let mut values = [0.0; 6];
-        let used = if columns.has_normal { 6 } else { 3 };
-        for (k, word) in words(line).enumerate() {
-            for (component, name) in NAMES.iter().enumerate().take(used) {
-                if columns.index[component] == k {
-                    values[component] =
-                        coordinate_word(word, name).map_err(|message| input.line_error(message))?;
-                }
+        let mut values = [0.0; COMPONENTS.len()];
+        for (word, &component) in words(line).zip(&columns) {
+            if let Some(component) = component {
+                values[component] = input.coordinate_of(word, COMPONENTS[component])?;
             }
         }
-        let [x, y, z, nx, ny, nz] = values;
-        push(&mut mesh.position, DVec3::new(x, y, z))?;
-        if columns.has_normal {
-            let normal = DVec3::new(nx, ny, nz);
-            self.unit_normals += usize::from(UNIT.contains(&normal.length()));
-            push(&mut mesh.normal, normal)?;
+        mesh.add_point(values, columns.contains(&Some(5)))?;
+        if let Some(normal) = mesh.normal.last() {
+            unit_normals += usize::from(UNIT.contains(&normal.length()));
         }
-        Ok(true)
     }
+    // Columns without names may be colours.
+    if header.is_none() && (unit_normals as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
+        mesh.normal = Vec::new();
+        mesh.warnings.push(
+            "Columns 4 to 6 are not of unit length, so they are no normals (colours?) and were left out."
+                .into(),
+        );
+    }
+    Ok(())
 }
