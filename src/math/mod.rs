@@ -30,6 +30,12 @@ pub fn shortest_text(value: f64) -> String {
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
+/// A number with four significant digits.
+#[must_use]
+pub fn significant(number: f64) -> String {
+    shortest_text(format!("{number:.3e}").parse().unwrap_or(number))
+}
+
 /// A number rounded to a thousandth of a length.
 pub(crate) fn text_within(x: f64, length: f64) -> String {
     let digits = (3.0 - libm::floor(libm::log10(length))).clamp(0.0, 15.0) as usize;

@@ -191,7 +191,7 @@ impl Job {
     ///
     /// # Errors
     ///
-    /// If the number of centres is out of range, or if the size, format or header of the file is wrong.
+    /// If the number of centres is out of range, or if the size or format of the file is wrong.
     pub fn file(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Self, JobError> {
         check_number(centres)?;
         let reader = Reader::new(name, bytes)?;
@@ -221,10 +221,7 @@ impl Job {
     /// Current progress.
     #[must_use]
     pub fn progress(&self) -> PointsProgress {
-        match self.state {
-            JobState::Done(_) => DONE.at(0.0),
-            JobState::Working(_) | JobState::Failed(_) => self.status.progress.get(),
-        }
+        self.status.progress.get()
     }
 
     /// Does up to `budget` slices of the work and returns the progress.
@@ -302,7 +299,7 @@ async fn of_file(
     // The points of a mesh belong together by its faces, which tell their normals too.
     if cloud.normal.is_empty() || !has_faces {
         let part = if cloud.normal.is_empty() { &ESTIMATING } else { &COMPARING };
-        let Changes { outliers, warnings } = settle(&mut cloud, status.begin(part)).await?;
+        let Changes { outliers, warnings } = settle(&mut cloud, status.begin(part)).await;
         given.retain(|p| !outliers.contains(p));
         info.warnings.extend(warnings);
     }
@@ -328,6 +325,7 @@ async fn of_cloud(
     let points = info.points;
     let mut fit = approximate(&cloud, &chosen, &given, info, status.begin(&SOLVING)).await?;
     fit.info.points = fit.info.points.max(points);
+    status.begin(&DONE)(0.0);
     Ok(fit)
 }
 

@@ -15,8 +15,8 @@
 //! * Outward is decided by the outermost points in six directions together, not by the highest point alone.
 
 use super::thin::covariance;
-use super::{Cloud, CloudError, NormalSource, eigen};
-use crate::math::{Bounds, shortest_text, sort_numbers, unkey};
+use super::{Cloud, NormalSource, eigen};
+use crate::math::{Bounds, significant, sort_numbers, unkey};
 use crate::slices::{HEAVY, MEDIUM, pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
@@ -68,11 +68,7 @@ pub struct Changes {
 
 /// Leaves the outliers of a cloud out, and estimates its normals, outward, or turns the given ones round that disagree with those of
 /// their neighbours. The points must be distinct and not in one plane. `tell` gets the fraction of the points that are done.
-///
-/// # Errors
-///
-/// If there is not enough memory.
-pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Changes, CloudError> {
+pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Changes {
     let mut settled = Changes::default();
     let mut graph = NeighbourGraph::new(&cloud.position, tell).await;
     let is_outlier = graph.outliers();
@@ -83,17 +79,16 @@ pub async fn settle(cloud: &mut Cloud, tell: impl Fn(f64)) -> Result<Changes, Cl
         };
         settled.outliers = cloud.only(&of_kind(true)).position;
         *cloud = cloud.only(&of_kind(false));
-        let [x, y, z] =
-            settled.outliers[0].to_array().map(|c| shortest_text(format!("{c:.3e}").parse().unwrap_or(c)));
+        let [x, y, z] = settled.outliers[0].to_array().map(significant);
         let are = if count == 1 { "1 point is" } else { &format!("{count} points are") };
         settled.warnings.push(format!(
             "{are} far from all others, for the distances between those, and left out as noise: the first at ({x}, {y}, {z})."
         ));
         graph = NeighbourGraph::new(&cloud.position, |_| {}).await;
     }
-    let warnings = if cloud.normal.is_empty() { estimate(cloud, graph)? } else { turn(cloud, graph).await };
+    let warnings = if cloud.normal.is_empty() { estimate(cloud, graph) } else { turn(cloud, graph).await };
     settled.warnings.extend(warnings);
-    Ok(settled)
+    settled
 }
 
 /// Turns the given normals round that disagree with those of their neighbours, and returns warnings for the user.
@@ -121,9 +116,8 @@ async fn turn(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
 }
 
 /// Takes the normals of the planes through the neighbours, outward, and returns warnings for the user.
-fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Result<Vec<String>, CloudError> {
-    let edges = graph.edges()?;
-    let components = graph.orient(&edges);
+fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Vec<String> {
+    let components = graph.orient();
     let mut warnings = vec![
         "The file has no normals: they were estimated from each point's neighbours, and where the surface is thin or \
          sparsely sampled they can be wrong."
@@ -145,7 +139,7 @@ fn estimate(cloud: &mut Cloud, mut graph: NeighbourGraph) -> Result<Vec<String>,
     }
     cloud.normal = graph.normal;
     cloud.source = NormalSource::Estimated;
-    Ok(warnings)
+    warnings
 }
 
 /// Points with normals, each joined to its nearest neighbours.
@@ -293,40 +287,16 @@ impl NeighbourGraph {
         self.neighbours.iter().enumerate().map(move |(k, &j)| (k / per_point, j as usize))
     }
 
-    /// Adjacency lists of the undirected graph: for each point the index of its first entry, and the entries of all
-    /// points.
-    ///
-    /// # Errors
-    ///
-    /// If there is not enough memory.
-    fn edges(&self) -> Result<(Vec<u32>, Vec<u32>), CloudError> {
-        let mut first = vec![0_u32; self.local.len() + 1];
-        let mut ends = Vec::new();
-        ends.try_reserve_exact(2 * self.neighbours.len()).map_err(|_| CloudError::Memory)?;
-        ends.resize(2 * self.neighbours.len(), 0);
-        for (i, j) in self.pairs() {
-            first[i] += 1;
-            first[j] += 1;
-        }
-        let mut sum = 0;
-        for first in &mut first {
-            sum += *first;
-            *first = sum;
-        }
-        for (i, j) in self.pairs() {
-            for (from, to) in [(i, j), (j, i)] {
-                first[from] -= 1;
-                ends[first[from] as usize] = to as u32;
-            }
-        }
-        Ok((first, ends))
-    }
-
     /// Orients the normals and returns the number of connected components of the graph.
     ///
     /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's algorithm), so that
     /// it follows the edges on which it is most certain. Each component is then turned outward.
-    fn orient(&mut self, (first, ends): &(Vec<u32>, Vec<u32>)) -> usize {
+    fn orient(&mut self) -> usize {
+        let mut joined = vec![Vec::new(); self.local.len()];
+        for (i, j) in self.pairs() {
+            joined[i].push(j);
+            joined[j].push(i);
+        }
         let mut reached = vec![false; self.local.len()];
         let mut queue = BinaryHeap::new();
         let mut component = Vec::new();
@@ -338,27 +308,26 @@ impl NeighbourGraph {
             components += 1;
             component.clear();
             // The bits of weights, which are not negative, have the order of the weights. Ties go to the smaller index.
-            queue.push(Reverse((0_u64, start as u32, start as u32)));
-            while let Some(Reverse((_, point, from))) = queue.pop() {
-                let i = point as usize;
+            queue.push(Reverse((0_u64, start, start)));
+            while let Some(Reverse((_, i, from))) = queue.pop() {
                 if reached[i] {
                     continue;
                 }
                 reached[i] = true;
-                component.push(point);
-                if self.agreement(from as usize, i) < 0.0 {
+                component.push(i);
+                if self.agreement(from, i) < 0.0 {
                     self.normal[i] = -self.normal[i];
                 }
-                for &j in &ends[first[i] as usize..first[i + 1] as usize] {
-                    if !reached[j as usize] {
-                        let weight = (1.0 - self.agreement(i, j as usize).abs()).max(0.0);
-                        queue.push(Reverse((weight.to_bits(), j, point)));
+                for &j in &joined[i] {
+                    if !reached[j] {
+                        let weight = (1.0 - self.agreement(i, j).abs()).max(0.0);
+                        queue.push(Reverse((weight.to_bits(), j, i)));
                     }
                 }
             }
             if self.points_inward(&component) {
                 for &i in &component {
-                    self.normal[i as usize] = -self.normal[i as usize];
+                    self.normal[i] = -self.normal[i];
                 }
             }
         }
@@ -378,13 +347,13 @@ impl NeighbourGraph {
 
     /// Whether the normals of the outermost points of a component, in the six axis directions, point inward on the
     /// whole.
-    fn points_inward(&self, component: &[u32]) -> bool {
+    fn points_inward(&self, component: &[usize]) -> bool {
         let mut sum = 0.0;
         for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
-            let mut outermost = component[0] as usize;
+            let mut outermost = component[0];
             for &i in component {
-                if self.local[i as usize].dot(axis) > self.local[outermost].dot(axis) {
-                    outermost = i as usize;
+                if self.local[i].dot(axis) > self.local[outermost].dot(axis) {
+                    outermost = i;
                 }
             }
             let along = self.normal[outermost].dot(axis);

@@ -195,14 +195,7 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
         count += 1.0;
     }
     let share = 1.0 / count.max(1.0);
-    Sym3 {
-        xx: sum.xx * share,
-        xy: sum.xy * share,
-        xz: sum.xz * share,
-        yy: sum.yy * share,
-        yz: sum.yz * share,
-        zz: sum.zz * share,
-    }
+    sum.map(|entry| entry * share)
 }
 
 /// Farthest-point sampling: the indices of up to `wanted` of `points`, each the one farthest from all those chosen before

@@ -2,7 +2,7 @@
 
 use super::values::answer;
 use crate::field::model::SolvedModel;
-use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, PointsFault, PointsProgress};
+use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, PointsFault};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -35,16 +35,14 @@ impl Points {
     /// of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
-        self.begin(Job::model(id, if centres == 0 { DEFAULT_CENTRES } else { centres }))
+        self.begin(|| Job::model(id, wanted(centres)))
     }
 
     /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
     /// default number of them.
     #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
-        // Room for the old one's points goes before that for the new one's is taken.
-        self.job = None;
-        self.begin(Job::file(name, bytes, if centres == 0 { DEFAULT_CENTRES } else { centres }))
+        self.begin(|| Job::file(name, bytes, wanted(centres)))
     }
 
     /// Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
@@ -72,17 +70,17 @@ impl Points {
         centres.iter().flat_map(|p| p.as_vec3().to_array()).collect()
     }
 
-    fn begin(&mut self, job: Result<Job, JobError>) -> JsValue {
-        let (job, begun) = match job {
-            Ok(job) => {
-                let progress: PointsProgress = job.progress();
-                (Some(job), Ok(progress))
-            }
-            Err(error) => (None, Err(PointsFault::from(&error))),
-        };
-        self.job = job;
-        answer(begun)
+    fn begin(&mut self, job: impl FnOnce() -> Result<Job, JobError>) -> JsValue {
+        // Room for the old one's points goes before that for the new one's is taken.
+        self.job = None;
+        let begun = job().map(|job| self.job.insert(job).progress());
+        answer(begun.map_err(|error| PointsFault::from(&error)))
     }
+}
+
+/// The number of centres that is asked for: 0 is the default number.
+fn wanted(centres: u32) -> u32 {
+    if centres == 0 { DEFAULT_CENTRES } else { centres }
 }
 
 fn nothing(message: &str) -> PointsFault {
