@@ -1,7 +1,7 @@
 //! The command line's arguments, as clap reads and explains them.
 
-use crate::options::SamplingOptions;
-use clap::builder::PossibleValuesParser;
+use crate::options::{SamplingOptions, number};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
@@ -78,7 +78,7 @@ pub(crate) struct SweepArguments {
 
     /// Format of the files
     #[arg(long, value_name = "WORD", value_parser = one_of(&Format::ALL), default_value = "ply", help_heading = "Output")]
-    pub(crate) format: String,
+    pub(crate) format: (&'static str, Format),
 
     /// Show no progress bar (there is none without a terminal)
     #[arg(long, short, help_heading = "Output")]
@@ -150,18 +150,18 @@ pub(crate) struct SampleArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
-    /// Length of a unit of the formula in the files of --mesh, in the unit of --unit [default: 1]
-    #[arg(long, value_name = "NUMBER", value_parser = scale, help_heading = "Output")]
-    pub(crate) scale: Option<f64>,
+    /// Length of a unit of the formula in the files of --mesh, in the unit of --unit
+    #[arg(long, value_name = "NUMBER", value_parser = scale, default_value_t = 1.0, help_heading = "Output")]
+    pub(crate) scale: f64,
 
     /// Unit of the files of --mesh: 3mf names it, and glb is in metres, to which lengths are converted. Without it numbers stay what they
     /// are: metres in glb, millimetres in 3mf
     #[arg(long, value_name = "WORD", value_parser = one_of(&Unit::ALL), help_heading = "Output")]
-    pub(crate) unit: Option<String>,
+    pub(crate) unit: Option<(&'static str, Unit)>,
 
-    /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y [default: z]
-    #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), help_heading = "Output")]
-    pub(crate) up: Option<String>,
+    /// Axis of the formula that points up in the files of --mesh: along z there, but in glb along y
+    #[arg(long, value_name = "AXIS", value_parser = one_of(&UpAxis::ALL), default_value = "z", help_heading = "Output")]
+    pub(crate) up: (&'static str, UpAxis),
 
     /// Do not measure the particles: no figures of quality, no components and Euler number of the sample, no warnings that come
     /// from these, and no columns valence, nearest and residual in the files. Measuring can take longer than sampling on surfaces
@@ -241,12 +241,7 @@ pub(crate) struct SurfaceArguments {
 impl SampleArguments {
     /// Size and orientation of the mesh in its files.
     pub(crate) fn placement(&self) -> Placement {
-        let mut placement = Placement { scale: self.scale.unwrap_or(1.0), ..Placement::default() };
-        placement.unit = self.unit.as_deref().and_then(|name| named(&Unit::ALL, name));
-        if let Some(up) = self.up.as_deref().and_then(|name| named(&UpAxis::ALL, name)) {
-            placement.up = up;
-        }
-        placement
+        Placement { scale: self.scale, unit: self.unit.map(|(_, unit)| unit), up: self.up.1 }
     }
 
     /// Takes from the record of a file what is not given.
@@ -280,14 +275,13 @@ impl SampleArguments {
     }
 }
 
-/// The value of a table with this name.
-fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
-    table.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
-}
-
-/// The names of a table, one of which is to be given.
-fn one_of<T>(table: &[(&'static str, T)]) -> PossibleValuesParser {
-    PossibleValuesParser::new(table.iter().map(|(name, _)| *name).collect::<Vec<_>>())
+/// One of the names of a table, with its value.
+fn one_of<T: Copy + Send + Sync>(
+    table: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = (&'static str, T)> {
+    PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|given| {
+        table.iter().find(|(name, _)| *name == given).copied().ok_or("there is no such name")
+    })
 }
 
 impl SurfaceArguments {
@@ -327,33 +321,6 @@ pub(crate) struct Surfaces {
     pub(crate) json: bool,
 }
 
-/// A length on the command line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Length {
-    /// Share of the box diagonal.
-    Share(f64),
-    /// In the field's units.
-    Units(f64),
-}
-
-impl Length {
-    /// The length as a share of the box diagonal.
-    pub(crate) fn share(self, diagonal: f64) -> f64 {
-        match self {
-            Self::Share(share) => share,
-            Self::Units(length) => length / diagonal,
-        }
-    }
-}
-
-/// A finite number from an argument.
-pub(crate) fn number(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{text}` is not a number")),
-    }
-}
-
 /// A length that a sheet can have.
 fn thickness(text: &str) -> Result<f64, String> {
     let thickness = number(text)?;
@@ -379,18 +346,6 @@ fn sweep(text: &str) -> Result<Sweep, String> {
     let (name, range) = text.split_once('=').ok_or(how)?;
     let (from, to) = range.split_once("..").ok_or(how)?;
     Ok(Sweep { name: name.trim().to_owned(), from: number(from)?, to: number(to)? })
-}
-
-/// A length from an argument.
-pub(crate) fn length(text: &str) -> Result<Length, String> {
-    let length = match text.strip_suffix('%') {
-        Some(share) => Length::Share(number(share)? / 100.0),
-        None => Length::Units(number(text)?),
-    };
-    match length {
-        Length::Share(value) | Length::Units(value) if value > 0.0 => Ok(length),
-        _ => Err("it must be positive".to_owned()),
-    }
 }
 
 fn choice_of_box(text: &str) -> Result<BoxChoice, String> {
@@ -425,16 +380,6 @@ mod tests {
     #[test]
     fn command_is_consistent() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn length_is_a_share_or_in_units() {
-        assert_eq!(length("0.6%"), Ok(Length::Share(0.006)));
-        assert_eq!(length("2 %"), Ok(Length::Share(0.02)));
-        assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
-        for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
-            assert!(length(bad).is_err(), "{bad}");
-        }
     }
 
     #[test]

@@ -2,7 +2,6 @@
 
 mod arguments;
 mod failure;
-mod mesh;
 mod options;
 mod outcome;
 mod output;

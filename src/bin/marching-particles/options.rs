@@ -1,11 +1,10 @@
 //! The options that say how a surface is sampled: one for each entry of the table of settings.
 
-use crate::arguments::{Length, length, number};
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
-use marching_particles::math::{Bounds, grouped, shortest_text};
+use marching_particles::math::{Bounds, grouped, shortest_text, significant};
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{Setting, SettingGroup, SettingKind, SettingValue, settings};
 use marching_particles::{Settings, SettingsError};
@@ -24,6 +23,45 @@ const METHOD: &str = "method";
 const RELAX_STEPS: &str = "relax_steps";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
+
+/// A length on the command line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Length {
+    /// Share of the box diagonal.
+    Share(f64),
+    /// In the field's units.
+    Units(f64),
+}
+
+impl Length {
+    /// The length as a share of the box diagonal.
+    fn share(self, diagonal: f64) -> f64 {
+        match self {
+            Self::Share(share) => share,
+            Self::Units(length) => length / diagonal,
+        }
+    }
+}
+
+/// A finite number from an argument.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// A length from an argument.
+fn length(text: &str) -> Result<Length, String> {
+    let length = match text.strip_suffix('%') {
+        Some(share) => Length::Share(number(share)? / 100.0),
+        None => Length::Units(number(text)?),
+    };
+    match length {
+        Length::Share(value) | Length::Units(value) if value > 0.0 => Ok(length),
+        _ => Err("it must be positive".to_owned()),
+    }
+}
 
 /// Settings of a run as the options give them: lengths become shares of the box's diagonal only once there is a box.
 #[derive(Clone, Debug, Default)]
@@ -180,8 +218,7 @@ fn help(setting: &Setting) -> String {
 
 /// A share as it is typed.
 fn percent(share: f64) -> String {
-    let short: Option<f64> = format!("{:.3e}", 100.0 * share).parse().ok();
-    format!("{}%", shortest_text(short.unwrap_or(share)))
+    format!("{}%", significant(100.0 * share))
 }
 
 /// Why settings are refused, by the name of the option and with shares as they are typed.
@@ -199,4 +236,19 @@ pub(crate) fn refusal(error: &SettingsError) -> String {
     }
     let [value, min, max] = [*value, *min, *max].map(shortest_text);
     format!("--{option} is {value}, but must lie between {min} and {max}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn length_is_a_share_or_in_units() {
+        assert_eq!(length("0.6%"), Ok(Length::Share(0.006)));
+        assert_eq!(length("2 %"), Ok(Length::Share(0.02)));
+        assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
+        for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
+            assert!(length(bad).is_err(), "{bad}");
+        }
+    }
 }

@@ -1,10 +1,9 @@
 //! Result of a run.
 
-use crate::mesh::Mesh;
-use marching_particles::Report;
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
+use marching_particles::{MeshAnswer, Report};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -38,7 +37,7 @@ pub(crate) struct Outcome {
     #[serde(flatten)]
     pub(crate) report: Report,
     /// The triangles over the particles, if a mesh file is requested.
-    pub(crate) mesh: Option<Mesh>,
+    pub(crate) mesh: Option<MeshCounts>,
     pub(crate) seconds: Seconds,
     /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
     pub(crate) peak_mb: Option<f64>,
@@ -46,4 +45,38 @@ pub(crate) struct Outcome {
     pub(crate) peak_sampling_mb: Option<f64>,
     /// Names of the files written, with replacement characters for invalid Unicode.
     pub(crate) files: Vec<String>,
+}
+
+/// Counts of a mesh, as the output gives them.
+#[derive(Debug, Serialize)]
+pub(crate) struct MeshCounts {
+    pub(crate) triangles: usize,
+    pub(crate) components: usize,
+    /// Sum over the components.
+    pub(crate) euler: i64,
+    /// Border loops where the surface ends.
+    pub(crate) borders: usize,
+    /// Border loops where no manifold could be had.
+    pub(crate) holes: usize,
+    /// Particles in no triangle.
+    pub(crate) left_out: usize,
+    /// Volume that it encloses; none where it is open.
+    pub(crate) volume: Option<f64>,
+    /// Smallest angle of any triangle in degrees, those at borders among them.
+    pub(crate) smallest_angle: Option<f64>,
+}
+
+impl MeshCounts {
+    pub(crate) fn new(mesh: &MeshAnswer) -> Self {
+        Self {
+            triangles: mesh.triangles,
+            components: mesh.components.len(),
+            euler: mesh.components.iter().map(|component| component.euler).sum(),
+            borders: mesh.borders,
+            holes: mesh.unfilled,
+            left_out: mesh.left_out,
+            volume: mesh.volume,
+            smallest_angle: mesh.smallest_angle,
+        }
+    }
 }

@@ -2,9 +2,8 @@
 
 use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
-use crate::mesh::Mesh;
 use crate::options::refusal;
-use crate::outcome::{Outcome, Seconds};
+use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::OutputFile;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -81,13 +80,11 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
     let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
-    let clock = Stopwatch::start();
-    let Chosen { field, name, formula, parameters, model, bounds, has_own_box, faces } =
-        choose(&arguments.surface, arguments.quiet)?;
-    if model.is_some() {
-        seconds.points = clock.seconds();
+    let chosen = timed(&mut seconds.points, || choose(&arguments.surface, arguments.quiet))?;
+    let Chosen { field, name, formula, parameters, model, bounds, has_own_box, faces } = chosen;
+    if model.is_none() {
+        seconds.points = 0.0;
     }
-    let clock = Stopwatch::start();
     let settings_in = |fitted: &Bounds| {
         let mut settings = arguments.sampling.settings(&bounds.unwrap_or(*fitted));
         settings.bounds = bounds;
@@ -96,8 +93,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         }
         settings
     };
-    let mut run = Run::start_with(field, settings_in).map_err(refused)?;
-    seconds.seeding += clock.seconds();
+    let mut run = timed(&mut seconds.seeding, || Run::start_with(field, settings_in)).map_err(refused)?;
     let settings = settings_in(&run.bounds());
     let predicted_count = run.start_report().predicted_count;
     let bar = bar(arguments.quiet);
@@ -105,20 +101,23 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
     let reach = run.reach();
-    let clock = Stopwatch::start();
-    let finished = if arguments.no_report { run.finish_unmeasured() } else { run.finish() };
+    let finished =
+        timed(
+            &mut seconds.quality,
+            || {
+                if arguments.no_report { run.finish_unmeasured() } else { run.finish() }
+            },
+        );
     let sample = finished.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }
         error => Failure::Nothing(error.to_string()),
     })?;
-    seconds.quality = clock.seconds();
-    let clock = Stopwatch::start();
-    let mesh =
-        (!mesh_formats.is_empty()).then(|| Mesh::new(&MeshAnswer::new(sample.mesh(), sample.particles())));
-    seconds.mesh = clock.seconds();
-    let clock = Stopwatch::start();
+    let mesh = timed(&mut seconds.mesh, || {
+        (!mesh_formats.is_empty())
+            .then(|| MeshCounts::new(&MeshAnswer::new(sample.mesh(), sample.particles())))
+    });
     let made = FileRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         digest: sample.report().digest.clone(),
@@ -134,15 +133,17 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         settings,
     };
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
-    for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
-        let file = ParticleFile { format, record: record.clone() };
-        output.write(|out| sample.write(file, out))?;
-    }
-    for (format, output) in mesh_formats.into_iter().zip(outputs) {
-        let file = MeshFile { format, placement: arguments.placement(), record: record.clone() };
-        output.write(|out| sample.write_mesh(file, out))?;
-    }
-    seconds.writing = clock.seconds();
+    timed(&mut seconds.writing, || {
+        for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
+            let file = ParticleFile { format, record: record.clone() };
+            output.write(|out| sample.write(file, out))?;
+        }
+        for (format, output) in mesh_formats.into_iter().zip(outputs) {
+            let file = MeshFile { format, placement: arguments.placement(), record: record.clone() };
+            output.write(|out| sample.write_mesh(file, out))?;
+        }
+        Ok::<_, Failure>(())
+    })?;
 
     let mut report = sample.report().clone();
     report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
@@ -382,15 +383,13 @@ fn step_to_end(run: &mut Run<Box<dyn Field>>, seconds: &mut Seconds, bar: &Progr
     let mut phase = Phase::Seeding;
     let mut steps = 0_u32;
     loop {
-        let clock = Stopwatch::start();
-        let progress = run.step(BUDGET);
-        let spent = clock.seconds();
-        match phase {
-            Phase::Relaxation => seconds.relaxation += spent,
-            Phase::Generation => seconds.generation += spent,
-            Phase::Refinement => seconds.refinement += spent,
-            _ => seconds.seeding += spent,
-        }
+        let of_phase = match phase {
+            Phase::Relaxation => &mut seconds.relaxation,
+            Phase::Generation => &mut seconds.generation,
+            Phase::Refinement => &mut seconds.refinement,
+            _ => &mut seconds.seeding,
+        };
+        let progress = timed(of_phase, || run.step(BUDGET));
         if progress.stop_reason.is_some() || progress.phase == Phase::Done {
             return;
         }
@@ -422,17 +421,13 @@ pub(crate) fn bar(quiet: bool) -> ProgressBar {
     bar
 }
 
-struct Stopwatch(Instant);
-
-impl Stopwatch {
-    #[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
-    fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
-    }
+/// Does `work`, and adds the time that it takes to `seconds`.
+#[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *seconds += start.elapsed().as_secs_f64();
+    result
 }
 
 /// Peak resident memory so far in 10⁶ bytes, from /proc.

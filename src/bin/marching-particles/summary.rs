@@ -1,10 +1,9 @@
 //! Report of a run as text.
 
-use crate::mesh::Mesh;
-use crate::outcome::Outcome;
+use crate::outcome::{MeshCounts, Outcome};
 use marching_particles::Cut;
 use marching_particles::field::model::{ModelInfo, NormalSource};
-use marching_particles::math::{grouped, shortest_text};
+use marching_particles::math::{grouped, significant};
 use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
@@ -154,7 +153,7 @@ fn figure(row: &ReportRow, value: Option<&Value>) -> String {
 }
 
 /// A mesh in a line.
-fn mesh_line(mesh: &Mesh) -> String {
+fn mesh_line(mesh: &MeshCounts) -> String {
     let borders = match mesh.borders + mesh.holes {
         0 if mesh.volume.is_some() => "closed".to_owned(),
         0 => "not a manifold".to_owned(),
@@ -171,7 +170,7 @@ fn mesh_line(mesh: &Mesh) -> String {
 }
 
 /// Returns a sentence for each kind of defect of a mesh.
-fn mesh_warnings(mesh: &Mesh) -> Vec<String> {
+fn mesh_warnings(mesh: &MeshCounts) -> Vec<String> {
     let mut warnings = Vec::new();
     if mesh.holes > 0 {
         warnings.push(format!("the mesh has {} that could not be filled", counted(mesh.holes, "hole")));
@@ -186,12 +185,6 @@ fn mesh_warnings(mesh: &Mesh) -> Vec<String> {
 fn counted(count: usize, name: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{} {name}{ending}", grouped(count))
-}
-
-/// A number with four significant digits.
-fn significant(number: f64) -> String {
-    let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-    shortest_text(short)
 }
 
 /// Formats a duration in milliseconds or seconds.

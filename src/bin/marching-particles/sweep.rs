@@ -6,7 +6,7 @@ use crate::output::OutputFile;
 use crate::sample::{Chosen, bar, choose, refused};
 use marching_particles::extent;
 use marching_particles::quality::Measurements;
-use marching_particles::{Bounds, Field, Format, Run, export};
+use marching_particles::{Bounds, Field, Run, export};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -15,6 +15,7 @@ const FITTED: u32 = 9;
 
 pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     let (sweep, frames) = (arguments.sweep.clone(), arguments.frames);
+    let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
     let bounds = box_of(&mut arguments)?;
@@ -40,8 +41,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         let mut particles = run.particles().clone();
         let count = particles.len();
         counted.number(&mut particles.identity, count);
-        let path = arguments.out.join(format!("{frame:0digits$}.{}", arguments.format));
-        let format = Format::of_extension(&arguments.format).unwrap_or(Format::Ply);
+        let path = arguments.out.join(format!("{frame:0digits$}.{extension}"));
         for output in OutputFile::beside(&[&path])? {
             output.write(|out| {
                 export::write(
