@@ -59,17 +59,7 @@ pub(crate) fn task<T>(label: &str, work: impl FnOnce() -> Result<T>) -> Result<T
 /// Runs `command` as a step and returns what it wrote to its standard output. A failure carries the command line, all
 /// it wrote, and `advice`.
 pub(crate) fn run(label: &str, command: &mut Command, advice: &str) -> Result<String> {
-    let step = Step::begin(label);
-    match capture(command, advice) {
-        Ok(text) => {
-            step.done("");
-            Ok(text)
-        }
-        Err(error) => {
-            step.failed();
-            Err(error)
-        }
-    }
+    task(label, || capture(command, advice))
 }
 
 /// Runs `command` as [`run`] does, without announcing it.
