@@ -27,7 +27,7 @@ pub(super) struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
     place: Place,
-    /// Number of slices' ends that were asked for.
+    /// Number of rows that have ended.
     rows: usize,
     tell: &'a dyn Fn(f64),
 }
@@ -40,7 +40,7 @@ impl<'a> Input<'a> {
         Self { bytes, at, place: Place::Line(0), rows: 0, tell }
     }
 
-    /// Ends a slice of work after every [`MEDIUM`] rows: called once for each row, a line or a record.
+    /// Ends a row, which is a line or a record, and with every [`MEDIUM`] of them a slice of work.
     pub(super) async fn end_row(&mut self) {
         self.rows += 1;
         if self.rows.is_multiple_of(MEDIUM) {
@@ -85,7 +85,7 @@ impl<'a> Input<'a> {
         Some(bytes)
     }
 
-    /// From here on follow rows of a binary file, of this kind.
+    /// Says that the rows of a binary file that follow are of this kind.
     pub(super) fn begin_records(&mut self, element: &str) {
         self.place = Place::Row { element: element.to_owned(), row: 0, byte: 0 };
     }

@@ -28,7 +28,7 @@ pub struct FileMesh {
 }
 
 impl FileMesh {
-    /// Appends a point with these components, of which the last three are its normal, if the file `has_normal`s.
+    /// Appends a point with these components, the last three of which are its normal if it `has_normal`.
     pub(super) fn add_point(
         &mut self,
         [x, y, z, nx, ny, nz]: [f64; 6],

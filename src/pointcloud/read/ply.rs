@@ -68,7 +68,7 @@ impl<'r, 'a> Row<'r, 'a> {
         }
     }
 
-    /// The text of the next number: a word, or bytes.
+    /// The next number as it is in the file: a word, or bytes.
     fn next(&mut self, scalar: ScalarType) -> Result<&'a [u8], ReadError> {
         if self.encoding != Encoding::Text {
             let cut_off = "the file ends here; it is cut off, or its header is wrong: export it again";
@@ -85,10 +85,12 @@ impl<'r, 'a> Row<'r, 'a> {
         Ok(word)
     }
 
+    /// Consumes a number that nobody asks for.
     fn skip(&mut self, scalar: ScalarType) -> Result<(), ReadError> {
         self.next(scalar).map(drop)
     }
 
+    /// The next number, which is the coordinate `name`.
     fn coordinate(&mut self, scalar: ScalarType, name: &str) -> Result<f64, ReadError> {
         let next = self.next(scalar)?;
         match self.encoding {

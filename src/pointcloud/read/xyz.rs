@@ -12,8 +12,9 @@ const UNIT: core::ops::Range<f64> = 0.9..1.1;
 /// With half of it twelve random clouds are read the same.
 const UNIT_SHARE: f64 = 0.9;
 
-/// Component of a point and its normal that each column of a file holds, if it holds one.
-type Columns = Vec<Option<usize>>;
+/// Component of a point and its normal that each column of a file holds, if it holds one. Bytes, because a line may have as many columns
+/// as half a file has bytes.
+type Columns = Vec<Option<u8>>;
 
 /// Columns by a header; `None` if the line does not name x, y and z.
 pub(super) fn named(line: &[u8]) -> Option<Columns> {
@@ -21,7 +22,7 @@ pub(super) fn named(line: &[u8]) -> Option<Columns> {
         COMPONENTS.map(|name| words(line).position(|word| word.eq_ignore_ascii_case(name.as_bytes())));
     let used = if found.contains(&None) { 3 } else { 6 };
     let mut columns = vec![None; words(line).count()];
-    for (component, column) in found.into_iter().enumerate().take(used) {
+    for (component, column) in (0..).zip(found).take(used) {
         columns[column?] = Some(component);
     }
     Some(columns)
@@ -30,7 +31,7 @@ pub(super) fn named(line: &[u8]) -> Option<Columns> {
 /// Columns of lines of `count` numbers without a header.
 fn usual(count: usize) -> Columns {
     let used = if count < 6 { 3 } else { 6 };
-    (0..count).map(|column| Some(column).filter(|&column| column < used)).collect()
+    (0..count).map(|column| (column < used).then_some(column as u8)).collect()
 }
 
 /// Words of a line, separated by white space, commas or semicolons.
@@ -94,7 +95,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         }
         let mut values = [0.0; COMPONENTS.len()];
         for (word, &component) in words(line).zip(&columns) {
-            if let Some(component) = component {
+            if let Some(component) = component.map(usize::from) {
                 values[component] = input.coordinate_of(word, COMPONENTS[component])?;
             }
         }
