@@ -61,9 +61,21 @@ pub(super) struct Setup {
     pub(super) diameter: f64,
 }
 
-/// Position of a run among its chapters, and the state that its next steps depend on, without the particles.
+/// A child that is predicted and not projected yet.
 #[derive(Clone, Debug)]
-pub(super) struct Cursor {
+pub(super) struct Predicted {
+    pub(super) child: ChildSlot,
+    pub(super) circle: Circle,
+    pub(super) theta_rad: f64,
+    pub(super) place: DVec3,
+    pub(super) normal: DVec3,
+}
+
+/// A run on its way through the chapters. A clone goes on to the same end.
+#[derive(Clone)]
+pub(super) struct Course {
+    pub(super) setup: Rc<Setup>,
+    pub(super) run: PaperRun<Log>,
     /// The next candidate for a seed.
     candidate: usize,
     /// Number of fronts so far.
@@ -78,52 +90,6 @@ pub(super) struct Cursor {
     pub(super) quiet: u32,
     /// Generator that decides deaths and the directions of fissions.
     pub(super) random: Pcg32,
-}
-
-impl Cursor {
-    /// The beginning of a run.
-    fn new(seed: u32) -> Self {
-        let mut random = Pcg32::seed_from_u64(u64::from(seed));
-        // The first number has chosen the seed.
-        random.next_u64();
-        Self { candidate: 0, fronts: 0, part: 0, seams: Vec::new(), is_filled: false, quiet: 0, random }
-    }
-}
-
-/// State of a run between two chapters without the particles, which a snapshot holds beside it.
-#[derive(Clone, Debug)]
-pub(super) struct Moment {
-    pub(super) cursor: Cursor,
-    /// The particles that are not done, the next one first.
-    pub(super) waiting: VecDeque<u32>,
-    is_capped: bool,
-    steps: u32,
-    evaluations: u64,
-}
-
-impl Moment {
-    /// The beginning of a run.
-    pub(super) fn first(settings: &LessonSettings) -> Self {
-        let cursor = Cursor::new(settings.seed);
-        Self { cursor, waiting: VecDeque::new(), is_capped: false, steps: 0, evaluations: 0 }
-    }
-}
-
-/// A child that is predicted and not projected yet.
-#[derive(Clone, Debug)]
-pub(super) struct Predicted {
-    pub(super) child: ChildSlot,
-    pub(super) circle: Circle,
-    pub(super) theta_rad: f64,
-    pub(super) place: DVec3,
-    pub(super) normal: DVec3,
-}
-
-/// A run on its way through the chapters.
-pub(super) struct Course {
-    pub(super) setup: Rc<Setup>,
-    pub(super) run: PaperRun<Log>,
-    pub(super) cursor: Cursor,
     /// The chapter under way.
     kind: Option<ChapterKind>,
     /// Units left in the chapter under way.
@@ -137,22 +103,24 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// A run with these particles at this moment.
-    pub(super) fn at(
-        setup: &Rc<Setup>,
-        mut surface: ImplicitSurface,
-        moment: Moment,
-        particles: Vec<Particle>,
-    ) -> Self {
-        let Moment { cursor, waiting, is_capped, steps, evaluations } = moment;
-        surface.evaluations = evaluations;
-        let log = Log::new(&setup.settings);
-        let mut run = PaperRun::with_particles(surface, setup.settings.rules(), particles, log);
-        (run.waiting, run.is_capped, run.steps) = (waiting, is_capped, steps);
+    /// The beginning of a run.
+    pub(super) fn new(setup: Setup, mut surface: ImplicitSurface) -> Self {
+        surface.evaluations = 0;
+        let settings = &setup.settings;
+        let mut random = Pcg32::seed_from_u64(u64::from(settings.seed));
+        // The first number has chosen the seed.
+        random.next_u64();
+        let run = PaperRun::new(surface, settings.rules(), Log::new(settings));
         Self {
-            setup: Rc::clone(setup),
+            setup: Rc::new(setup),
             run,
-            cursor,
+            candidate: 0,
+            fronts: 0,
+            part: 0,
+            seams: Vec::new(),
+            is_filled: false,
+            quiet: 0,
+            random,
             kind: None,
             left: 0,
             predicted: VecDeque::new(),
@@ -161,35 +129,29 @@ impl Course {
         }
     }
 
-    /// Returns the run at another moment.
-    pub(super) fn elsewhere(&self, moment: Moment, particles: Vec<Particle>) -> Self {
-        Self::at(&self.setup, self.run.surface.clone(), moment, particles)
-    }
-
-    /// Returns the run on another surface in the same box. Its particles go there by Newton's method; one that does not arrive within its
-    /// radius, or comes to another side of the surface, is gone.
-    pub(super) fn moved(&self, field: Box<dyn Field>) -> Self {
-        let surface = ImplicitSurface::new(field, &self.run.surface.bounds);
-        let mut moment = self.moment();
-        (moment.cursor.quiet, moment.steps) = (0, 0);
-        let mut moved = Self::at(&self.setup, surface, moment, Vec::new());
-        for own in &self.run.particles {
-            if let Some((position, normal)) = moved.run.come_back(own, own.p(), own.radius) {
-                let (position, normal) = (position.to_array(), normal.to_array());
-                moved.run.particles.push(Particle { position, normal, height: 0.0, ..*own });
-            }
+    /// Goes on from particles of one front, of which those from number `first` on wait to be treated.
+    pub(super) fn go_on(&mut self, particles: Vec<Particle>, first: u32) {
+        self.run.waiting = (first..particles.len() as u32).collect();
+        for particle in particles {
+            self.run.enter(particle);
         }
-        moved
+        self.fronts = 1;
     }
 
-    /// The moment between two chapters.
-    pub(super) fn moment(&self) -> Moment {
-        Moment {
-            cursor: self.cursor.clone(),
-            waiting: self.run.waiting.clone(),
-            is_capped: self.run.is_capped,
-            steps: self.run.steps,
-            evaluations: self.run.surface.evaluations,
+    /// Goes on with another surface in the same box. The particles go there by Newton's method; one that does not arrive within its
+    /// radius, or comes to another side of the surface, is gone.
+    pub(super) fn follow(&mut self, field: Box<dyn Field>) {
+        let mut surface = ImplicitSurface::new(field, &self.run.surface.bounds);
+        surface.evaluations = self.run.surface.evaluations;
+        let run = PaperRun::new(surface, self.run.rules.clone(), Log::new(&self.setup.settings));
+        let before = core::mem::replace(&mut self.run, run);
+        self.run.is_capped = before.is_capped;
+        (self.kind, self.left, self.quiet) = (None, 0, 0);
+        for own in &before.particles {
+            if let Some((position, normal)) = self.run.come_back(own, own.p(), own.radius) {
+                let (position, normal) = (position.to_array(), normal.to_array());
+                self.run.particles.push(Particle { position, normal, height: 0.0, ..*own });
+            }
         }
     }
 
@@ -221,11 +183,11 @@ impl Course {
         if !self.run.waiting.is_empty() {
             Some(self.begin_level())
         } else if self.setup.settings.gaps == GapPolicy::Fill
-            && !self.cursor.is_filled
-            && !self.cursor.seams.is_empty()
+            && !self.is_filled
+            && !self.seams.is_empty()
             && !self.run.is_capped
         {
-            self.left = self.cursor.seams.len() as u32;
+            self.left = self.seams.len() as u32;
             Some(ChapterKind::Filling)
         } else if self.run.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
@@ -239,9 +201,9 @@ impl Course {
     fn begin_level(&mut self) -> ChapterKind {
         let level = self.run.particles[self.run.waiting[0] as usize].level;
         let waiting = self.run.waiting.len() as u32;
-        let part = self.cursor.part;
-        self.cursor.part += 1;
-        let front = self.cursor.fronts - 1;
+        let part = self.part;
+        self.part += 1;
+        let front = self.fronts - 1;
         match self.setup.settings.order {
             QueueOrder::Queue => {
                 self.left = waiting;
@@ -261,10 +223,10 @@ impl Course {
             None => {}
             Some(ChapterKind::Level { .. } | ChapterKind::Stack { .. }) => self.place(),
             Some(ChapterKind::Filling) => {
-                let beside = self.cursor.seams[self.cursor.seams.len() - self.left as usize];
+                let beside = self.seams[self.seams.len() - self.left as usize];
                 self.fill_beside(beside);
                 self.left -= 1;
-                self.cursor.is_filled = self.left == 0;
+                self.is_filled = self.left == 0;
             }
             Some(ChapterKind::Relaxation { .. }) => {
                 self.run.move_particle(self.run.particles.len() - self.left as usize);
@@ -290,8 +252,8 @@ impl Course {
             Placing::LevelByLevel => self.settle_next(),
         }
         for parent in self.run.seen.seams.drain(..) {
-            if self.cursor.seams.last() != Some(&parent) {
-                self.cursor.seams.push(parent);
+            if self.seams.last() != Some(&parent) {
+                self.seams.push(parent);
             }
         }
         self.left = self.left.saturating_sub(1);
@@ -308,22 +270,22 @@ impl Course {
     /// Puts the next seed that no particle covers into the queue, or all of them.
     pub(super) fn add_seeds(&mut self) {
         let setup = Rc::clone(&self.setup);
-        let first = self.cursor.fronts;
-        while let Some(&candidate) = setup.candidates.get(self.cursor.candidate) {
-            self.cursor.candidate += 1;
+        let first = self.fronts;
+        while let Some(&candidate) = setup.candidates.get(self.candidate) {
+            self.candidate += 1;
             if self.run.particles.len() >= setup.settings.max_particles as usize {
                 self.run.is_capped = true;
                 return;
             }
-            if self.run.begin_at(candidate, self.cursor.fronts) {
-                self.cursor.fronts += 1;
+            if self.run.begin_at(candidate, self.fronts) {
+                self.fronts += 1;
                 if setup.settings.seeding == Seeding::OneByOne {
                     break;
                 }
             }
         }
-        if self.cursor.fronts > first {
-            self.cursor.part = 0;
+        if self.fronts > first {
+            self.part = 0;
         }
     }
 }

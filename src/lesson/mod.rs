@@ -6,7 +6,7 @@
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
 //! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
-//! are made again from its snapshot, which gives the same events to the last bit. So [`Lesson::seek`] goes to any event,
+//! are made again from a snapshot, which gives the same events to the last bit. So [`Lesson::seek`] goes to any event,
 //! forwards or backwards.
 //!
 //! ```
@@ -52,13 +52,12 @@ pub use settings::{LessonError, LessonField, LessonMethod, LessonSettings, MAX_P
 
 use crate::field::Field;
 use crate::math::{Bounds, HEXAGONAL_CELL};
-use crate::paper::{ImplicitSurface, Particle, Push};
+use crate::paper::{ImplicitSurface, PaperRun, Particle, Push};
 use crate::sampler::FateCounts;
-use course::{Course, Moment, Setup};
+use course::{Course, Setup};
 use glam::DVec3;
 use serde::Serialize;
 use snapshots::Snapshots;
-use std::rc::Rc;
 use survey::{SurfacePatch, shuffled, survey};
 use system::QUIET;
 
@@ -129,15 +128,14 @@ pub struct Life {
     pub done: Option<u32>,
 }
 
-/// The moment of the run that is shown.
-#[derive(Default)]
-struct ShownMoment {
-    /// The chapter whose events are at hand.
-    chapter: Option<usize>,
+/// A chapter that is looked at.
+struct OpenChapter {
+    /// Number of the chapter.
+    chapter: usize,
+    /// The particles before its first event.
+    before: Vec<Particle>,
+    /// The events of the chapter so far.
     events: Vec<Event>,
-    /// Number of events of the run that have happened.
-    at: u32,
-    particles: Vec<Particle>,
 }
 
 /// A run of the paper's algorithms, or of one that it compares them with, and the place in it that is looked at.
@@ -148,7 +146,10 @@ pub struct Lesson {
     snapshots: Snapshots,
     lives: Vec<Life>,
     is_done: bool,
-    view: ShownMoment,
+    /// The chapter that was looked at last.
+    open: Option<OpenChapter>,
+    /// The particles at the moment that was sought.
+    shown: Vec<Particle>,
 }
 
 impl Lesson {
@@ -180,12 +181,13 @@ impl Lesson {
             },
         };
         Ok(Self {
-            course: Course::at(&Rc::new(setup), surface, Moment::first(settings), Vec::new()),
+            course: Course::new(setup, surface),
             chapters: Vec::new(),
             snapshots: Snapshots::new(),
             lives: Vec::new(),
             is_done: false,
-            view: ShownMoment::default(),
+            open: None,
+            shown: Vec::new(),
         })
     }
 
@@ -204,11 +206,8 @@ impl Lesson {
         first: u32,
     ) -> Result<Self, LessonError> {
         let mut run = Self::new(field, bounds, settings)?;
-        let mut moment = Moment::first(settings);
-        moment.waiting = (first..particles.len() as u32).collect();
-        moment.cursor.fronts = 1;
         run.lives = vec![Life::default(); particles.len()];
-        run.course = run.course.elsewhere(moment, particles);
+        run.course.go_on(particles, first);
         Ok(run)
     }
 
@@ -220,12 +219,12 @@ impl Lesson {
     /// Their velocities have a term for the motion of the surface, which is integrated with the others (§4.1). Here a particle is brought
     /// to the surface at once, since a slider moves by steps. Where it does not arrive within its radius, it dies: they say nothing of it.
     pub fn follow(&mut self, field: Box<dyn Field>) {
-        self.course = self.course.moved(field);
+        self.course.follow(field);
         self.chapters = Vec::new();
         self.snapshots = Snapshots::new();
         self.lives = vec![Life::default(); self.course.run.particles.len()];
         self.is_done = false;
-        self.view = ShownMoment::default();
+        (self.open, self.shown) = (None, Vec::new());
     }
 
     /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
@@ -260,7 +259,7 @@ impl Lesson {
             evaluations: self.course.run.surface.evaluations,
             interactions: self.course.run.interactions,
             steps: self.course.run.steps,
-            is_settled: self.course.cursor.quiet >= QUIET,
+            is_settled: self.course.quiet >= QUIET,
             is_capped: self.course.run.is_capped,
             is_done: self.is_done,
         }
@@ -289,12 +288,10 @@ impl Lesson {
         let mut next = first;
         while next < end {
             let chapter = self.chapter_of(next);
-            self.open(chapter);
             let Chapter { first_event, events, .. } = self.chapters[chapter];
             let last = end.min(first_event + events);
-            found.extend_from_slice(
-                &self.view.events[(next - first_event) as usize..(last - first_event) as usize],
-            );
+            let range = (next - first_event) as usize..(last - first_event) as usize;
+            found.extend_from_slice(&self.open(chapter).events[range]);
             next = last;
         }
         found
@@ -304,49 +301,39 @@ impl Lesson {
     /// have happened then.
     pub fn seek(&mut self, event: u32) -> u32 {
         let event = event.min(self.events_so_far());
-        if self.chapters.is_empty() {
-            return 0;
-        }
         if event == self.events_so_far() {
             // The end is at hand.
-            self.view = ShownMoment {
-                at: event,
-                particles: self.course.run.particles.clone(),
-                ..ShownMoment::default()
-            };
+            self.shown.clone_from(&self.course.run.particles);
             return event;
         }
         // The end of a chapter is looked at as its end, not as the beginning of the next one.
         let chapter = self.chapter_of(event.saturating_sub(1));
-        let is_ahead = self.view.chapter == Some(chapter) && event >= self.view.at;
-        self.open(chapter);
-        let first = self.chapters[chapter].first_event;
-        if !is_ahead || self.view.at < first {
-            self.view.particles = self.course_to(chapter).run.particles;
-            self.view.at = first;
+        let happened = event - self.chapters[chapter].first_event;
+        let open = self.open(chapter);
+        let mut particles = open.before.clone();
+        for event in &open.events[..happened as usize] {
+            event.apply(&mut particles);
         }
-        for k in self.view.at..event {
-            self.view.events[(k - first) as usize].apply(&mut self.view.particles);
-        }
-        self.view.at = event;
+        self.shown = particles;
         event
     }
 
     /// The particles at the moment that was sought.
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
-        &self.view.particles
+        &self.shown
     }
 
     /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought; none if there is no such
     /// particle. The tangential part of the sum is the force of [`Event::Moved`].
     #[must_use]
     pub fn pushes(&self, particle: u32) -> Vec<Push> {
-        if particle as usize >= self.view.particles.len() {
+        if particle as usize >= self.shown.len() {
             return Vec::new();
         }
-        let moment = Moment::first(&self.course.setup.settings);
-        self.course.elsewhere(moment, self.view.particles.clone()).run.pushes(particle).collect()
+        let PaperRun { surface, rules, .. } = &self.course.run;
+        let run = PaperRun::with_particles(surface.clone(), rules.clone(), self.shown.clone(), ());
+        run.pushes(particle).collect()
     }
 
     /// The box that is sampled.
@@ -357,18 +344,11 @@ impl Lesson {
 
     fn begin_chapter(&mut self) {
         let before = self.course.run.particles.len();
-        let moment = self.course.moment();
+        self.snapshots.add(self.chapters.len(), &self.course);
         let Some(kind) = self.course.begin_chapter() else {
             self.is_done = true;
             return;
         };
-        match kind {
-            ChapterKind::Relaxation { .. } | ChapterKind::Iteration { .. } => {
-                // The first iteration begins with the seed, which its events add.
-                self.snapshots.add_moving(moment, &self.course.run.particles[..before]);
-            }
-            _ => self.snapshots.add_placed(moment, before),
-        }
         self.chapters.push(Chapter {
             kind,
             first_event: self.events_so_far(),
@@ -429,43 +409,24 @@ impl Lesson {
         self.chapters.partition_point(|chapter| chapter.first_event <= event).saturating_sub(1)
     }
 
-    /// Has the events of a chapter at hand.
-    fn open(&mut self, chapter: usize) {
-        let known = &self.chapters[chapter];
-        if self.view.chapter == Some(chapter) && self.view.events.len() == known.events as usize {
-            return;
-        }
-        self.view.events =
-            if known.is_over { self.replay(chapter) } else { self.course.run.seen.events.clone() };
-        if self.view.chapter != Some(chapter) {
-            // No particle has been looked at in this chapter yet.
-            self.view.at = 0;
-        }
-        self.view.chapter = Some(chapter);
-    }
-
-    /// Makes the events of a chapter that is over again.
-    fn replay(&self, chapter: usize) -> Vec<Event> {
-        let mut course = self.course_to(chapter);
-        course.do_chapter();
-        let events = course.run.seen.events;
-        debug_assert_eq!(
-            events.len(),
-            self.chapters[chapter].events as usize,
-            "a replay gives the same events"
-        );
-        events
-    }
-
-    /// The run at the beginning of a chapter.
-    fn course_to(&self, chapter: usize) -> Course {
-        let kept = self.snapshots.before(chapter, &self.course.run.particles);
-        let mut course = self.course.elsewhere(kept.moment, kept.particles);
-        for _ in kept.chapter..chapter {
-            course.do_chapter();
-            course.run.seen.events.clear();
-        }
-        course
+    /// Has the events of a chapter at hand. Those of a chapter that is over are made again.
+    fn open(&mut self, chapter: usize) -> &OpenChapter {
+        let Chapter { events: count, is_over, .. } = self.chapters[chapter];
+        let known = self.open.take();
+        let is_known = |open: &OpenChapter| open.chapter == chapter && open.events.len() == count as usize;
+        let open = known.filter(is_known).unwrap_or_else(|| {
+            let mut course = self.snapshots.at(chapter);
+            let before = course.run.particles.clone();
+            let events = if is_over {
+                course.do_chapter();
+                course.run.seen.events
+            } else {
+                self.course.run.seen.events.clone()
+            };
+            debug_assert_eq!(events.len(), count as usize, "a replay gives the same events");
+            OpenChapter { chapter, before, events }
+        });
+        self.open.insert(open)
     }
 }
 

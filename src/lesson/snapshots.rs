@@ -1,99 +1,50 @@
 //! The beginnings of chapters, from which their events are made again.
 
-use super::course::Moment;
-use crate::paper::Particle;
-use crate::particles::Slots;
+use super::course::Course;
 
-/// The snapshots hold no more particles than this together, or twice as many for a moment: about 40 MB.
-const MOST: usize = 400_000;
+/// The snapshots hold no more particles than this together, or twice as many for a moment: about 50 MB.
+const MOST: usize = 250_000;
 
-/// State of the run at the beginning of a chapter. The way back restores it and replays the events that follow.
-enum Snapshot {
-    /// The state with the number of particles: until the first particle is moved, all are where they were placed.
-    Placed(Moment, usize),
-    /// The state with all particles.
-    Whole(Moment, Vec<Particle>),
-    /// No state is kept: the chapter is reached from an earlier one.
-    Dropped,
-}
-
-/// The beginning of a chapter, restored from a snapshot.
-pub(super) struct ChapterStart {
-    /// Number of the chapter.
-    pub(super) chapter: usize,
-    pub(super) moment: Moment,
-    pub(super) particles: Vec<Particle>,
-}
-
-/// The snapshots of a run. Of the chapters in which particles move one in `stride` is kept, the first of them always.
+/// The run at the beginning of every chapter whose number is a multiple of the stride. The way back begins at one of them.
 pub(super) struct Snapshots {
-    all: Vec<Snapshot>,
-    /// The first chapter in which particles move.
-    first_moving: Option<usize>,
+    kept: Vec<Course>,
     stride: usize,
+    /// Number of particles that are held.
     held: usize,
     most: usize,
 }
 
 impl Snapshots {
     pub(super) fn new() -> Self {
-        Self { all: Vec::new(), first_moving: None, stride: 1, held: 0, most: MOST }
+        Self { kept: Vec::new(), stride: 1, held: 0, most: MOST }
     }
 
-    /// Adds the beginning of the next chapter, in which particles are only placed.
-    pub(super) fn add_placed(&mut self, moment: Moment, count: usize) {
-        self.all.push(Snapshot::Placed(moment, count));
-    }
-
-    /// Adds the beginning of the next chapter, in which particles are moved.
-    pub(super) fn add_moving(&mut self, moment: Moment, particles: &[Particle]) {
-        let first = *self.first_moving.get_or_insert(self.all.len());
-        if !(self.all.len() - first).is_multiple_of(self.stride) {
-            self.all.push(Snapshot::Dropped);
+    /// Takes a snapshot before a chapter, unless it is not at the stride. The stride grows until few enough particles are held.
+    pub(super) fn add(&mut self, chapter: usize, course: &Course) {
+        if !chapter.is_multiple_of(self.stride) {
             return;
         }
-        self.all.push(Snapshot::Whole(moment, particles.to_vec()));
-        self.held += particles.len();
-        while self.held > self.most && self.all.len() - first > self.stride {
+        self.held += course.run.particles.len();
+        self.kept.push(course.clone());
+        while self.held > self.most && self.kept.len() > 1 {
             self.stride *= 2;
-            self.thin(first);
+            let mut is_kept = false;
+            self.kept.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+            self.held = self.kept.iter().map(|course| course.run.particles.len()).sum();
         }
     }
 
-    /// Drops what is not at the stride.
-    fn thin(&mut self, first: usize) {
-        for (k, snapshot) in self.all.iter_mut().enumerate().skip(first) {
-            if let Snapshot::Whole(_, particles) = snapshot
-                && !(k - first).is_multiple_of(self.stride)
-            {
-                self.held -= particles.len();
-                *snapshot = Snapshot::Dropped;
-            }
+    /// The run at the beginning of a chapter, made from the last snapshot before it.
+    pub(super) fn at(&self, chapter: usize) -> Course {
+        let mut course = self.kept[chapter / self.stride].clone();
+        for _ in 0..chapter % self.stride {
+            course.do_chapter();
+            course.run.seen.events.clear();
         }
-    }
-
-    /// The beginning of the last chapter up to this one whose beginning is kept. `now` are the particles at the end of the run so far.
-    pub(super) fn before(&self, mut chapter: usize, now: &[Particle]) -> ChapterStart {
-        loop {
-            match &self.all[chapter] {
-                Snapshot::Whole(moment, particles) => {
-                    return ChapterStart { chapter, moment: moment.clone(), particles: particles.clone() };
-                }
-                Snapshot::Placed(moment, count) => {
-                    let first = self.first_moving.map(|first| &self.all[first]);
-                    let placed =
-                        if let Some(Snapshot::Whole(_, particles)) = first { particles } else { now };
-                    let mut particles = placed[..*count].to_vec();
-                    for &waiting in &moment.waiting {
-                        let particle = &mut particles[waiting as usize];
-                        (particle.is_done, particle.slots) = (false, Slots::default());
-                    }
-                    return ChapterStart { chapter, moment: moment.clone(), particles };
-                }
-                // The first chapter of all is never dropped.
-                Snapshot::Dropped => chapter -= 1,
-            }
-        }
+        course
     }
 }
 
@@ -106,6 +57,6 @@ impl Snapshots {
 
     /// Number of chapters whose beginning is kept.
     pub(super) fn kept(&self) -> usize {
-        self.all.iter().filter(|snapshot| !matches!(snapshot, Snapshot::Dropped)).count()
+        self.kept.len()
     }
 }

@@ -57,7 +57,7 @@ impl Course {
     fn is_over(&self) -> bool {
         self.run.particles.is_empty()
             || self.run.is_capped
-            || self.cursor.quiet >= QUIET
+            || self.quiet >= QUIET
             || self.run.steps >= self.setup.settings.max_iterations
     }
 
@@ -161,7 +161,7 @@ impl Course {
     /// "Split or kill particles when necessary".
     fn decide_on(&mut self, i: usize) {
         let (own, dynamics) = (self.run.particles[i], self.dynamics[i]);
-        let chance = uniform(&mut self.cursor.random);
+        let chance = uniform(&mut self.random);
         let (dies, divides) = match self.setup.settings.method {
             LessonMethod::WitkinHeckbert => (
                 witkin_heckbert::dies(&self.setup, &own, &dynamics, chance),
@@ -175,7 +175,7 @@ impl Course {
         if dies && i > 0 {
             self.dying.push(i as u32);
         } else if divides && self.run.particles.len() < most {
-            let direction = tangent(own.normal, &mut self.cursor.random);
+            let direction = tangent(own.normal, &mut self.random);
             let Some(data) = self.children(&own, direction) else { return };
             let child = self.run.particles.len() as u32;
             self.run.particles[i] = data[0];
@@ -214,7 +214,7 @@ impl Course {
         }
         let mean_move = self.dynamics.iter().map(|own| own.moved).sum::<f64>() / self.dynamics.len() as f64;
         let is_quiet = !has_changed && mean_move <= REST;
-        self.cursor.quiet = if is_quiet { self.cursor.quiet + 1 } else { 0 };
+        self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
         self.run.steps += 1;
         self.run.seen.push(Event::IterationEnds {
             iteration: self.run.steps,

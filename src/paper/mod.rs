@@ -67,6 +67,7 @@ const COVERED: f64 = 2.0;
 const POLE_PROBE: f64 = 1e-3;
 
 /// A run of the paper's algorithm: the surface, the particles so far, and those that wait to be treated.
+#[derive(Clone)]
 pub struct PaperRun<O> {
     pub(crate) surface: ImplicitSurface,
     pub(crate) rules: Rules,
