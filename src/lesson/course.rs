@@ -4,10 +4,11 @@
 //! particle system.
 
 use super::dynamics::Dynamics;
-use super::event::{Event, Log};
+use super::log::Log;
 use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
 use crate::field::Field;
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, QueueOrder};
+use crate::paper::Event;
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, Place, QueueOrder};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -67,8 +68,7 @@ pub(super) struct Predicted {
     pub(super) child: ChildSlot,
     pub(super) circle: Circle,
     pub(super) theta_rad: f64,
-    pub(super) place: DVec3,
-    pub(super) normal: DVec3,
+    pub(super) place: Place,
 }
 
 /// A run on its way through the chapters. A clone goes on to the same end.
@@ -82,8 +82,6 @@ pub(super) struct Course {
     pub(super) fronts: u32,
     /// Chapters of the present front so far.
     part: u32,
-    /// Particles with a child on a seam, in the order in which they were treated.
-    seams: Vec<u32>,
     /// Whether the gaps have been filled.
     is_filled: bool,
     /// Consecutive iterations of rest.
@@ -117,7 +115,6 @@ impl Course {
             candidate: 0,
             fronts: 0,
             part: 0,
-            seams: Vec::new(),
             is_filled: false,
             quiet: 0,
             random,
@@ -184,10 +181,10 @@ impl Course {
             Some(self.begin_level())
         } else if self.setup.settings.gaps == GapPolicy::Fill
             && !self.is_filled
-            && !self.seams.is_empty()
+            && !self.run.seen.seams.is_empty()
             && !self.run.is_capped
         {
-            self.left = self.seams.len() as u32;
+            self.left = self.run.seen.seams.len() as u32;
             Some(ChapterKind::Filling)
         } else if self.run.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
@@ -223,7 +220,8 @@ impl Course {
             None => {}
             Some(ChapterKind::Level { .. } | ChapterKind::Stack { .. }) => self.place(),
             Some(ChapterKind::Filling) => {
-                let beside = self.seams[self.seams.len() - self.left as usize];
+                let seams = &self.run.seen.seams;
+                let beside = seams[seams.len() - self.left as usize];
                 self.fill_beside(beside);
                 self.left -= 1;
                 self.is_filled = self.left == 0;
@@ -250,11 +248,6 @@ impl Course {
             Placing::OneByOne => self.run.treat_next(),
             Placing::LevelByLevel if self.left > 0 => self.predict_next(),
             Placing::LevelByLevel => self.settle_next(),
-        }
-        for parent in self.run.seen.seams.drain(..) {
-            if self.seams.last() != Some(&parent) {
-                self.seams.push(parent);
-            }
         }
         self.left = self.left.saturating_sub(1);
         if self.run.is_capped {

@@ -14,7 +14,7 @@
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
 use super::dynamics::{Displacement, Dynamics};
-use super::event::Log;
+use super::log::Log;
 use crate::paper::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
 
 /// A disc meets those that are not larger within this many radii.

@@ -1,9 +1,9 @@
 //! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation (§4.5).
 
 use super::course::Course;
-use super::event::Event;
 use crate::math::frame_of;
-use crate::paper::{ChildSlot, Circle, Landing};
+use crate::paper::Event;
+use crate::paper::{ChildSlot, Circle, Landing, Place};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
@@ -54,11 +54,11 @@ impl Course {
             .near(&run.particles, position, NARROWEST * 2.0 * r)
             .iter()
             .all(|near| run.particles[near.particle as usize].n().dot(normal) <= 0.0);
-        if !is_free || !run.surface.contains(position) || normal.dot(n) <= 0.0 {
+        if !is_free || !run.surface.bounds.holds(position) || normal.dot(n) <= 0.0 {
             return;
         }
         // It has neighbours all around and places no children.
-        let parent = run.add(beside, position, normal, r);
+        let parent = run.add(beside, &Place { position, normal, radius: r });
         run.decide(ChildSlot { parent, slot: 0 }, SlotFate::Parent, Some(beside));
         for slot in 1..6 {
             run.decide(ChildSlot { parent, slot }, SlotFate::Matched, None);

@@ -6,8 +6,7 @@
 
 use super::course::{Course, Predicted};
 use crate::paper::{
-    ChildSlot, Circle, Comparison, DIRECTIONS, Nearby, Observer, REACH, RISE_SLACK, TangentFrame,
-    is_same_sheet, predicted_angle,
+    ChildSlot, Circle, DIRECTIONS, Event, Nearby, Place, REACH, TangentFrame, predicted_angle,
 };
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -22,8 +21,8 @@ impl Course {
     /// First stage: predicts the children of the next particle and compares them there. Those that are free wait to be projected.
     pub(super) fn predict_next(&mut self) {
         let Some(particle) = self.run.waiting.pop_front() else { return };
-        self.run.seen.taken(particle);
-        let (radius, limit) = (self.setup.settings.radius, self.run.rules.match_radius());
+        self.run.tell(Event::Taken { particle });
+        let radius = self.setup.settings.radius;
         let neighbours = self.run.gather(particle, REACH * radius);
         let frame = self.run.tangent_frame(particle);
         let p = self.run.particles[particle as usize].p();
@@ -32,7 +31,8 @@ impl Course {
         } else {
             self.fitted_form(radius, particle, &frame, &neighbours)
         };
-        self.run.seen.frame(particle, &frame, Some(form));
+        self.run.tell_frame(particle, &frame, Some(form));
+        let candidates = self.run.candidates(&neighbours);
         if let Some(parent) = self.run.particles[particle as usize].parent {
             self.run.decide(ChildSlot { parent: particle, slot: 0 }, SlotFate::Parent, Some(parent));
         }
@@ -41,34 +41,22 @@ impl Course {
             let circle =
                 Circle { centre: p, normal: frame.n, direction: frame.direction(slot), radius: 2.0 * radius };
             let theta_rad = predicted_angle(form, DIRECTIONS[slot], radius);
-            let place = circle.point(theta_rad);
+            let position = self.run.propose(child, &circle, theta_rad);
             // The normal turns with the offset.
             let [cos, sin] = DIRECTIONS[slot];
             let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
             let normal = (frame.n + turn * (2.0 * radius * libm::cos(theta_rad))).normalize_or(frame.n);
-            self.run.seen.proposed(child, circle.direction, theta_rad, place);
-            let settled = neighbours.iter().map(|near| {
-                let other = &self.run.particles[near.particle as usize];
-                (other.p(), other.n(), Some(near.particle))
-            });
-            let predicted = self.predicted.iter().map(|child| (child.place, child.normal, None));
-            let nearest = settled
-                .chain(predicted)
-                .filter(|(q, m, _)| is_same_sheet(*q - place, normal, *m, RISE_SLACK * limit))
-                .map(|(q, _, particle)| (q.distance(place), particle))
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            let (distance, against) =
-                nearest.map_or((None, None), |(distance, other)| (Some(distance), other));
-            let corresponds = distance.is_some_and(|distance| distance <= limit);
-            let comparison = Comparison { position: place, against, distance, limit, corresponds };
-            self.run.seen.compared(child, &comparison, &self.run.particles);
-            if corresponds {
-                self.run.decide(child, SlotFate::Matched, against);
+            let place = Place { position, normal, radius };
+            let predicted = self.predicted.iter().map(|child| (child.place, None));
+            if let Some(other) =
+                self.run.corresponding(child, &place, candidates.iter().copied().chain(predicted))
+            {
+                self.run.decide(child, SlotFate::Matched, other);
             } else if self.run.particles.len() + self.predicted.len() >= self.run.rules.max_particles {
                 self.run.is_capped = true;
                 self.run.decide(child, SlotFate::Capped, None);
             } else {
-                self.predicted.push_back(Predicted { child, circle, theta_rad, place, normal });
+                self.predicted.push_back(Predicted { child, circle, theta_rad, place });
             }
         }
         self.run.finish(particle);
@@ -79,12 +67,14 @@ impl Course {
         let Some(Predicted { child, circle, theta_rad, .. }) = self.predicted.pop_front() else { return };
         let landing = self.run.land(child, &circle, theta_rad);
         let Some((position, normal)) = self.run.usable(child, landing) else { return };
-        let neighbours = self.run.buckets.near(&self.run.particles, position, self.run.rules.match_radius());
-        match self.run.corresponding(child, position, normal, &neighbours) {
-            Some(other) => self.run.decide(child, SlotFate::Matched, Some(other)),
+        let place = Place { position, normal, radius: self.setup.settings.radius };
+        let reach = 2.0 * place.radius * self.run.rules.match_tolerance;
+        let neighbours = self.run.buckets.near(&self.run.particles, position, reach);
+        match self.run.corresponding(child, &place, self.run.candidates(&neighbours)) {
+            Some(other) => self.run.decide(child, SlotFate::Matched, other),
             None => {
                 // There is room: the children that were predicted have been counted.
-                self.run.add_waiting(child, position, normal, self.setup.settings.radius);
+                self.run.add_waiting(child, &place);
             }
         }
     }

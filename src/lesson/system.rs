@@ -21,10 +21,10 @@
 
 use super::course::{ChapterKind, Course};
 use super::dynamics::{Displacement, Dynamics};
-use super::event::Event;
 use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
 use crate::math::frame_of;
+use crate::paper::Event;
 use crate::paper::{Buckets, Particle};
 use glam::DVec3;
 use rand_core::Rng;

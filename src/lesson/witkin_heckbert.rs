@@ -103,7 +103,7 @@ pub(super) fn step(
     let target = own.p() + (velocity * TIME_STEP).clamp_length_max(MAX_MOVE * sigma);
     let sample = surface.sample(target);
     let (height, there) = (sample.value / sample.slope, sample.gradient / sample.slope);
-    let can_go = height.is_finite() && surface.contains(target) && there.dot(normal) > 0.0;
+    let can_go = height.is_finite() && surface.bounds.holds(target) && there.dot(normal) > 0.0;
     let arrived = can_go.then(|| Particle {
         position: target.to_array(),
         normal: DVec3::to_array(&there),

@@ -9,8 +9,8 @@
 
 use super::PaperRun;
 use super::buckets::Nearby;
-use super::observer::{ChildSlot, Comparison, Observer};
-use super::particle::{TangentFrame, is_same_sheet};
+use super::event::{ChildSlot, Event, Observer};
+use super::particle::{Place, TangentFrame};
 use super::projection::Circle;
 use super::surface::Landing;
 use crate::particles::SlotFate;
@@ -22,9 +22,6 @@ const REACH: f64 = 3.7;
 
 /// A neighbour within this share of r_i + r_j lies on the circle around the parent.
 const TOUCHING: f64 = 1.25;
-
-/// Slack of the sheet test, as a share of r_i + r_j.
-const RISE_SLACK: f64 = 0.35;
 
 /// Length of a push away from the parent, as a share of the parent's radius.
 const PUSH: f64 = 1.0 / 16.0;
@@ -123,7 +120,7 @@ impl<O: Observer> PaperRun<O> {
         // Gather the neighbouring particles (Fig. 8a).
         let neighbours = self.gather(particle, REACH * own.radius);
         let frame = self.tangent_frame(particle);
-        self.seen.frame(particle, &frame, None);
+        self.tell_frame(particle, &frame, None);
         let mut ring = Circumference {
             parent: particle,
             p: own.p(),
@@ -142,13 +139,17 @@ impl<O: Observer> PaperRun<O> {
             ring.around.iter().filter(|other| other.touches).copied().collect();
         touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
         if touching.is_empty() {
-            self.seen.space(particle, None);
+            let (before, behind, angles_rad) = (None, None, [0.0, TAU]);
+            self.tell(Event::Arc { parent: particle, before, behind, angles_rad });
             self.fill_space(&mut ring, None);
         }
         for (k, &before) in touching.iter().enumerate() {
             let behind = touching[(k + 1) % touching.len()];
-            self.seen.space(particle, Some([before, behind].map(|end| (end.particle, end.disc.angle()))));
-            self.fill_space(&mut ring, Some([before.disc, behind.disc]));
+            let ends = [before.disc, behind.disc];
+            let (before, behind) = (Some(before.particle), Some(behind.particle));
+            let angles_rad = ends.map(|end| end.angle());
+            self.tell(Event::Arc { parent: particle, before, behind, angles_rad });
+            self.fill_space(&mut ring, Some(ends));
         }
     }
 
@@ -156,8 +157,8 @@ impl<O: Observer> PaperRun<O> {
     fn around(&self, ring: &Circumference, near: &Nearby) -> Option<SheetNeighbour> {
         let other = &self.particles[near.particle as usize];
         let both = ring.radius + other.radius;
-        let offset = other.p() - ring.p;
-        is_same_sheet(offset, ring.frame.n, other.n(), RISE_SLACK * both).then(|| SheetNeighbour {
+        let own = self.particles[ring.parent as usize].place();
+        self.rules.is_same_sheet(&own, &other.place()).then(|| SheetNeighbour {
             particle: near.particle,
             disc: ring.disc(other.p(), other.radius),
             touches: near.distance <= TOUCHING * both,
@@ -177,7 +178,8 @@ impl<O: Observer> PaperRun<O> {
                 _ => TAU,
             };
             let fits = tau_rad >= self.rules.fit * phi_rad;
-            self.seen.room(ring.child(), phi_rad, tau_rad, fits);
+            let ChildSlot { parent, slot } = ring.child();
+            self.tell(Event::Room { parent, slot, phi_rad, tau_rad, fits });
             if fits {
                 self.settle(ring, child);
             } else {
@@ -194,20 +196,22 @@ impl<O: Observer> PaperRun<O> {
 
     /// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
     fn pushed(&mut self, ring: &Circumference, last: Option<Disc>) -> Disc {
-        let of = ring.child();
+        let ChildSlot { parent, slot } = ring.child();
         // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
         let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
         let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
         let mut child = self.sized(ring, way * ring.radius);
-        let tangent = tangent.map(|tangent| ring.place(tangent));
-        self.seen.started(of, tangent, ring.place(child.centre), child.radius);
+        let tangent = tangent.map(|tangent| ring.place(tangent).to_array());
+        let (position, radius) = (ring.place(child.centre).to_array(), child.radius);
+        self.tell(Event::Start { parent, slot, tangent, position, radius });
         // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
         for _ in 0..MAX_PUSHES {
             if child.centre.length() >= ring.radius + child.radius {
                 break;
             }
             child = self.sized(ring, child.centre + way * (PUSH * ring.radius));
-            self.seen.pushed(of, ring.place(child.centre), child.radius);
+            let (position, radius) = (ring.place(child.centre).to_array(), child.radius);
+            self.tell(Event::Push { parent, slot, position, radius });
         }
         // Along the circle until it overlaps least (Fig. 7f).
         let mut overlap = ring.overlap(child);
@@ -225,7 +229,8 @@ impl<O: Observer> PaperRun<O> {
                 break;
             }
             (child, overlap) = (next, next_overlap);
-            self.seen.turned(of, ring.place(child.centre), radius, overlap);
+            let position = ring.place(child.centre).to_array();
+            self.tell(Event::PushOnCircle { parent, slot, position, radius, overlap });
         }
         child
     }
@@ -250,43 +255,14 @@ impl<O: Observer> PaperRun<O> {
         };
         let Some((position, normal)) = self.usable(of, landing) else { return };
         let Some(radius) = self.radius_at(position) else { return };
-        if let Some(other) = self.in_the_way(ring, position, normal, radius) {
-            self.decide(of, SlotFate::Matched, Some(other));
-        } else if let Some(particle) = self.add_waiting(of, position, normal, radius) {
+        let place = Place { position, normal, radius };
+        let reach = self.rules.match_tolerance * (radius + self.rules.sizes.largest());
+        let near = self.buckets.near(&self.particles, position, reach);
+        if let Some(other) = self.corresponding(of, &place, self.candidates(&near)) {
+            self.decide(of, SlotFate::Matched, other);
+        } else if let Some(particle) = self.add_waiting(of, &place) {
             let disc = ring.disc(position, radius);
             ring.around.push(SheetNeighbour { particle, disc, touches: true });
         }
-    }
-
-    /// The particle that is nearest to a child, in r_i + r_j, if it is within the match tolerance.
-    fn in_the_way(
-        &mut self,
-        ring: &Circumference,
-        position: DVec3,
-        normal: DVec3,
-        radius: f64,
-    ) -> Option<u32> {
-        let share = self.rules.match_tolerance;
-        let nearest = self
-            .buckets
-            .near(&self.particles, position, share * (radius + self.rules.sizes.largest()))
-            .iter()
-            .filter_map(|near| {
-                let other = &self.particles[near.particle as usize];
-                let both = radius + other.radius;
-                let is_same = is_same_sheet(other.p() - position, normal, other.n(), RISE_SLACK * both);
-                is_same.then_some((near.distance / both, near.distance, both, near.particle))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let collision = nearest.filter(|near| near.0 <= share);
-        let comparison = Comparison {
-            position,
-            against: nearest.map(|near| near.3),
-            distance: nearest.map(|near| near.1),
-            limit: share * nearest.map_or(radius + ring.radius, |near| near.2),
-            corresponds: collision.is_some(),
-        };
-        self.seen.compared(ring.child(), &comparison, &self.particles);
-        collision.map(|near| near.3)
     }
 }

@@ -34,7 +34,7 @@
 
 mod adaptive;
 mod buckets;
-mod observer;
+mod event;
 mod particle;
 mod projection;
 mod relaxation;
@@ -43,18 +43,18 @@ mod surface;
 mod uniform;
 
 pub use buckets::Nearby;
-pub use observer::{ChildSlot, Comparison, Move, Observer};
-pub use particle::{Particle, TangentFrame};
+pub use event::{ChildSlot, Event, Observer, Vector};
+pub use particle::Particle;
 pub use relaxation::Push;
 pub use rules::{Matched, Projection, QueueOrder, RadiusRule, Rules, SearchStart, sum_of_curvatures};
-pub use surface::{FieldSample, ImplicitSurface, Trial};
+pub use surface::ImplicitSurface;
 
 pub(crate) use buckets::Buckets;
-pub(crate) use particle::is_same_sheet;
+pub(crate) use particle::{Place, TangentFrame};
 pub(crate) use projection::Circle;
 pub(crate) use relaxation::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, overlap};
-pub(crate) use surface::Landing;
-pub(crate) use uniform::{DIRECTIONS, REACH, RISE_SLACK, predicted_angle};
+pub(crate) use surface::{Landing, Trial};
+pub(crate) use uniform::{DIRECTIONS, REACH, predicted_angle};
 
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -132,7 +132,7 @@ impl<O: Observer> PaperRun<O> {
             .iter()
             .any(|near| self.particles[near.particle as usize].n().dot(normal) > 0.0);
         if is_covered
-            || !self.surface.contains(position)
+            || !self.surface.bounds.holds(position)
             || !self.surface.is_zero(position, normal, POLE_PROBE * r)
         {
             return false;
@@ -140,7 +140,7 @@ impl<O: Observer> PaperRun<O> {
         let seed = Particle::seed(position, normal, r, front);
         let particle = self.enter(seed);
         self.waiting.push_back(particle);
-        self.seen.seed(particle, &seed);
+        self.tell(Event::Seed { particle, data: seed });
         true
     }
 
@@ -161,7 +161,7 @@ impl<O: Observer> PaperRun<O> {
             QueueOrder::Stack => self.waiting.pop_back(),
         };
         let Some(particle) = next else { return };
-        self.seen.taken(particle);
+        self.tell(Event::Taken { particle });
         match self.rules.sizes {
             RadiusRule::Same(radius) => self.treat_uniform(particle, radius),
             RadiusRule::ByCurvature { .. } => self.treat_adaptive(particle),
@@ -183,28 +183,23 @@ impl<O: Observer> PaperRun<O> {
     }
 
     /// Adds a child to the particle set.
-    pub(crate) fn add(&mut self, parent: u32, position: DVec3, normal: DVec3, radius: f64) -> u32 {
+    pub(crate) fn add(&mut self, parent: u32, place: &Place) -> u32 {
         let Particle { level, front, .. } = self.particles[parent as usize];
+        let Place { position, normal, radius } = *place;
         let child = Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) };
         let particle = self.enter(child);
-        self.seen.added(particle, &child);
+        self.tell(Event::Added { particle, data: child });
         particle
     }
 
     /// Adds a child, marked as not done, unless there are as many particles as there may be.
-    pub(crate) fn add_waiting(
-        &mut self,
-        child: ChildSlot,
-        position: DVec3,
-        normal: DVec3,
-        radius: f64,
-    ) -> Option<u32> {
+    pub(crate) fn add_waiting(&mut self, child: ChildSlot, place: &Place) -> Option<u32> {
         if self.particles.len() >= self.rules.max_particles {
             self.is_capped = true;
             self.decide(child, SlotFate::Capped, None);
             return None;
         }
-        let particle = self.add(child.parent, position, normal, radius);
+        let particle = self.add(child.parent, place);
         self.waiting.push_back(particle);
         self.decide(child, SlotFate::Added, Some(particle));
         Some(particle)
@@ -213,12 +208,18 @@ impl<O: Observer> PaperRun<O> {
     /// Decides the fate of a child. `particle` is the one that was added, or the one that was there.
     pub(crate) fn decide(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
         self.particles[child.parent as usize].slots.set(child.slot as usize, fate);
-        self.seen.decided(child, fate, particle);
+        let ChildSlot { parent, slot } = child;
+        self.tell(Event::Fate { parent, slot, fate, particle });
     }
 
     /// "Mark the particle as done."
     pub(crate) fn finish(&mut self, particle: u32) {
         self.particles[particle as usize].is_done = true;
-        self.seen.done(particle, self.surface.evaluations);
+        self.tell(Event::Done { particle, evaluations: self.surface.evaluations });
+    }
+
+    /// Tells the observer what has happened.
+    pub(crate) fn tell(&mut self, event: Event) {
+        self.seen.event(event, &self.particles);
     }
 }

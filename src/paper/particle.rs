@@ -1,4 +1,4 @@
-//! A particle, and the test of which particles are of one sheet.
+//! A particle, and its tangent frame.
 
 use crate::particles::Slots;
 use glam::DVec3;
@@ -53,6 +53,11 @@ impl Particle {
         }
     }
 
+    /// Place of the particle.
+    pub(crate) fn place(&self) -> Place {
+        Place { position: self.p(), normal: self.n(), radius: self.radius }
+    }
+
     /// Position as a vector.
     #[must_use]
     pub fn p(&self) -> DVec3 {
@@ -66,23 +71,25 @@ impl Particle {
     }
 }
 
-/// The tangent frame of a particle (Fig. 3).
+/// A place on the surface for a particle.
 #[derive(Clone, Copy, Debug)]
-pub struct TangentFrame {
-    /// Unit normal N̂.
-    pub n: DVec3,
-    /// V̂⁰: unit tangent vector towards the first child.
-    pub u: DVec3,
-    /// N̂ × V̂⁰.
-    pub w: DVec3,
-    /// Whether the particle is a seed, whose first child is no parent.
-    pub is_seed: bool,
+pub(crate) struct Place {
+    pub(crate) position: DVec3,
+    /// Unit outward normal.
+    pub(crate) normal: DVec3,
+    /// Repulsion radius there.
+    pub(crate) radius: f64,
 }
 
-/// Whether a particle at `offset` from a point with the unit normal `normal` is of the same sheet: it faces the same way, and
-/// rises by no more than 45° from the tangent plane. Below the distance `slack` the direction between the two tells nothing.
-#[must_use]
-pub(crate) fn is_same_sheet(offset: DVec3, normal: DVec3, other: DVec3, slack: f64) -> bool {
-    let rise = offset.dot(normal);
-    normal.dot(other) > 0.0 && rise * rise <= 0.5 * (offset.length_squared() + slack * slack)
+/// The tangent frame of a particle (Fig. 3).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TangentFrame {
+    /// Unit normal N̂.
+    pub(crate) n: DVec3,
+    /// V̂⁰: unit tangent vector towards the first child.
+    pub(crate) u: DVec3,
+    /// N̂ × V̂⁰.
+    pub(crate) w: DVec3,
+    /// Whether the particle is a seed, whose first child is no parent.
+    pub(crate) is_seed: bool,
 }

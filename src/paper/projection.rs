@@ -1,7 +1,7 @@
 //! The projection of a child onto the surface, paper §4.3: along a circle around its parent.
 
 use super::PaperRun;
-use super::observer::{ChildSlot, Observer};
+use super::event::{ChildSlot, Event, Observer};
 use super::particle::Particle;
 use super::rules::Projection;
 use super::surface::{ImplicitSurface, Landing, MAX_NEWTON, Trial};
@@ -171,11 +171,25 @@ impl ImplicitSurface {
 }
 
 impl<O: Observer> PaperRun<O> {
+    /// Proposes a child at an angle on its circle, and returns the position there.
+    pub(crate) fn propose(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> DVec3 {
+        let ChildSlot { parent, slot } = child;
+        let position = circle.point(theta_rad);
+        let (direction, place) = (circle.direction.to_array(), position.to_array());
+        self.tell(Event::Slot { parent, slot, direction, theta_rad, place });
+        position
+    }
+
     /// Moves a child onto the surface (§4.3), from an angle on its circle.
     pub(crate) fn land(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> Landing {
         let residual = self.rules.residual * self.particles[child.parent as usize].radius;
-        let seen = &mut self.seen;
-        let mut note = |trial: Trial| seen.tried(child, &trial);
+        let ChildSlot { parent, slot } = child;
+        let (seen, particles) = (&mut self.seen, &self.particles);
+        let mut note = |Trial { step, theta_rad, position, sample, bracket_rad }: Trial| {
+            let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
+            let event = Event::Iterate { parent, slot, step, theta_rad, position, value, slope, bracket_rad };
+            seen.event(event, particles);
+        };
         let landing = match self.rules.projection {
             Projection::Circle => self.surface.land_on_circle(circle, theta_rad, residual, &mut note),
             Projection::Newton => {
@@ -184,7 +198,9 @@ impl<O: Observer> PaperRun<O> {
             }
         };
         if let Landing::On { position, normal } = landing {
-            self.seen.landed(child, position, normal, position.distance(circle.centre));
+            let distance = position.distance(circle.centre);
+            let (position, normal) = (position.to_array(), normal.to_array());
+            self.tell(Event::Landed { parent, slot, position, normal, distance });
         }
         landing
     }
@@ -198,7 +214,7 @@ impl<O: Observer> PaperRun<O> {
             Landing::On { normal, .. } if normal.dot(self.particles[child.parent as usize].n()) <= 0.0 => {
                 SlotFate::NotConverged
             }
-            Landing::On { position, .. } if !self.surface.contains(position) => SlotFate::Outside,
+            Landing::On { position, .. } if !self.surface.bounds.holds(position) => SlotFate::Outside,
             Landing::On { position, normal } => return Some((position, normal)),
         };
         self.decide(child, fate, None);
@@ -211,7 +227,7 @@ impl<O: Observer> PaperRun<O> {
         let residual = self.rules.residual * own.radius;
         match self.surface.land_by_newton(target, reach, residual, &mut |_| {}) {
             Landing::On { position, normal }
-                if self.surface.contains(position) && normal.dot(own.n()) > 0.0 =>
+                if self.surface.bounds.holds(position) && normal.dot(own.n()) > 0.0 =>
             {
                 Some((position, normal))
             }

@@ -3,7 +3,7 @@
 
 use super::PaperRun;
 use super::buckets::{Buckets, Nearby};
-use super::observer::{Move, Observer};
+use super::event::{Event, Observer};
 use super::rules::{RadiusRule, Rules};
 use glam::DVec3;
 use serde::Serialize;
@@ -81,7 +81,7 @@ impl<O: Observer> PaperRun<O> {
         let (energy, pushes) = self.sum_repulsion();
         self.interactions += pushes;
         self.largest_move = 0.0;
-        self.seen.step_begins(self.steps + 1, step_size(&self.rules), energy);
+        self.tell(Event::StepBegins { step: self.steps + 1, size: step_size(&self.rules), energy });
     }
 
     /// Fills the forces and returns the energy per particle, and the number of pushes.
@@ -142,14 +142,22 @@ impl<O: Observer> PaperRun<O> {
         let radius = self.radius_at(position).unwrap_or(own.radius);
         let moved = &mut self.particles[particle];
         (moved.position, moved.normal, moved.radius) = (position.to_array(), normal.to_array(), radius);
-        let step = Move { force, target, is_kept: landed.is_none() };
-        self.seen.moved(particle as u32, &step, moved);
+        let event = Event::Moved {
+            particle: particle as u32,
+            force: force.to_array(),
+            target: target.to_array(),
+            position: moved.position,
+            normal: moved.normal,
+            radius,
+            is_kept: landed.is_none(),
+        };
+        self.tell(event);
     }
 
     /// Ends a step: the energy where the particles are now.
     pub(crate) fn end_step(&mut self) {
         self.steps += 1;
         let (energy, _) = self.sum_repulsion();
-        self.seen.step_ends(self.steps, energy, self.largest_move);
+        self.tell(Event::StepEnds { step: self.steps, energy, largest_move: self.largest_move });
     }
 }

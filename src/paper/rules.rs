@@ -1,5 +1,6 @@
 //! The choices that the paper discusses or leaves open.
 
+use super::particle::Place;
 use super::surface::ImplicitSurface;
 use crate::differential::Curvature;
 use glam::DVec3;
@@ -146,8 +147,12 @@ impl Rules {
         }
     }
 
-    /// Distance below which a child is identified with a particle, in uniform sampling.
-    pub(crate) fn match_radius(&self) -> f64 {
-        2.0 * self.sizes.largest() * self.match_tolerance
+    /// Whether a particle is of the sheet of a place: it faces the same way, and rises by no more than 45° from the tangent plane.
+    /// Nearer than half of the distance at which the two correspond, the direction between them tells nothing.
+    pub(crate) fn is_same_sheet(&self, place: &Place, other: &Place) -> bool {
+        let offset = other.position - place.position;
+        let rise = offset.dot(place.normal);
+        let slack = 0.5 * self.match_tolerance * (place.radius + other.radius);
+        place.normal.dot(other.normal) > 0.0 && rise * rise <= 0.5 * (offset.length_squared() + slack * slack)
     }
 }

@@ -21,13 +21,11 @@ pub struct ImplicitSurface {
 
 /// f and ∇f at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct FieldSample {
-    /// The value f.
-    pub value: f64,
-    /// The gradient ∇f.
-    pub gradient: DVec3,
+pub(crate) struct FieldSample {
+    pub(crate) value: f64,
+    pub(crate) gradient: DVec3,
     /// The length |∇f| of the gradient.
-    pub slope: f64,
+    pub(crate) slope: f64,
 }
 
 impl FieldSample {
@@ -39,17 +37,17 @@ impl FieldSample {
 
 /// An evaluation on the way to the surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Trial {
+pub(crate) struct Trial {
     /// Number of the evaluation, from 0.
-    pub step: u32,
+    pub(crate) step: u32,
     /// Angle on the circle; none in space.
-    pub theta_rad: Option<f64>,
+    pub(crate) theta_rad: Option<f64>,
     /// Position of the evaluation.
-    pub position: DVec3,
+    pub(crate) position: DVec3,
     /// The field at that position.
-    pub sample: FieldSample,
+    pub(crate) sample: FieldSample,
     /// Angles between which f changes its sign, in the bracketed search.
-    pub bracket_rad: Option<[f64; 2]>,
+    pub(crate) bracket_rad: Option<[f64; 2]>,
 }
 
 /// Result of a search for the surface.
@@ -92,10 +90,6 @@ impl ImplicitSurface {
     pub(crate) fn curvature(&mut self, p: DVec3) -> Curvature<f64, DVec3> {
         self.evaluations += 1;
         exact_curvature(&self.field.borrow_mut().jet(p))
-    }
-
-    pub(crate) fn contains(&self, p: DVec3) -> bool {
-        p.cmpge(self.bounds.lo()).all() && p.cmple(self.bounds.hi()).all()
     }
 
     /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the point is on the surface or has

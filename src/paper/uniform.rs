@@ -11,8 +11,8 @@
 
 use super::PaperRun;
 use super::buckets::Nearby;
-use super::observer::{ChildSlot, Comparison, Observer};
-use super::particle::{TangentFrame, is_same_sheet};
+use super::event::{ChildSlot, Event, Observer};
+use super::particle::{Place, TangentFrame};
 use super::projection::Circle;
 use super::rules::{Matched, SearchStart};
 use super::surface::Landing;
@@ -28,9 +28,6 @@ pub(crate) const DIRECTIONS: [[f64; 2]; 6] = {
 
 /// Neighbours are gathered within this many radii: a child at 2r meets particles up to 2r + the match radius from its parent.
 pub(crate) const REACH: f64 = 4.0;
-
-/// Slack of the sheet test, as a share of the match radius.
-pub(crate) const RISE_SLACK: f64 = 0.5;
 
 /// Largest |sin θ₀|.
 const STEEPEST: f64 = 0.9;
@@ -65,7 +62,7 @@ impl<O: Observer> PaperRun<O> {
             SearchStart::Tangent => None,
             SearchStart::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
         };
-        self.seen.frame(particle, &frame, form);
+        self.tell_frame(particle, &frame, form);
 
         // "Place its six children on the surface."
         let landings: Vec<(usize, Landing)> = frame
@@ -74,7 +71,7 @@ impl<O: Observer> PaperRun<O> {
                 let direction = frame.direction(slot);
                 let circle = Circle { centre, normal: frame.n, direction, radius: 2.0 * radius };
                 let theta_rad = form.map_or(0.0, |form| predicted_angle(form, DIRECTIONS[slot], radius));
-                self.seen.proposed(child(slot), direction, theta_rad, circle.point(theta_rad));
+                self.propose(child(slot), &circle, theta_rad);
                 (slot, self.land(child(slot), &circle, theta_rad))
             })
             .collect();
@@ -92,13 +89,14 @@ impl<O: Observer> PaperRun<O> {
         // "For all of its six children."
         for (slot, landing) in landings {
             let Some((position, normal)) = self.usable(child(slot), landing) else { continue };
-            if let Some(other) = self.corresponding(child(slot), position, normal, &neighbours) {
+            let place = Place { position, normal, radius };
+            if let Some(other) = self.corresponding(child(slot), &place, self.candidates(&neighbours)) {
                 // The child is that particle, which leaves the neighbouring particles.
-                self.decide(child(slot), SlotFate::Matched, Some(other));
+                self.decide(child(slot), SlotFate::Matched, other);
                 if self.rules.matched == Matched::Leave {
-                    neighbours.retain(|near| near.particle != other);
+                    neighbours.retain(|near| Some(near.particle) != other);
                 }
-            } else if let Some(added) = self.add_waiting(child(slot), position, normal, radius)
+            } else if let Some(added) = self.add_waiting(child(slot), &place)
                 && self.rules.matched == Matched::Stay
             {
                 neighbours.push(Nearby { particle: added, distance: position.distance(centre) });
@@ -128,33 +126,46 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn gather(&mut self, particle: u32, reach: f64) -> Vec<Nearby> {
         let mut neighbours = self.buckets.near(&self.particles, self.particles[particle as usize].p(), reach);
         neighbours.retain(|near| near.particle != particle);
-        self.seen.gathered(particle, reach, &neighbours);
+        self.tell(Event::Gathered { particle, reach, neighbours: neighbours.clone() });
         neighbours
     }
 
-    /// "If an existing particle corresponds": the nearest of the neighbours that is of the child's sheet, if it is within the match
-    /// radius.
+    /// Tells the observer in which frame the children of a particle are placed.
+    pub(crate) fn tell_frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {
+        let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
+        self.tell(Event::Frame { particle, normal, u, w, form });
+    }
+
+    /// "If an existing particle corresponds": the candidate of the child's sheet that is nearest, in r_i + r_j, if it is within the match
+    /// tolerance. The number of a candidate is none where it is a child itself.
     pub(crate) fn corresponding(
         &mut self,
         child: ChildSlot,
-        position: DVec3,
-        normal: DVec3,
-        neighbours: &[Nearby],
-    ) -> Option<u32> {
-        let limit = self.rules.match_radius();
-        let nearest = neighbours
-            .iter()
-            .filter_map(|near| {
-                let other = &self.particles[near.particle as usize];
-                let offset = other.p() - position;
-                is_same_sheet(offset, normal, other.n(), RISE_SLACK * limit)
-                    .then_some((offset.length(), near.particle))
+        place: &Place,
+        candidates: impl IntoIterator<Item = (Place, Option<u32>)>,
+    ) -> Option<Option<u32>> {
+        let ChildSlot { parent, slot } = child;
+        let tolerance = self.rules.match_tolerance;
+        let nearest = candidates
+            .into_iter()
+            .filter(|(other, _)| self.rules.is_same_sheet(place, other))
+            .map(|(other, number)| {
+                (place.position.distance(other.position), place.radius + other.radius, number)
             })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let corresponds = nearest.is_some_and(|(distance, _)| distance <= limit);
-        let (against, distance) = (nearest.map(|(_, other)| other), nearest.map(|(distance, _)| distance));
-        let comparison = Comparison { position, against, distance, limit, corresponds };
-        self.seen.compared(child, &comparison, &self.particles);
-        against.filter(|_| corresponds)
+            .min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+        let alone = place.radius + self.particles[parent as usize].radius;
+        let limit = tolerance * nearest.map_or(alone, |(_, both, _)| both);
+        let distance = nearest.map(|(distance, ..)| distance);
+        let against = nearest.and_then(|(.., number)| number);
+        let corresponds = distance.is_some_and(|distance| distance <= limit);
+        let position = place.position.to_array();
+        self.tell(Event::Compared { parent, slot, position, against, distance, limit, corresponds });
+        corresponds.then_some(against)
+    }
+
+    /// The particles around a child, with which it is compared.
+    pub(crate) fn candidates(&self, neighbours: &[Nearby]) -> Vec<(Place, Option<u32>)> {
+        let of = |particle: u32| (self.particles[particle as usize].place(), Some(particle));
+        neighbours.iter().map(|near| of(near.particle)).collect()
     }
 }

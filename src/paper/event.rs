@@ -1,20 +1,19 @@
-//! The events of a run: plain data, in the order in which they happen.
+//! The events of a run: plain data, in the order in which they happen, and who is told of them.
 //!
 //! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
 //! field's coordinates, angles in radians.
 
-use super::settings::LessonSettings;
-use crate::paper::{ChildSlot, Comparison, Move, Nearby, Observer, Particle, TangentFrame, Trial};
+use super::buckets::Nearby;
+use super::particle::Particle;
 use crate::particles::SlotFate;
-use crate::sampler::Sampling;
-use glam::DVec3;
 use serde::Serialize;
 
 /// A point or a direction.
 pub type Vector = [f64; 3];
 
 /// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
-/// [`Event::Died`] change the particles; the others tell why.
+/// [`Event::Died`] change the particles; the others tell why. Levels, meetings of fronts, gaps and all that particle systems do are told
+/// by the lesson.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -334,134 +333,21 @@ impl Event {
     }
 }
 
-/// A child that meets a particle farther away than this share of 2r is out of step with it. In a lattice it is below 0.2.
-const SEAM: f64 = 0.35;
-
-/// The events of the chapter under way, as the run tells them.
-#[derive(Clone, Debug)]
-pub(super) struct Log {
-    pub(super) events: Vec<Event>,
-    /// A child that meets a particle farther away than this is on a seam of the fronts; adaptive sampling knows no step to be out of.
-    seam: f64,
-    /// Particles with a child on a seam, in the order in which they were treated.
-    pub(super) seams: Vec<u32>,
+/// A child that is not a particle yet: slot number `slot` of particle number `parent`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChildSlot {
+    /// The particle that places the child.
+    pub parent: u32,
+    /// Number among the parent's children.
+    pub slot: u32,
 }
 
-impl Log {
-    pub(super) fn new(settings: &LessonSettings) -> Self {
-        let seam = match settings.sampling {
-            Sampling::Uniform => SEAM * 2.0 * settings.radius,
-            Sampling::Adaptive => f64::INFINITY,
-        };
-        Self { events: Vec::new(), seam, seams: Vec::new() }
-    }
-
-    pub(super) fn push(&mut self, event: Event) {
-        self.events.push(event);
-    }
+/// Observer of a run. `()` ignores all events.
+pub trait Observer {
+    /// An event has happened; `particles` are those that there are then.
+    fn event(&mut self, event: Event, particles: &[Particle]);
 }
 
-impl Observer for Log {
-    fn seed(&mut self, particle: u32, data: &Particle) {
-        self.push(Event::Seed { particle, data: *data });
-    }
-
-    fn taken(&mut self, particle: u32) {
-        self.push(Event::Taken { particle });
-    }
-
-    fn frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {
-        let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
-        self.push(Event::Frame { particle, normal, u, w, form });
-    }
-
-    fn proposed(&mut self, child: ChildSlot, direction: DVec3, theta_rad: f64, place: DVec3) {
-        let ChildSlot { parent, slot } = child;
-        let [direction, place] = [direction, place].map(|v| v.to_array());
-        self.push(Event::Slot { parent, slot, direction, theta_rad, place });
-    }
-
-    fn tried(&mut self, ChildSlot { parent, slot }: ChildSlot, trial: &Trial) {
-        let &Trial { step, theta_rad, position, sample, bracket_rad } = trial;
-        let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
-        self.push(Event::Iterate { parent, slot, step, theta_rad, position, value, slope, bracket_rad });
-    }
-
-    fn landed(&mut self, child: ChildSlot, position: DVec3, normal: DVec3, distance: f64) {
-        let ChildSlot { parent, slot } = child;
-        let (position, normal) = (position.to_array(), normal.to_array());
-        self.push(Event::Landed { parent, slot, position, normal, distance });
-    }
-
-    fn gathered(&mut self, particle: u32, reach: f64, neighbours: &[Nearby]) {
-        self.push(Event::Gathered { particle, reach, neighbours: neighbours.to_vec() });
-    }
-
-    fn compared(&mut self, child: ChildSlot, comparison: &Comparison, particles: &[Particle]) {
-        let ChildSlot { parent, slot } = child;
-        let &Comparison { position, against, distance, limit, corresponds } = comparison;
-        let position = position.to_array();
-        self.push(Event::Compared { parent, slot, position, against, distance, limit, corresponds });
-        if corresponds && distance.is_some_and(|distance| distance > self.seam) {
-            self.seams.push(parent);
-            if let Some(particle) = against {
-                let front = |i: u32| particles[i as usize].front;
-                let is_other = front(parent) != front(particle);
-                self.push(Event::FrontsMeet { parent, slot, particle, is_other });
-            }
-        }
-    }
-
-    fn added(&mut self, particle: u32, data: &Particle) {
-        self.push(Event::Added { particle, data: *data });
-    }
-
-    fn decided(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
-        let ChildSlot { parent, slot } = child;
-        self.push(Event::Fate { parent, slot, fate, particle });
-    }
-
-    fn done(&mut self, particle: u32, evaluations: u64) {
-        self.push(Event::Done { particle, evaluations });
-    }
-
-    fn space(&mut self, parent: u32, between: Option<[(u32, f64); 2]>) {
-        let [before, behind] = [0, 1].map(|end| between.map(|ends| ends[end].0));
-        let angles_rad = between.map_or([0.0, core::f64::consts::TAU], |ends| ends.map(|(_, angle)| angle));
-        self.push(Event::Arc { parent, before, behind, angles_rad });
-    }
-
-    fn started(&mut self, child: ChildSlot, tangent: Option<DVec3>, position: DVec3, radius: f64) {
-        let ChildSlot { parent, slot } = child;
-        let (tangent, position) = (tangent.map(|tangent| tangent.to_array()), position.to_array());
-        self.push(Event::Start { parent, slot, tangent, position, radius });
-    }
-
-    fn pushed(&mut self, ChildSlot { parent, slot }: ChildSlot, position: DVec3, radius: f64) {
-        self.push(Event::Push { parent, slot, position: position.to_array(), radius });
-    }
-
-    fn turned(&mut self, child: ChildSlot, position: DVec3, radius: f64, overlap: f64) {
-        let ChildSlot { parent, slot } = child;
-        self.push(Event::PushOnCircle { parent, slot, position: position.to_array(), radius, overlap });
-    }
-
-    fn room(&mut self, ChildSlot { parent, slot }: ChildSlot, phi_rad: f64, tau_rad: f64, fits: bool) {
-        self.push(Event::Room { parent, slot, phi_rad, tau_rad, fits });
-    }
-
-    fn step_begins(&mut self, step: u32, size: f64, energy: f64) {
-        self.push(Event::StepBegins { step, size, energy });
-    }
-
-    fn moved(&mut self, particle: u32, step: &Move, data: &Particle) {
-        let &Move { force, target, is_kept } = step;
-        let [force, target] = [force, target].map(|v| v.to_array());
-        let &Particle { position, normal, radius, .. } = data;
-        self.push(Event::Moved { particle, force, target, position, normal, radius, is_kept });
-    }
-
-    fn step_ends(&mut self, step: u32, energy: f64, largest_move: f64) {
-        self.push(Event::StepEnds { step, energy, largest_move });
-    }
+impl Observer for () {
+    fn event(&mut self, _: Event, _: &[Particle]) {}
 }
