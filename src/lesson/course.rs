@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// With a stack there are no rings: a chapter is this many particles.
+/// With a stack there are no rings: a chapter is this many particles, as many as a ring of a run of some thousand has.
 const STACK_CHAPTER: u32 = 100;
 
 /// Kind of a chapter.

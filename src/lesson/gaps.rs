@@ -10,10 +10,11 @@ use glam::{DVec2, DVec3};
 /// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of a lattice have 0.577.
 const NARROWEST: f64 = 0.8;
 
-/// A wider circle, in 2r, lies at the border of the surface.
+/// A wider circle, in 2r, lies at the border of the surface. Twice the bound changes nothing on closed random surfaces.
 const WIDEST: f64 = 1.25;
 
-/// Neighbours within this many radii border a gap.
+/// Neighbours within this many radii border a gap: those of the lattice's first ring, at 2, and at the ends of the narrowest circle's
+/// diameter, at 3.2.
 const REACH: f64 = 3.4;
 
 impl Course {

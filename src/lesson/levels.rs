@@ -14,7 +14,8 @@ use glam::DVec3;
 /// Particles within this many radii tell the curvature around a parent: the six ideal neighbours are at 2, the next ring at 3.46.
 const RING: f64 = 2.6;
 
-/// Weight of "equal curvature in all directions" in that fit.
+/// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours determine no curvature; half and double
+/// change the evaluations of random surfaces by 0.01 %.
 const ISOTROPY: f64 = 0.005;
 
 impl Course {

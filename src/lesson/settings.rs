@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// A run that is not asked for more follows no more particles than this: a log of more is not read event by event.
 pub const MAX_PARTICLES: u32 = 20_000;
 
-/// No run may be asked for more particles than this.
+/// No run may be asked for more particles than this, which take hundreds of megabytes with their snapshots.
 const MOST_PARTICLES: u32 = 1_000_000;
 
 /// A surface given by a formula, as the page knows it.

@@ -25,36 +25,29 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     let step = size / cells;
     let nodes = cells.to_array().map(|count| count as usize + 1);
     let at = |[i, j, k]: [usize; 3]| lo + step * DVec3::new(i as f64, j as f64, k as f64);
-    let index = |[i, j, k]: [usize; 3]| (k * nodes[1] + j) * nodes[0] + i;
-    let mut values = Vec::with_capacity(nodes.iter().product());
-    for k in 0..nodes[2] {
-        for j in 0..nodes[1] {
-            values.extend((0..nodes[0]).map(|i| surface.sample(at([i, j, k])).value));
-        }
-    }
+    // In the order of the grid, x first.
+    let strides = [1, nodes[0], nodes[0] * nodes[1]];
+    let node = |index: usize| [index % nodes[0], index / strides[1] % nodes[1], index / strides[2]];
+    let count: usize = nodes.iter().product();
+    let values: Vec<f64> = (0..count).map(|index| surface.sample(at(node(index))).value).collect();
     let mut patches = Vec::new();
-    for k in 0..nodes[2] {
-        for j in 0..nodes[1] {
-            for i in 0..nodes[0] {
-                for axis in 0..3 {
-                    let mut end = [i, j, k];
-                    end[axis] += 1;
-                    if end[axis] == nodes[axis] {
-                        continue;
-                    }
-                    let (a, b) = (values[index([i, j, k])], values[index(end)]);
-                    if !(a.is_finite() && b.is_finite()) || (a <= 0.0) == (b <= 0.0) {
-                        continue;
-                    }
-                    let point = at([i, j, k]).lerp(at(end), a / (a - b));
-                    let gradient = surface.sample(point).gradient.abs();
-                    // The other two spacings.
-                    let section = step.x * step.y * step.z / step[axis];
-                    let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);
-                    if area.is_finite() {
-                        patches.push(SurfacePatch { point, area });
-                    }
-                }
+    for index in 0..count {
+        for axis in 0..3 {
+            let start = node(index);
+            if start[axis] + 1 == nodes[axis] {
+                continue;
+            }
+            let (a, b) = (values[index], values[index + strides[axis]]);
+            if !(a.is_finite() && b.is_finite()) || (a <= 0.0) == (b <= 0.0) {
+                continue;
+            }
+            let point = at(start).lerp(at(node(index + strides[axis])), a / (a - b));
+            let gradient = surface.sample(point).gradient.abs();
+            // The other two spacings.
+            let section = step.x * step.y * step.z / step[axis];
+            let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);
+            if area.is_finite() {
+                patches.push(SurfacePatch { point, area });
             }
         }
     }

@@ -30,7 +30,7 @@ use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Consecutive iterations of rest after which a run has settled.
+/// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has moved by a tenth of its radius at most.
 pub(super) const QUIET: u32 = 20;
 
 /// Mean move in an iteration, in radii, up to which particles count as not moving.

@@ -39,7 +39,7 @@ const NU: f64 = 0.2;
 /// δ: share of σ̂ below which a particle may die.
 const DELTA: f64 = 0.7;
 
-/// Largest factor by which a radius changes in an iteration.
+/// Largest factor by which a radius changes in an iteration: that of two fissions.
 const MAX_GROWTH: f64 = 2.0;
 /// Smallest σ, in σ̂: a particle as small dies with a probability of 13/14.
 const LEAST: f64 = 0.05;

@@ -17,22 +17,22 @@ use crate::particles::SlotFate;
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
-/// Neighbours are gathered within this many radii of the parent, and of the largest particle.
+/// Neighbours are gathered within this many radii of the parent: a disc that touches it from farther away is twice as large.
 const REACH: f64 = 3.7;
 
-/// A neighbour within this share of r_i + r_j lies on the circle around the parent.
+/// A neighbour within this share of r_i + r_j lies on the circle around the parent. In a lattice the first ring is at 1, the next at 1.73.
 const TOUCHING: f64 = 1.25;
 
-/// Length of a push away from the parent, as a share of the parent's radius.
+/// Length of a push away from the parent, as a share of the parent's radius: a child ends within 3 % of the distance at which it touches.
 const PUSH: f64 = 1.0 / 16.0;
 
-/// Angle of a push along the circle, in radians.
+/// Angle of a push along the circle, in radians: 1.8°, or 3 % of the 60° that a child of the parent's size takes.
 const TURN_RAD: f64 = 1.0 / 32.0;
 
-/// Largest number of pushes in each direction.
+/// Largest number of pushes in each direction: as many turns go around the circle once.
 const MAX_PUSHES: u32 = 200;
 
-/// Slots of a particle, at most.
+/// Slots of a particle, at most: as many as [`Slots`](crate::particles::Slots) has room for.
 const MAX_SLOTS: u32 = 10;
 
 /// A particle as a disc in the tangent plane, at its true distance from the parent.

@@ -60,10 +60,11 @@ use crate::particles::SlotFate;
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// A candidate for a seed is covered by a particle of its sheet within this many radii: a child would have been matched there.
+/// A candidate for a seed is covered by a particle of its sheet within this many radii: a closed cover has no hole wider than 1.85.
 const COVERED: f64 = 2.0;
 
-/// Distance at which the size of f tells a zero from a pole, in radii.
+/// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual, where f beside a pole has a tenth of its
+/// size and f beside a zero ten times as much.
 const POLE_PROBE: f64 = 1e-3;
 
 /// A run of the paper's algorithm: the surface, the particles so far, and those that wait to be treated.

@@ -27,13 +27,15 @@ const RANGE: f64 = 3.0;
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps.
 pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
-/// Size of a relaxation step in uniform sampling: large enough to mend local faults in ten steps, and stable.
+/// Size of a relaxation step in uniform sampling, in σ². The stiffest mode of the hexagonal lattice at the spacing 2σ has the eigenvalue
+/// 2.2 / σ², so steps below 0.9 are stable, and below 0.7 where rows are squeezed to 1.7 σ; with 0.2 ten steps leave seams.
 const STEP: f64 = 0.6;
 
-/// Size of a relaxation step in non-uniform sampling.
+/// Size of a relaxation step in non-uniform sampling. The stiffest mode of the hexagonal lattice has an eigenvalue below 6, so steps below
+/// a third are stable.
 pub(crate) const OVERLAP_STEP: f64 = 0.33;
 
-/// A particle moves by no more than this in a step, in radii.
+/// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2.
 pub(crate) const MAX_MOVE: f64 = 0.35;
 
 /// Weight of a pair by the cosine between its normals: 1 on one sheet, 0 on two that face away from each other.

@@ -116,7 +116,8 @@ pub struct Rules {
     pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,
-    /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value.
+    /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value; 0.7 gives the most particles
+    /// with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
     /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes.
     pub fit: f64,

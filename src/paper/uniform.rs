@@ -26,10 +26,11 @@ pub(crate) const DIRECTIONS: [[f64; 2]; 6] = {
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
 };
 
-/// Neighbours are gathered within this many radii: a child at 2r meets particles up to 2r + the match radius from its parent.
+/// Neighbours are gathered within this many radii: a child at 2r meets particles up to 2r + the match radius from its parent, which
+/// is below 2r.
 pub(crate) const REACH: f64 = 4.0;
 
-/// Largest |sin θ₀|.
+/// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size do not resolve.
 const STEEPEST: f64 = 0.9;
 
 impl TangentFrame {
