@@ -1,4 +1,5 @@
-//! The events of a run: plain data, in the order in which they happen, and who is told of them.
+//! The events of a run: plain data, in the order in which they happen, and who is told of them. Levels, meetings of fronts, gaps and all
+//! that particle systems do are told by the lesson.
 //!
 //! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
 //! field's coordinates, angles in radians.
@@ -12,8 +13,7 @@ use serde::Serialize;
 pub type Vector = [f64; 3];
 
 /// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
-/// [`Event::Died`] change the particles; the others tell why. Levels, meetings of fronts, gaps and all that particle systems do are told
-/// by the lesson.
+/// [`Event::Died`] change the particles; the others tell why.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
 #[serde(tag = "type", rename_all = "snake_case")]
