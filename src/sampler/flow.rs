@@ -20,7 +20,6 @@
 //! * Velocities are not integrated: a particle goes to the new surface by Newton's method, so that it never drifts from it.
 //! * Radii are those of the run and do not adapt (their §4.3); fission is a birth in a gap.
 
-use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::functions::{atan2, cos, sin};
 use crate::math::{Bounds, refill, sort_few, tangent_frame};
@@ -296,11 +295,7 @@ impl Flow {
     }
 
     fn fill_grids(&mut self, particles: &Particles) {
-        let none = RadiusRange { smallest: f32::INFINITY, largest: 0.0 };
-        let radii = particles.radius.iter().fold(none, |range, &radius| RadiusRange {
-            smallest: range.smallest.min(radius),
-            largest: range.largest.max(radius),
-        });
+        let radii = RadiusRange::among(&particles.radius);
         self.grids.reset(radii, |radius| GAUSSIAN_RANGE * radius);
         self.columns.handle.clear();
         for i in 0..particles.len() {
@@ -562,11 +557,7 @@ impl Flow {
         parent: Option<usize>,
     ) {
         let row = particles.len() as u32;
-        let radius = surface.sizing.map_or(surface.radius, |sizing| {
-            let mut curvature = [Curvature::default()];
-            curvatures(probe.field, &[position], &mut curvature);
-            sizing.radius(position, &curvature[0])
-        });
+        let radius = surface.sizing.map_or(surface.radius, |sizing| sizing.radius_at(probe.field, position));
         let mut slots = Slots::default();
         let (mut level, mut of) = (0, Particles::NO_PARENT);
         if let Some(parent) = parent {

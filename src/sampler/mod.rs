@@ -48,7 +48,7 @@ use discovery::singular::{NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, spacing, survey};
 use discovery::{precision, singular};
 use flow::Flow;
-use front::{Front, FrontSetup};
+use front::Front;
 use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
@@ -510,16 +510,17 @@ impl Sampler {
         }
         self.tools.flow.begin(&mut self.output.particles);
         self.tools.flow.is_closed = is_closed;
-        if self.tools.flow.is_due() {
-            self.look_again(field, bounds);
-        }
         self.bounds = *bounds;
+        if self.tools.flow.is_due() {
+            self.look_again(field);
+        }
         self.next(RunInput::Follow);
         true
     }
 
     /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the surface before no longer holds.
-    fn look_again(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+    fn look_again(&mut self, field: &mut dyn Field) {
+        let bounds = &{ self.bounds };
         let PointScale { scale, double } = PointScale::of(field, bounds);
         let scaled = &mut Scaled::new(field, scale);
         let probe = &mut Probe::new(scaled, &mut self.tools.memory);
@@ -535,14 +536,8 @@ impl Sampler {
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
         self.attempt.follow(&self.settings, area, bounds.diagonal(), sizing, growth);
         self.components.begin(field, bounds, &[]);
-        self.tools.front.reset(&FrontSetup {
-            settings: &self.settings,
-            bounds,
-            survey: &self.survey,
-            radius: self.attempt.radius as f32,
-            radii: self.attempt.radii(),
-            expected: 0,
-        });
+        let settings = self.settings;
+        self.reset_front(&settings, 0);
         if self.attempt.sizing.is_none() {
             self.output.particles.radius.fill(self.attempt.radius as f32);
         }

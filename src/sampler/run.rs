@@ -1,7 +1,6 @@
 //! The state machine of a run: the work of every phase, and the transitions between them.
 
 use super::{Output, Sampler, Tools};
-use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::constraint::tips::{self, Tip};
@@ -14,7 +13,7 @@ use crate::sampler::phase::{FlowStage, PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, MovingMesh, Next, Refusal, Turn};
 use crate::sampler::relaxation::{MoveLimits, RepulsionLaw};
-use crate::sampler::settings::{GapPolicy, Method, Sampling, SizeMode};
+use crate::sampler::settings::{GapPolicy, Method, Sampling, Settings, SizeMode};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
@@ -132,14 +131,7 @@ impl Sampler {
                 settings.sampling = Sampling::Uniform;
             }
         }
-        self.tools.front.reset(&FrontSetup {
-            settings: &settings,
-            bounds: &self.attempt.front_bounds(&self.bounds),
-            survey: &self.survey,
-            radius: self.attempt.front_radius() as f32,
-            radii: self.attempt.radii(),
-            expected,
-        });
+        self.reset_front(&settings, expected);
         if self.tools.coarse.known().is_none() {
             self.counts.seeds = 0;
             (self.counts.left_out, self.counts.ended_early) = (0, false);
@@ -147,6 +139,17 @@ impl Sampler {
             self.components.restart();
         }
         PhaseState::Seeding(SurveyCursor::default())
+    }
+
+    /// Prepares a front of the present radii for about the `expected` number of particles.
+    pub(super) fn reset_front(&mut self, settings: &Settings, expected: usize) {
+        self.tools.front.reset(&FrontSetup {
+            settings,
+            bounds: &self.attempt.front_bounds(&self.bounds),
+            survey: &self.survey,
+            radii: self.attempt.radii(),
+            expected,
+        });
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
@@ -203,13 +206,8 @@ impl Sampler {
         let uniform = self.attempt.front_radius() as f32;
         let sizing = self.attempt.sizing.as_ref();
         let halvings = self.attempt.refining.as_ref().map_or(0, |refining| refining.halvings);
-        let mut radius = |probe: &mut Probe, place| {
-            sizing.map_or(uniform, |sizing| {
-                let mut curvature = [Curvature::default()];
-                curvatures(probe.field, &[place], &mut curvature);
-                sizing.radius(place, &curvature[0])
-            })
-        };
+        let mut radius =
+            |probe: &mut Probe, place| sizing.map_or(uniform, |sizing| sizing.radius_at(probe.field, place));
         // A coarse front grows beyond the box.
         let wide = self.attempt.front_bounds(&self.bounds);
         let is_refined = self.attempt.refining.is_some();

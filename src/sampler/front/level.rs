@@ -36,18 +36,16 @@ pub(crate) struct FrontSetup<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) bounds: &'a Bounds,
     pub(crate) survey: &'a Survey,
-    /// Radius of the particles of the uniform front.
-    pub(crate) radius: f32,
-    /// Radii of the particles of the adaptive front.
+    /// Radii of the particles; the uniform front has one.
     pub(crate) radii: RadiusRange,
     /// Particles to reserve room for.
     pub(crate) expected: usize,
 }
 
 impl FrontSetup<'_> {
-    /// The rule that tells the sheets of particles with radii in this range apart.
-    pub(crate) fn rule(&self, radii: RadiusRange) -> SheetRule {
-        SheetRule::new(self.survey.crowding, radii, self.survey.residual_limits())
+    /// The rule that tells the sheets of the particles apart.
+    pub(super) fn rule(&self) -> SheetRule {
+        SheetRule::new(self.survey.crowding, self.radii, self.survey.residual_limits())
     }
 }
 

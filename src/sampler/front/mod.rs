@@ -53,6 +53,7 @@ impl Front {
         self.level = FrontLevel {
             bounds: *setup.bounds,
             max_particles: setup.settings.max_particles as usize,
+            rule: setup.rule(),
             grids: core::mem::take(&mut self.level.grids),
             ..FrontLevel::default()
         };

@@ -1,6 +1,7 @@
 //! Grids for particles of different radii. Each range of radii has a layer with cells of its own size, so that a query
 //! among small particles does not read cells made for large ones.
 
+use crate::math::larger;
 use crate::sampler::neighbours::constants::CELL_PER_REACH;
 use crate::spatial::chains::Chains;
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
@@ -25,6 +26,14 @@ impl RadiusRange {
     /// The range that consists of one radius.
     pub(crate) fn of(radius: f32) -> Self {
         Self { smallest: radius, largest: radius }
+    }
+
+    /// The range of some radii, none of which is NaN.
+    pub(crate) fn among(radii: &[f32]) -> Self {
+        let least = |a: f32, &b: &f32| if b < a { b } else { a };
+        let most = |a: f32, &b: &f32| larger(b, a);
+        let smallest = radii.iter().fold(f32::INFINITY, least);
+        Self { smallest, largest: radii.iter().fold(0.0, most) }
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
 use crate::field::descent::{Descent, Descents};
-use crate::math::{Sym3, larger};
+use crate::math::Sym3;
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::RadiusRange;
@@ -228,11 +228,7 @@ impl Repulsion for Overlap<'_> {
     }
 
     fn extent(&self, particles: &Particles) -> RadiusRange {
-        let none = RadiusRange { smallest: f32::INFINITY, largest: 0.0 };
-        particles.radius.iter().fold(none, |RadiusRange { smallest, largest }, &radius| RadiusRange {
-            smallest: if radius < smallest { radius } else { smallest },
-            largest: larger(radius, largest),
-        })
+        RadiusRange::among(&particles.radius)
     }
 
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4) {

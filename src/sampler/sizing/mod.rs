@@ -8,6 +8,7 @@ mod envelope;
 mod laws;
 
 use crate::differential::{Curvature, curvatures};
+use crate::field::Field;
 use crate::math::{Bounds, HEXAGONAL_CELL};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
@@ -78,6 +79,13 @@ impl Sizing {
     #[inline]
     pub(crate) fn radius(&self, position: Vec3, curvature: &Curvature) -> f32 {
         self.law.radius(curvature).min(self.envelope.at(position))
+    }
+
+    /// Returns the repulsion radius of a particle at a point of the surface. This evaluates a Hessian, which is not counted.
+    pub(crate) fn radius_at(&self, field: &mut dyn Field, position: Vec3) -> f32 {
+        let mut curvature = [Curvature::default()];
+        curvatures(field, &[position], &mut curvature);
+        self.radius(position, &curvature[0])
     }
 
     #[cfg(test)]

@@ -52,9 +52,7 @@ pub(crate) struct ParentFrame {
 impl ParentFrame {
     /// Slope of the radius in a direction, bounded so that a child can touch the parent.
     fn slope_along(&self, x: f32, y: f32) -> f32 {
-        let slope = self.slope.x * x + self.slope.y * y;
-        let slope = if slope < MAX_SLOPE { slope } else { MAX_SLOPE };
-        if slope > -MAX_SLOPE { slope } else { -MAX_SLOPE }
+        limited(self.slope.x * x + self.slope.y * y, MAX_SLOPE)
     }
 
     /// Normal curvature in a direction.
@@ -71,9 +69,7 @@ impl ParentFrame {
 
     /// Sine of the angle by which a chord of length `distance` dips below the tangent plane, negative below.
     fn dip(&self, x: f32, y: f32, distance: f32) -> f32 {
-        let dip = -0.5 * self.curvature_along(x, y) * distance;
-        let dip = if dip < MAX_DIP { dip } else { MAX_DIP };
-        if dip > -MAX_DIP { dip } else { -MAX_DIP }
+        limited(-0.5 * self.curvature_along(x, y) * distance, MAX_DIP)
     }
 
     /// Predicts the child at an angle, no larger than `largest`.
@@ -97,6 +93,7 @@ impl ParentFrame {
             offset: (direction * cos_theta + self.n * sin_theta) * distance,
             // The turn is tangential, so the sum is never shorter than n.
             normal: (self.n + turn * (distance * cos_theta)).normalize_or(self.n),
+            clearance: 0.0,
         }
     }
 
@@ -115,8 +112,14 @@ impl ParentFrame {
 fn wedge(d: f32, e: f32, apart: f32, s: f32, t: f32) -> f32 {
     let cosine = (d * d + e * e - apart * apart) / (2.0 * d * e);
     let flat = (cosine - s * t) / ((1.0 - s * s) * (1.0 - t * t)).sqrt();
-    let flat = if flat < 1.0 { flat } else { 1.0 };
-    acos(if flat > -1.0 { flat } else { -1.0 })
+    acos(limited(flat, 1.0))
+}
+
+/// The number nearest to `x` from −`most` to `most`; `most` for NaN. In lanes this is faster than `clamp`.
+#[inline]
+fn limited(x: f32, most: f32) -> f32 {
+    let x = if x < most { x } else { most };
+    if x > -most { x } else { -most }
 }
 
 /// A predicted child.
@@ -138,6 +141,8 @@ pub(crate) struct PredictedChild {
     pub(crate) offset: Vec3,
     /// Unit normal.
     pub(crate) normal: Vec3,
+    /// Distance to the nearest collision, as far as it is known.
+    pub(crate) clearance: f32,
 }
 
 /// A free arc of the circle around a parent, between the particle before it and the particle behind it.
@@ -212,9 +217,7 @@ impl NeighbourLanes {
             let distance = (x * x + y * y + z * z).sqrt();
             let inverse = 1.0 / flat_sq.sqrt();
             let (cx, cy) = (fx * inverse, fy * inverse);
-            let t = rise / distance;
-            let t = if t < MAX_DIP { t } else { MAX_DIP };
-            let t = if t > -MAX_DIP { t } else { -MAX_DIP };
+            let t = limited(rise / distance, MAX_DIP);
             self.angle.0[lane] = atan2(fy, fx);
             let other = self.radius.0[lane];
             let mut side = [[0.0; 2]; 2];

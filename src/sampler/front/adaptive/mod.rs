@@ -141,7 +141,6 @@ impl Placing for AdaptivePlacing {
         self.clear_level();
         self.truncate(0);
         self.fills = 0;
-        level.rule = setup.rule(radii);
         level.grids.reset(radii, |radius| reach * radius);
     }
 

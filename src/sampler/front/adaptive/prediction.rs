@@ -6,7 +6,7 @@ use crate::differential::Curvature;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild};
 use crate::sampler::front::adaptive::placement::Proposal;
-use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
+use crate::sampler::front::adaptive::vicinity::Occupant;
 use crate::sampler::front::level::{FrontLevel, SurfacePoint};
 use crate::sampler::projection::ChildCircle;
 use core::f32::consts::TAU;
@@ -19,15 +19,14 @@ impl AdaptivePlacing {
             let count = self.around.ring.spread(frame, arc).len();
             for m in 0..count {
                 let angle = self.around.ring.children[m];
-                let (child, room) = self.predict_child(frame, angle);
+                let (mut child, room) = self.predict_child(frame, angle);
                 // Only the particles within the reach are known.
                 let beyond = 2.0 * self.rules.match_tolerance * child.radius;
                 let seen = self.rules.reach * frame.radius - child.distance - beyond;
-                let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
+                child.clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
                 let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
                 let fits = room >= 0.0;
-                let kind = if fits { OccupantKind::Child(child, clearance) } else { OccupantKind::Matched };
-                self.around.enter(Occupant { angle: angle + turn, kind });
+                self.around.enter(Occupant { angle: angle + turn, child: fits.then_some(child) });
                 if fits {
                     self.around.ring.push(child.offset, child.radius, false);
                 }
@@ -63,8 +62,7 @@ impl AdaptivePlacing {
     ) {
         let parent = self.parents.level[which].particle as usize;
         let mut slots = particles.slots[parent];
-        let is_child = |occupant: &&Occupant| !occupant.kind.is_matched();
-        let mut children = self.around.occupants.iter().filter(is_child).count();
+        let mut children = self.around.occupants.iter().filter(|occupant| occupant.child.is_some()).count();
         // A bit for every slot given out here.
         let mut given = 0_u32;
         if !again && particles.parent[parent] != Particles::NO_PARENT {
@@ -72,10 +70,10 @@ impl AdaptivePlacing {
             given = 1;
         }
         for k in 0..self.around.occupants.len() {
-            let kind = self.around.occupants[k].kind;
-            children -= usize::from(!kind.is_matched());
+            let child = self.around.occupants[k].child;
+            children -= usize::from(child.is_some());
             // If there are more occupants than slots, the ones that were there before get none.
-            if kind.is_matched() && (again || given.count_ones() as usize + children >= Slots::COUNT) {
+            if child.is_none() && (again || given.count_ones() as usize + children >= Slots::COUNT) {
                 continue;
             }
             let is = |k: usize, fate| given >> k & 1 == 0 && slots.get(k) == fate;
@@ -87,13 +85,13 @@ impl AdaptivePlacing {
             };
             given |= 1 << slot;
             level.fates.uncount(slots.get(slot));
-            let fate = match kind {
-                OccupantKind::Matched => SlotFate::Matched,
-                OccupantKind::Child(..) if particles.len() >= level.max_particles => {
+            let fate = match child {
+                None => SlotFate::Matched,
+                Some(_) if particles.len() >= level.max_particles => {
                     level.capped = true;
                     SlotFate::Capped
                 }
-                OccupantKind::Child(child, clearance) => {
+                Some(child) => {
                     let (centre, normal) = (particles.position[parent], particles.normal[parent]);
                     let PredictedChild { direction, distance, turn, slope, largest, .. } = child;
                     let circle = ChildCircle { centre, normal, direction, radius: distance, guess: turn };
@@ -102,7 +100,7 @@ impl AdaptivePlacing {
                     self.proposals.push(proposal);
                     let (position, normal, radius) = (centre + child.offset, child.normal, child.radius);
                     let spot = SurfacePoint { position, normal, radius, curvature: Curvature::default() };
-                    level.enter(particles, parent, slot, &spot, clearance);
+                    level.enter(particles, parent, slot, &spot, child.clearance);
                     SlotFate::Open
                 }
             };

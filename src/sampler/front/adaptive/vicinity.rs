@@ -14,23 +14,8 @@ use core::f32::consts::TAU;
 pub(super) struct Occupant {
     /// Direction in the tangent plane, from 0 to 2π.
     pub(super) angle: f32,
-    pub(super) kind: OccupantKind,
-}
-
-/// Kind of an occupant.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum OccupantKind {
-    /// A particle that was there, or a child that matched such a one.
-    Matched,
-    /// A child to be projected, with its distance to the nearest collision.
-    Child(PredictedChild, f32),
-}
-
-impl OccupantKind {
-    /// Whether it is no child to be projected.
-    pub(super) fn is_matched(&self) -> bool {
-        matches!(self, Self::Matched)
-    }
+    /// A child to be projected; none for a particle that was there, or a child that matched such a one.
+    pub(super) child: Option<PredictedChild>,
 }
 
 /// The surroundings of the parent that places its children.
@@ -97,7 +82,7 @@ impl Vicinity {
         for k in 0..touching {
             let angle = self.ring.angle(self.touching[k] as usize);
             let angle = if angle < 0.0 { angle + TAU } else { angle };
-            self.enter(Occupant { angle, kind: OccupantKind::Matched });
+            self.enter(Occupant { angle, child: None });
         }
     }
 

@@ -24,7 +24,6 @@ use crate::sampler::front::uniform::gaps::SEAM;
 use crate::sampler::front::uniform::surroundings::{SecondForm, Surroundings};
 use crate::sampler::front::{MAX_DIP, SIN_60};
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN};
-use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, Tolerance, tolerance};
@@ -180,15 +179,14 @@ impl UniformPlacing {
 
 impl Placing for UniformPlacing {
     fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup) {
-        let &FrontSetup { settings, survey, radius, .. } = setup;
+        let &FrontSetup { settings, survey, radii, .. } = setup;
+        let radius = radii.largest;
         self.radius = radius;
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
         self.tolerance = tolerance(radius, survey.residual_limits(), survey.gradient_scale);
         self.clear_level();
         self.truncate(0);
         self.next_seam = 0;
-        let radii = RadiusRange::of(radius);
-        level.rule = setup.rule(radii);
         level.grids.reset(radii, |_| self.reach());
         level.grids.reserve(setup.expected);
     }
