@@ -14,7 +14,7 @@ use crate::field::Field;
 use crate::math::Bounds;
 use crate::slices::{self, Work, pause};
 use glam::DVec3;
-use scan::{Scan, ScanOutcome};
+use scan::Scan;
 use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one before. With half or twice all of them
@@ -137,28 +137,26 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
     let mut bends: Option<Bounds> = None;
     let mut before = None;
     for half in HALVES {
-        let Scan { outcome, hull } = scan::scan(bounded, half, &mut left).await;
+        let found = scan::scan(bounded, half, &mut left).await;
         pause().await;
         let is_first = before.is_none();
-        match (outcome, hull) {
-            (ScanOutcome::Inside, Some(hull)) => {
+        match found {
+            Scan::Inside(hull) => {
                 let reach = if is_first { Reach::Bounded } else { Reach::Endless };
                 let bounds = placeable(&hull);
                 // What is beyond the box says nothing about the room within.
                 let extent = Extent { bounds, reach: Reach::Bounded };
                 return if is_first { extent } else { Extent { bounds: extent.with_room(0.0), reach } };
             }
-            (ScanOutcome::Empty, _) => {
+            Scan::Empty => {
                 return match before {
                     None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Nowhere },
                     Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
                 };
             }
-            (ScanOutcome::Crossing, hull) => bends = bends.or(hull),
-            (ScanOutcome::Undecided | ScanOutcome::Inside, _) if is_first => {
-                return sampled::find(field).await;
-            }
-            (ScanOutcome::Undecided | ScanOutcome::Inside, _) => {}
+            Scan::Crossing(hull) => bends = bends.or(hull),
+            Scan::Undecided if is_first => return sampled::find(field).await,
+            Scan::Undecided => {}
         }
         before = Some(half);
     }

@@ -37,23 +37,17 @@ const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
 /// Cells in a batch, after which the scan may be left: as many as a field bounds at once.
 const BATCH: usize = 32;
 
-/// Outcome of a scan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ScanOutcome {
+/// The result of a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scan {
     /// There is no surface in the cube.
     Empty,
-    /// The surface in the cube lies in the hull.
-    Inside,
-    /// The surface passes through the faces of the cube: f changes its sign there. The hull is that of its bends, if these are few.
-    Crossing,
+    /// The surface in the cube lies in this box.
+    Inside(Bounds),
+    /// The surface passes through the faces of the cube: f changes its sign there. The box is that of its bends, if these are few.
+    Crossing(Option<Bounds>),
     /// The bounds do not decide it.
     Undecided,
-}
-
-/// The result of a scan: how it ended, and the box around the surface that it met.
-pub(super) struct Scan {
-    pub(super) outcome: ScanOutcome,
-    pub(super) hull: Option<Bounds>,
 }
 
 /// Place of a cell in the grid of its level.
@@ -99,15 +93,11 @@ pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -
         let cells = 1_u32 << depth;
         let level = ScanLevel { lo, size: side / f64::from(cells), cells, depth };
         let kept = visit(field, &level, &places, left).await;
-        if let Some(outcome) = outcome(field, &level, &kept, *left).await {
-            let hull = match outcome {
-                ScanOutcome::Inside => Some(hull(&level, &kept)),
-                ScanOutcome::Crossing => bends(field, level, kept, left).await,
-                ScanOutcome::Empty | ScanOutcome::Undecided => None,
-            };
-            return Scan { outcome, hull };
+        match result(field, &level, &kept, *left).await {
+            None => places = eighths(&kept),
+            Some(Scan::Crossing(_)) => return Scan::Crossing(bends(field, level, kept, left).await),
+            Some(found) => return found,
         }
-        places = eighths(&kept);
     }
     unreachable!("a level of the largest depth is the last")
 }
@@ -119,15 +109,10 @@ fn eighths(cells: &[OpenCell]) -> Vec<Place> {
     cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
 }
 
-/// The outcome of the scan, if a level with these cells is the last one.
-async fn outcome(
-    field: &mut dyn Bounded,
-    level: &ScanLevel,
-    kept: &[OpenCell],
-    left: usize,
-) -> Option<ScanOutcome> {
+/// The result of the scan but for the bends, if a level with these cells is the last one.
+async fn result(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], left: usize) -> Option<Scan> {
     if kept.is_empty() {
-        return Some(ScanOutcome::Empty);
+        return Some(Scan::Empty);
     }
     let is_last = level.depth >= DEPTH || left == 0;
     let is_idle =
@@ -137,13 +122,14 @@ async fn outcome(
             return None;
         }
         let is_crossing = crosses_faces(field, level, kept).await;
-        return Some(if is_crossing { ScanOutcome::Crossing } else { ScanOutcome::Undecided });
+        return Some(if is_crossing { Scan::Crossing(None) } else { Scan::Undecided });
     }
     let share = if is_last { COARSE } else { FINE };
-    if is_fine(level, &hull(level, kept), share) {
-        return Some(ScanOutcome::Inside);
+    let hull = hull(level, kept);
+    if is_fine(level, &hull, share) {
+        return Some(Scan::Inside(hull));
     }
-    is_last.then_some(ScanOutcome::Undecided)
+    is_last.then_some(Scan::Undecided)
 }
 
 /// Whether the cells of a level are at most this share of a box.

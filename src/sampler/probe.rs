@@ -3,6 +3,7 @@
 pub(crate) use crate::field::descent::BATCH;
 
 use crate::field::Field;
+use crate::field::descent::Descent;
 use crate::math::Sym3;
 use glam::Vec3;
 
@@ -68,6 +69,23 @@ impl<'a> Probe<'a> {
         *evaluations += n as u64;
         self.field.gradients(points, &mut value[..n], &mut gradient[..n]);
         (&value[..n], &gradient[..n])
+    }
+
+    /// Moves points onto the surface along the gradient. Returns the unit normal at each that is on it within the limits.
+    pub(crate) fn land_all(
+        &mut self,
+        points: &mut [Vec3],
+        min_gradient: f32,
+        mut limits: Descent,
+        max_steps: u32,
+    ) -> Vec<Option<Vec3>> {
+        let mut landed = Vec::with_capacity(points.len());
+        let (mut normal, mut ok) = ([Vec3::ZERO; BATCH], [false; BATCH]);
+        for chunk in points.chunks_mut(BATCH) {
+            self.land_along_gradient(chunk, &mut normal, &mut ok, min_gradient, &mut limits, max_steps);
+            landed.extend((0..chunk.len()).map(|k| ok[k].then_some(normal[k])));
+        }
+        landed
     }
 
     /// Writes values, gradients and Hessians at `points`, as [`Field::hessians`] does.

@@ -8,14 +8,6 @@ use super::{Crease, Creases, ONE_CORNER};
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
-use glam::DVec3;
-
-/// A plane across an axis.
-#[derive(Clone, Copy)]
-struct Plane {
-    axis: usize,
-    offset: f64,
-}
 
 impl Creases {
     /// The creases in a `wide` box around `bounds`, cut at the faces of that; none if no crease runs to it.
@@ -29,17 +21,16 @@ impl Creases {
         for axis in 0..3 {
             for offset in [lo[axis], hi[axis]] {
                 for curve in core::mem::take(&mut creases.curves) {
-                    creases.cut(probe, curve, Plane { axis, offset }, ONE_CORNER * 0.5 * width);
+                    creases.cut(probe, curve, axis, offset, ONE_CORNER * 0.5 * width);
                 }
             }
         }
         Some(creases)
     }
 
-    /// Adds the pieces into which a plane cuts a curve. What is shorter than `slack` is none.
-    fn cut(&mut self, probe: &mut Probe, curve: Crease, plane: Plane, slack: f64) {
-        let Plane { axis, offset } = plane;
-        let third = Third::Plane { normal: DVec3::AXES[axis], offset };
+    /// Adds the pieces into which the plane across an axis at `offset` cuts a curve. What is shorter than `slack` is none.
+    fn cut(&mut self, probe: &mut Probe, curve: Crease, axis: usize, offset: f64, slack: f64) {
+        let third = Third::Plane { axis, offset };
         let mut pieces =
             vec![Crease { points: Vec::new(), corners: [curve.corners[0], None], ..curve.clone() }];
         let first = curve.is_closed.then(|| curve.points[0]);

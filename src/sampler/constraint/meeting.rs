@@ -126,7 +126,7 @@ pub(super) fn common_point(
         let [first, second] = branches.map(|b| branch(probe, b, p));
         let third = match third {
             Third::Branch(b) => branch(probe, b, p),
-            Third::Plane { normal, offset } => (normal.dot(p) - offset, normal),
+            Third::Plane { axis, offset } => (p[axis] - offset, DVec3::AXES[axis]),
         };
         let (step, volume) = step_to_corner([first, second, third]);
         (volume > FADED * FADED).then_some((step, ()))
@@ -139,6 +139,6 @@ pub(super) fn common_point(
 pub(super) enum Third {
     /// Another branch.
     Branch(u32),
-    /// The plane of the points p with `normal` · p = `offset`.
-    Plane { normal: DVec3, offset: f64 },
+    /// The plane across an axis at this coordinate.
+    Plane { axis: usize, offset: f64 },
 }

@@ -216,21 +216,20 @@ pub(in super::super) fn add(
     }
 }
 
+/// Every two points of a curve that follow each other, the last and the first among them.
+fn sides(curve: &Loop) -> impl Iterator<Item = [&LinkPoint; 2]> {
+    (0..curve.len()).map(|k| [&curve[k], &curve[(k + 1) % curve.len()]])
+}
+
 /// The unit vector along the mean of something over a curve.
 fn mean(curve: &Loop, of: impl Fn(&LinkPoint) -> DVec3) -> DVec3 {
-    let sides = (0..curve.len()).map(|k| {
-        let (a, b) = (&curve[k], &curve[(k + 1) % curve.len()]);
-        (of(a) + of(b)) * a.direction.distance(b.direction)
-    });
-    sides.sum::<DVec3>().normalize_or_zero()
+    let weighted = sides(curve).map(|[a, b]| (of(a) + of(b)) * a.direction.distance(b.direction));
+    weighted.sum::<DVec3>().normalize_or_zero()
 }
 
 /// Largest curvature of a nappe across its rays, times the distance from the tip: how fast the normal turns along the link.
 fn bend(curve: &Loop) -> f64 {
-    let turns = (0..curve.len()).map(|k| {
-        let (a, b) = (&curve[k], &curve[(k + 1) % curve.len()]);
-        a.normal.distance(b.normal) / a.direction.distance(b.direction)
-    });
+    let turns = sides(curve).map(|[a, b]| a.normal.distance(b.normal) / a.direction.distance(b.direction));
     turns.fold(0.0, f64::max)
 }
 
@@ -244,20 +243,15 @@ fn spread(link: &[Loop]) -> DMat3 {
     sum * (1.0 / count)
 }
 
-/// The directions of a curve, with the first one again at its end.
-fn closed(curve: &Loop) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-    (0..curve.len()).map(|k| [curve[k].direction, curve[(k + 1) % curve.len()].direction])
-}
-
 /// Length of a curve, in radii of its sphere.
 fn length(curve: &Loop) -> f64 {
-    closed(curve).map(|[a, b]| a.distance(b)).sum()
+    sides(curve).map(|[a, b]| a.direction.distance(b.direction)).sum()
 }
 
 /// The direction at a share of the way along a curve.
 fn along(curve: &Loop, share: f64) -> DVec3 {
     let mut left = share * length(curve);
-    for [a, b] in closed(curve) {
+    for [a, b] in sides(curve).map(|side| side.map(|point| point.direction)) {
         let side = a.distance(b);
         if left < side {
             return a.lerp(b, left / side);

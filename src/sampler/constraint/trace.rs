@@ -226,13 +226,13 @@ impl Walk<'_, '_> {
     fn end_at_box(&mut self, here: DVec3, outside: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
         let way = outside - here;
         let mut share = 1.0;
-        let mut plane = Third::Plane { normal: DVec3::X, offset: self.bounds.max[0] };
-        for (axis, normal) in DVec3::AXES.into_iter().enumerate() {
+        let mut plane = Third::Plane { axis: 0, offset: self.bounds.max[0] };
+        for axis in 0..3 {
             for offset in [self.bounds.min[axis], self.bounds.max[axis]] {
                 let t = (offset - here[axis]) / way[axis];
                 let is_left = (outside[axis] - offset) * (here[axis] - offset) <= 0.0;
                 if is_left && t < share {
-                    (share, plane) = (t, Third::Plane { normal, offset });
+                    (share, plane) = (t, Third::Plane { axis, offset });
                 }
             }
         }

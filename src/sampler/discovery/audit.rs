@@ -180,8 +180,7 @@ impl Audit {
         if self.is_on_named(&mut prover, from, followed) {
             return;
         }
-        let Piece { reach, goes_on } = follow(prover.field, factor, exact, followed);
-        self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
+        self.without.push(follow(prover.field, factor, exact, followed));
         self.named.push(seed);
     }
 
@@ -222,18 +221,9 @@ fn on_factor(
     near.iter().zip(known).filter_map(index_if_on).collect()
 }
 
-/// Extent of the part of the surface around a point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
-    /// Largest distance from the point.
-    pub(crate) reach: f64,
-    /// Whether the part of the surface goes on beyond the distance to which it was followed.
-    pub(crate) goes_on: bool,
-}
-
 /// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight
 /// half-planes through the normal.
-pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Piece {
+pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Unsampled {
     /// Eight lanes. The reach of a path half-way between two axes of an ellipse is at least 0.92 of the longer one: cos 22.5°.
     const PATHS: usize = 8;
     /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of 1 and 3 takes 200. With half as
@@ -289,13 +279,14 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
             farthest[k] = farthest[k].max(distance);
         }
         if reach_of(farthest) > most {
-            return Piece { reach: most, goes_on: true };
+            return Unsampled { position: from.to_array(), reach: most, goes_on: true };
         }
         if !is_closed.contains(&false) {
             break;
         }
     }
-    Piece { reach: reach_of(farthest), goes_on: is_closed.contains(&false) }
+    let goes_on = is_closed.contains(&false);
+    Unsampled { position: from.to_array(), reach: reach_of(farthest), goes_on }
 }
 
 /// Whether one of the particles with these indices lies on the small piece around a seed that reaches so far.

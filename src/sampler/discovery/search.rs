@@ -11,7 +11,7 @@ use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
 use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
 use crate::sampler::discovery::singular::Singular;
-use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::probe::Probe;
 use crate::sampler::projection::{MAX_NEWTON_STEPS, Tolerance};
 use crate::sampler::sheet::{PointPair, SheetRule};
 use glam::{DVec3, Vec3};
@@ -108,23 +108,15 @@ impl ComponentSearch {
     /// Projects the witnesses onto the surface as single precision computes it.
     fn project(&mut self, probe: &mut Probe, starts: &[Witness], bounds: &Bounds, tolerance: Tolerance) {
         let reach = self.octree.region.margin as f32 + 16.0 * tolerance.residual;
-        let mut normal = [Vec3::ZERO; BATCH];
-        let mut ok = [false; BATCH];
-        for starts in starts.chunks(BATCH) {
-            let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
-            probe.land_along_gradient(
-                &mut points,
-                &mut normal,
-                &mut ok,
-                tolerance.min_gradient,
-                &mut Descent { residual: tolerance.residual, reach, trust: 0.0 },
-                MAX_NEWTON_STEPS,
-            );
-            for (k, &position) in points.iter().enumerate() {
-                let Witness { position: exact, factor } = starts[k];
-                if ok[k] && bounds.contains(position) {
-                    self.points.push(Seed { position, normal: normal[k], exact, factor });
-                } else {
+        let limits = Descent { residual: tolerance.residual, reach, trust: 0.0 };
+        let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
+        let landed = probe.land_all(&mut points, tolerance.min_gradient, limits, MAX_NEWTON_STEPS);
+        for ((&Witness { position: exact, factor }, position), normal) in
+            starts.iter().zip(points).zip(landed)
+        {
+            match normal.filter(|_| bounds.contains(position)) {
+                Some(normal) => self.points.push(Seed { position, normal, exact, factor }),
+                None => {
                     self.first_lost = if self.lost == 0 { exact } else { self.first_lost };
                     self.lost += 1;
                 }

@@ -265,30 +265,16 @@ fn project(
     spacing: f32,
     out: &mut Survey,
 ) {
-    let coarse = Tolerance {
-        residual: (1e-4 * spacing).max(ulps(bounds)),
-        ..tolerance(0.0, ResidualLimits::UNLIMITED, out.gradient_scale)
-    };
-    let mut normal = [Vec3::ZERO; BATCH];
-    let mut ok = [false; BATCH];
-    for (chunk, areas) in start.chunks_mut(BATCH).zip(areas.chunks(BATCH)) {
-        probe.land_along_gradient(
-            chunk,
-            &mut normal,
-            &mut ok,
-            coarse.min_gradient,
-            &mut Descent { residual: coarse.residual, reach: 2.0 * spacing, trust: 0.0 },
-            MAX_NEWTON_STEPS,
-        );
-        for i in 0..chunk.len() {
-            if ok[i] && bounds.contains(chunk[i]) {
-                out.position.push(chunk[i]);
-                out.normal.push(normal[i]);
-                out.weight.push(areas[i].unwrap_or(0.0));
-            }
+    out.residual = (1e-4 * spacing).max(ulps(bounds));
+    let limits = Descent { residual: out.residual, reach: 2.0 * spacing, trust: 0.0 };
+    let landed = probe.land_all(start, out.tolerance().min_gradient, limits, MAX_NEWTON_STEPS);
+    for ((&position, area), normal) in start.iter().zip(areas).zip(landed) {
+        if let Some(normal) = normal
+            && bounds.contains(position)
+        {
+            out.push(OrientedPoint { position, normal }, area.unwrap_or(0.0));
         }
     }
-    out.residual = coarse.residual;
 }
 
 /// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient
@@ -306,6 +292,13 @@ fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[Option<f32>]) -> f
 }
 
 impl Survey {
+    /// Adds a point that stands for an area.
+    fn push(&mut self, OrientedPoint { position, normal }: OrientedPoint, area: f32) {
+        self.position.push(position);
+        self.normal.push(normal);
+        self.weight.push(area);
+    }
+
     /// Limits for the residual of particles on this surface.
     pub(crate) fn residual_limits(&self) -> ResidualLimits {
         /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
@@ -346,9 +339,7 @@ impl Survey {
             let most = bounds.diagonal() * bounds.diagonal();
             // The search finds two points on each sphere, the highest and the lowest.
             self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
-            self.position.push(position);
-            self.normal.push(normal);
-            self.weight.push(0.0);
+            self.push(OrientedPoint { position, normal }, 0.0);
         }
         sort_numbers(&mut slopes);
         self.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(self.gradient_scale);
@@ -379,7 +370,7 @@ impl Survey {
         const LEAST_COSINE: f32 = 0.5;
         let Tolerance { residual, min_gradient, .. } = self.tolerance();
         // One more step from there.
-        let limits = &mut Descent { trust: residual, ..Descent::default() };
+        let limits = Descent { trust: residual, ..Descent::default() };
         for _ in 0..LINES {
             let mut share = || f64::from(random.next_u32()) / 4_294_967_296.0;
             let [a, b] =
@@ -394,18 +385,12 @@ impl Survey {
                 if !(f[0].is_finite() && f[1].is_finite()) || (f[0] <= 0.0) == (f[1] <= 0.0) {
                     continue;
                 }
-                let (mut point, mut normal, mut ok) =
-                    ([p[0].lerp(p[1], f[0] / (f[0] - f[1]))], [Vec3::ZERO], [false]);
-                probe.land_along_gradient(
-                    &mut point,
-                    &mut normal,
-                    &mut ok,
-                    min_gradient,
-                    limits,
-                    MAX_NEWTON_STEPS,
-                );
-                let ([position], [normal]) = (point, normal);
-                if ok[0] && bounds.contains(position) && normal.dot(along).abs() >= LEAST_COSINE {
+                let mut place = [p[0].lerp(p[1], f[0] / (f[0] - f[1]))];
+                let landed = probe.land_all(&mut place, min_gradient, limits, MAX_NEWTON_STEPS);
+                if let (&[Some(normal)], [position]) = (&landed[..], place)
+                    && bounds.contains(position)
+                    && normal.dot(along).abs() >= LEAST_COSINE
+                {
                     return Some(OrientedPoint { position, normal });
                 }
             }
@@ -435,6 +420,11 @@ const SAMPLES: usize = 256;
 /// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets are told apart.
 const NOISE: f32 = UNRESOLVED[0] as f32;
 
+/// At most so many of some values, spread over all of them.
+fn selection<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
+    all.iter().step_by(all.len().div_ceil(most).max(1))
+}
+
 /// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
 pub(super) fn ulps(bounds: &Bounds) -> f32 {
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
@@ -462,8 +452,7 @@ fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -
     /// Largest distance, in grid spacings, at which the tolerance of particles depends on another sheet: a hundred times that to which
     /// the survey's points land.
     const MOST: f32 = 0.01;
-    let stride = out.position.len().div_ceil(SAMPLES).max(1);
-    let points: Vec<DVec3> = out.position.iter().step_by(stride).map(|p| p.as_dvec3()).collect();
+    let points: Vec<DVec3> = selection(&out.position, SAMPLES).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
     out.nearness = found;
     if let Some(Nearness { slope, .. }) = out.nearness {
@@ -478,31 +467,24 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
     let residual = out.residual_limits().residual(f32::INFINITY);
     out.residual = residual.min(out.residual);
     let least = out.tolerance().min_gradient;
-    let mut is_landed = [false; BATCH];
-    let mut kept = 0;
-    for first in (0..out.position.len()).step_by(BATCH) {
-        let batch = first..out.position.len().min(first + BATCH);
-        let limits = &mut Descent { residual: out.residual, reach: f32::INFINITY, trust: 0.0 };
-        let (points, normals) = (&mut out.position[batch.clone()], &mut out.normal[batch.clone()]);
-        probe.land_along_gradient(points, normals, &mut is_landed, least, limits, STEPS);
-        for k in batch.clone().filter(|k| is_landed[k - first]) {
-            out.position[kept] = out.position[k];
-            out.normal[kept] = out.normal[k];
-            out.weight[kept] = out.weight[k];
-            kept += 1;
+    let limits = Descent { residual: out.residual, ..Descent::default() };
+    let mut points = core::mem::take(&mut out.position);
+    let landed = probe.land_all(&mut points, least, limits, STEPS);
+    let weights = core::mem::take(&mut out.weight);
+    out.normal.clear();
+    for ((position, weight), normal) in points.into_iter().zip(weights).zip(landed) {
+        if let Some(normal) = normal {
+            out.push(OrientedPoint { position, normal }, weight);
         }
     }
-    out.position.truncate(kept);
-    out.normal.truncate(kept);
-    out.weight.truncate(kept);
 }
 
 /// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there
 /// may be another sheet.
 fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
-    let stride = survey.position.len().div_ceil(RESOLUTION_SAMPLES).max(1);
     let (mut same, mut seen) = (0, 0);
-    for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
+    let normals = selection(&survey.normal, RESOLUTION_SAMPLES);
+    for (&p, &n) in selection(&survey.position, RESOLUTION_SAMPLES).zip(normals) {
         let mut is_same_at = |d: f32| {
             let (value, _) = probe.gradients(&[p + n * d, p - n * d]);
             value[0] * value[1] > 0.0
@@ -526,24 +508,14 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
     /// Distances, each half the one before, down to 10⁻⁵ of the grid's spacing. One of them lies between any two sheets of which the
     /// farther one is twice as far.
     const DISTANCES: usize = 14;
-    let stride = survey.position.len().div_ceil(SAMPLES).max(1);
     let distances: [f32; DISTANCES] = core::array::from_fn(|k| LARGEST * spacing / (1_u32 << k) as f32);
     let mut least = f32::INFINITY;
-    let selected = survey.position.iter().copied().zip(survey.normal.iter().copied()).step_by(stride);
-    let (mut points, mut normals): (Vec<Vec3>, Vec<Vec3>) = selected.unzip();
+    let mut points: Vec<Vec3> = selection(&survey.position, SAMPLES).copied().collect();
     // The points may be as far from their sheets as those are from each other. One that cannot come nearer tells nothing.
-    let mut ok = [false; SAMPLES];
     let limits = Descent { residual: 2.0 * survey.resolution, reach: survey.residual, trust: 0.0 };
-    for first in (0..points.len()).step_by(BATCH) {
-        let batch = first..points.len().min(first + BATCH);
-        let (normals, ok) = (&mut normals[batch.clone()], &mut ok[batch.clone()]);
-        let least = survey.tolerance().min_gradient;
-        probe.land_along_gradient(&mut points[batch], normals, ok, least, &mut { limits }, MAX_NEWTON_STEPS);
-    }
-    for (k, (&p, &n)) in points.iter().zip(&normals).enumerate() {
-        if !ok[k] {
-            continue;
-        }
+    let landed = probe.land_all(&mut points, survey.tolerance().min_gradient, limits, MAX_NEWTON_STEPS);
+    for (p, normal) in points.into_iter().zip(landed) {
+        let Some(n) = normal else { continue };
         let mut nearest = [f32::INFINITY; 2];
         let mut is_between = false;
         for (side, nearest) in [1.0, -1.0].into_iter().zip(&mut nearest) {
@@ -567,10 +539,7 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
 
 /// Upper quartile of the distance between the surface in single and in double precision, doubled.
 fn rounding(probe: &mut Probe, points: &[Vec3]) -> f32 {
-    let stride = points.len().div_ceil(RESOLUTION_SAMPLES).max(1);
-    let mut distance: Vec<f32> = points
-        .iter()
-        .step_by(stride)
+    let mut distance: Vec<f32> = selection(points, RESOLUTION_SAMPLES)
         .filter_map(|&p| {
             let (value, gradient) = probe.gradient(p);
             let exact = probe.field.jet(p.as_dvec3());
