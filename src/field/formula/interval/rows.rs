@@ -86,6 +86,18 @@ impl<const N: usize> Row<N> {
         out
     }
 
+    /// Product with an exact number.
+    pub(super) fn scale(&self, factor: f64) -> Self {
+        let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
+        Self::bounds(
+            |k| {
+                let (p, q) = (product(self.lo[k], factor), product(self.hi[k], factor));
+                (down(least(p, q)), up(greatest(p, q)))
+            },
+            flags,
+        )
+    }
+
     /// [`NONZERO`] if box `k` certainly has no value 0, else no flag.
     fn nonzero(&self, k: usize) -> u8 {
         self.flags[k] & NONZERO | if self.lo[k] > 0.0 || self.hi[k] < 0.0 { NONZERO } else { 0 }
