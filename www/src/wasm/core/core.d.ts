@@ -57,8 +57,8 @@ export class Core {
      */
     exact_positions(from: number): Float64Array<ArrayBuffer>;
     /**
-     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
-     * it is known, nothing before. While a slider moves the box `only_grows`.
+     * Finds the box of the next run with these `Settings` and the creases in it, up to `budget` slices of the work: an
+     * `Answer` with `FieldAnswer` once it is known, nothing before. While a slider moves the box `only_grows`.
      */
     fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
     /**
@@ -150,7 +150,8 @@ export class Core {
     set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**
      * Changes the field to a model from points: the solved system as `Points.field` gives it, what `Points.info` says of it,
-     * `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     * `SolvedModel`, and a `FieldRequest`, of which the box and the pulls count; to an `Answer` with `FieldAnswer`. After an
+     * error the last good field stays.
      */
     set_points(system: Uint8Array | number[], about: SolvedModel, request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
     /**

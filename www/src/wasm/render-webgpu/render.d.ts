@@ -71,9 +71,11 @@ export class Renderer {
     /**
      * Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
      *
-     * `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
-     * `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
-     * `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
+     * `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for
+     * discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s`
+     * · `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative
+     * for none · `box` {min, max, colour} or null · `plane` {normal, offset} that hides what its normal points to, or null ·
+     * `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
      *
      * # Errors
      *
@@ -100,9 +102,9 @@ export class Renderer {
     /**
      * Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
      *
-     * Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level of 4294967295 stands for none, and such a
-     * particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of `draw`;
-     * -Infinity shows them at once.
+     * Three numbers per particle in `positions` and `normals`; a negative radius is that of a dot that faces the eye; a level
+     * of 4294967295 stands for none, and such a particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear
+     * at `birth_s` on the clock of `draw`; -Infinity shows them at once.
      *
      * # Errors
      *
