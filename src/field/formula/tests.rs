@@ -112,6 +112,7 @@ fn periods_are_found_along_each_axis() {
     // Half a period and a third of one come together after a whole one; phases and other axes change nothing.
     close("sin(2x + y)^2 + exp(cos(3x - 1)) = 1", [Some(TAU), Some(TAU), Some(0.0)]);
     close("sin(-2 pi x) = max(cos(x - x + y), 0)", [Some(1.0), Some(TAU), Some(0.0)]);
+    close("sin(sqrt(2) x) = cos(y/3)", [Some(TAU / core::f64::consts::SQRT_2), Some(3.0 * TAU), Some(0.0)]);
     // A parameter counts by its value, here 1.
     close("sin(k x) + sin(y) + sin(z)", [Some(TAU); 3]);
     // None of these come again: a plane, a factor that is not a number, a frequency that changes, incommensurate ones.
