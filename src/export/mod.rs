@@ -86,7 +86,7 @@ pub struct Column {
     pub name: &'static str,
     /// Type of the values.
     pub kind: ColumnKind,
-    /// What the column is there for.
+    /// The particles that have the column.
     #[serde(skip)]
     pub(crate) presence: Presence,
     /// Returns the value of a particle, given by its index.
@@ -101,7 +101,7 @@ impl Column {
     }
 }
 
-/// What a column is there for: the particles of every run, or of some.
+/// The particles that have a column: those of every run, or of some runs alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Presence {
     /// All particles.

@@ -1,4 +1,4 @@
-//! What both kinds of front keep of a generation level, and what each of them does in its own way.
+//! The state of a generation level, which both kinds of front share, and the trait of the steps in which they differ.
 
 use crate::differential::Curvature;
 use crate::math::{Bounds, tangent_frame};
@@ -215,7 +215,7 @@ impl ProvisionalChildren {
     }
 }
 
-/// What a kind of front does in its own way. The rest is the same for both, and is done by [`Front`](super::Front).
+/// The steps of a level in which uniform and adaptive fronts differ. [`Front`](super::Front) does the steps that are the same for both.
 pub(super) trait Placing {
     /// Forgets an earlier run, and prepares the grids.
     fn reset(&mut self, level: &mut FrontLevel, setup: &FrontSetup);
