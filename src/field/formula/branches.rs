@@ -262,17 +262,23 @@ impl Base {
 const MAX_PRODUCTS: usize = 4;
 
 /// The node of a function with the signs, and so with the zeros, of node `root`, in which products that decide them are choices: ab has the
-/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`.
-pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id {
+/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`. Products stay as they are
+/// if `is_told` says so of their factors.
+pub(super) fn by_signs(
+    graph: &mut Graph,
+    root: Id,
+    choices: &mut Vec<Id>,
+    is_told: fn(&mut Graph, Id, Id) -> bool,
+) -> Id {
     match graph.node(root) {
         Node::Unary(Unary::Neg, u) => {
-            let u = by_signs(graph, u, choices);
+            let u = by_signs(graph, u, choices, is_told);
             graph.neg(u)
         }
         Node::Binary(operation @ (Binary::Min | Binary::Max | Binary::Mul), a, b) => {
-            let [a, b] = [a, b].map(|id| by_signs(graph, id, choices));
-            let is_told = operation == Binary::Mul && choices.len() < 3 * MAX_PRODUCTS;
-            if !is_told || graph.is_uniform(a) || graph.is_uniform(b) {
+            let [a, b] = [a, b].map(|id| by_signs(graph, id, choices, is_told));
+            let is_product = operation == Binary::Mul && choices.len() < 3 * MAX_PRODUCTS;
+            if !is_product || graph.is_uniform(a) || graph.is_uniform(b) || !is_told(graph, a, b) {
                 return graph.binary(operation, a, b);
             }
             let (minus_a, minus_b) = (graph.neg(a), graph.neg(b));
@@ -283,6 +289,18 @@ pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id
         }
         _ => root,
     }
+}
+
+/// Whether the zeros of two functions may cross. They do not where both are products of functions each of which differs by a number from
+/// those of the other, as those of concentric spheres do.
+fn may_cross(graph: &mut Graph, a: Id, b: Id) -> bool {
+    let [a, b] = [a, b].map(|id| graph.factors(id));
+    a.iter().any(|&a| {
+        b.iter().any(|&b| {
+            let difference = graph.combination([(a, 1.0), (b, -1.0)]);
+            !graph.is_uniform(difference)
+        })
+    })
 }
 
 /// The branches of f that have been met, with their numbers. There are none of a formula without choices.
@@ -318,7 +336,7 @@ impl Branches {
     /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products.
     pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
         let (mut products, mut graph) = (Vec::new(), f.graph.clone());
-        let root = by_signs(&mut graph, f.root, &mut products);
+        let root = by_signs(&mut graph, f.root, &mut products, may_cross);
         (!products.is_empty()).then(|| Self::of(&graph, root, &products, values))
     }
 

@@ -9,8 +9,8 @@
 
 use super::branches::{Base, BranchPart, Branches, ChoiceCondition, Holds, NodeRole, taken};
 use super::compiled::Compiled;
-use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
-use super::operations::{Binary, Unary};
+use super::graph::{Id, MIN_BLEND_WIDTH, Node};
+use super::operations::Unary;
 use super::{interval, scalar};
 use crate::math::Bounds;
 use crate::math::newton::step_to_curve;
@@ -128,7 +128,9 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
     for &choice in choices {
         let tied = match base.graph.node(choice) {
             Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
-            Node::Binary(_, a, b) | Node::Smin(a, b, _) => vec![a, b, middle(&mut base.graph, a, b)],
+            Node::Binary(_, a, b) | Node::Smin(a, b, _) => {
+                vec![a, b, base.graph.combination([(a, 0.5), (b, 0.5)])]
+            }
             _ => Vec::new(),
         };
         let roots = tied.into_iter().map(|tied| base.root_with(part, choice, tied)).collect();
@@ -167,27 +169,6 @@ impl Base {
         }
         map[part.root as usize]
     }
-}
-
-/// The node of half of a sum, in which what both share or what cancels stands once.
-fn middle(graph: &mut Graph, a: Id, b: Id) -> Id {
-    let mut shares = vec![0.0; graph.len()];
-    let mut open = vec![(a, 0.5), (b, 0.5)];
-    while let Some((id, share)) = open.pop() {
-        match graph.node(id) {
-            Node::Binary(Binary::Add, u, v) => open.extend([(u, share), (v, share)]),
-            Node::Binary(Binary::Sub, u, v) => open.extend([(u, share), (v, -share)]),
-            Node::Unary(Unary::Neg, u) => open.push((u, -share)),
-            _ => shares[id as usize] += share,
-        }
-    }
-    let mut sum = graph.constant(0.0);
-    for (id, share) in (0..).zip(shares).filter(|&(_, share)| share != 0.0) {
-        let share = graph.constant(share);
-        let term = graph.mul(id, share);
-        sum = graph.add(sum, term);
-    }
-    sum
 }
 
 /// Memory that the cells of a search use again.

@@ -139,6 +139,35 @@ impl Graph {
         self.axes(id) == 0
     }
 
+    /// The node of a weighted sum, in which what its terms share or what cancels stands once.
+    pub(super) fn combination(&mut self, terms: [(Id, f64); 2]) -> Id {
+        let mut shares = vec![0.0; self.len()];
+        let mut open = Vec::from(terms);
+        while let Some((id, share)) = open.pop() {
+            match self.node(id) {
+                Node::Binary(Binary::Add, u, v) => open.extend([(u, share), (v, share)]),
+                Node::Binary(Binary::Sub, u, v) => open.extend([(u, share), (v, -share)]),
+                Node::Unary(Unary::Neg, u) => open.push((u, -share)),
+                _ => shares[id as usize] += share,
+            }
+        }
+        let mut sum = self.constant(0.0);
+        for (id, share) in (0..).zip(shares).filter(|&(_, share)| share != 0.0) {
+            let share = self.constant(share);
+            let term = self.mul(id, share);
+            sum = self.add(sum, term);
+        }
+        sum
+    }
+
+    /// The functions of which a node is the product; the node alone if it is none.
+    pub(super) fn factors(&self, id: Id) -> Vec<Id> {
+        match self.node(id) {
+            Node::Binary(Binary::Mul, a, b) => [self.factors(a), self.factors(b)].concat(),
+            _ => vec![id],
+        }
+    }
+
     /// The nodes that `outputs` need, in the order of the graph.
     pub(super) fn needed_by(&self, outputs: &[Id]) -> Vec<Id> {
         let mut needed = vec![false; self.nodes.len()];

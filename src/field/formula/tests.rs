@@ -1,5 +1,6 @@
 //! Tests of the compiled form.
 
+use super::branches::Branches;
 use super::graph::Graph;
 use super::operations::{Binary, Unary};
 use super::program::{Op, Program};
@@ -121,4 +122,21 @@ fn periods_are_found_along_each_axis() {
     close("sin(x y) = z - z", [None, None, Some(0.0)]);
     close("sin(x) + sin(sqrt(2) x) + sin(1.41x) = 0", [None, Some(0.0), Some(0.0)]);
     close("sin(x^2) = 0", [None, Some(0.0), Some(0.0)]);
+}
+
+#[test]
+fn products_are_taken_apart_where_their_factors_may_cross() {
+    let sphere = |x: f64, radius: f64| format!("((x - {x})^2 + y^2 + (z - a)^2 - {radius})");
+    for (factors, may_cross) in [
+        (vec![sphere(0.5, 1.0), sphere(0.5, 1.001)], false),
+        (vec![sphere(0.5, 1.0), sphere(0.5, 1.001), sphere(0.5, 2.0)], false),
+        (vec![sphere(0.5, 1.0), sphere(0.501, 1.0)], true),
+        (vec![sphere(0.5, 1.0), sphere(0.5, 2.0), sphere(0.501, 1.0)], true),
+        (vec!["(z - sin(x))".into(), "(sin(x) - z + b)".into()], true),
+        (vec!["(z - sin(x))".into(), "(z - sin(x) - b)".into()], false),
+    ] {
+        let text = factors.join("*");
+        let field = compiled(&text);
+        assert_eq!(Branches::of_factors(&field.compiled, &field.values).is_some(), may_cross, "{text}");
+    }
 }
