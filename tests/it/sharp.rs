@@ -2,19 +2,29 @@
 
 use crate::solid_table::{SOLIDS, Solid};
 use glam::DVec3;
-use marching_particles::{Formula, Method, Sample, Settings, sample};
+use marching_particles::{Formula, Method, Sample, Sampling, Settings, sample};
 
 #[test]
-fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges() {
-    for Solid { name, formula, euler, volume: exact, creases } in SOLIDS {
-        let uniform = [1_500, 6_000].map(Settings::with_count);
-        let refined = [uniform[0], uniform[1], uniform[1].adaptive()].map(Settings::refined);
-        let runs = uniform.into_iter().chain(refined);
-        for settings in runs {
-            let Settings { count, method, sampling, .. } = settings;
+fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_defects() {
+    let [few, many] = [1_500, 6_000].map(Settings::with_count);
+    for (Solid { name, formula, euler, volume: exact, creases }, settings) in
+        SOLIDS.into_iter().flat_map(|solid| [few, many, many.adaptive()].map(|settings| (solid, settings)))
+    {
+        let runs = [settings, settings.refined()].map(|settings| {
             let field = Formula::parse(formula).expect("a formula");
-            let sample = sample(field, &settings).expect("a sample");
-            let name = format!("{name}, {count} particles, {method:?}, {sampling:?}");
+            sample(field, &settings).expect("a sample")
+        });
+        let Settings { count, sampling, .. } = settings;
+        let name = format!("{name}, {count} particles, {sampling:?}");
+        // With few particles chance decides; the faces of the octahedron have no defects.
+        let [front, refined] = runs.each_ref().map(six);
+        assert!(count == 1_500 || refined > front || refined == 1.0, "{name}: {refined} after {front}");
+        for (sample, method) in runs.iter().zip([Method::Front, Method::Refined]) {
+            // The mesh of a front whose sizes differ may be open beside a crease.
+            if method == Method::Front && sampling == Sampling::Adaptive {
+                continue;
+            }
+            let name = format!("{name}, {method:?}");
             assert_eq!(sample.report().growth.refined_levels.is_some(), method == Method::Refined, "{name}");
             let components = &sample.mesh().topology.components;
             assert_eq!(components.len(), 1, "{name}");
@@ -53,20 +63,4 @@ fn particles_on_a_crease_lie_on_it() {
 /// Share of the particles with six neighbours.
 fn six(sample: &Sample) -> f64 {
     sample.report().measures.quality.as_ref().expect("figures").order.six
-}
-
-#[test]
-fn a_refined_solid_has_fewer_defects_than_its_front() {
-    for Solid { name, formula, .. } in SOLIDS {
-        let settings = Settings::with_count(6_000);
-        for settings in [settings, settings.adaptive()] {
-            let [front, refined] = [settings, settings.refined()].map(|settings| {
-                sample(Formula::parse(formula).expect("a formula"), &settings).expect("a sample")
-            });
-            // The faces of the octahedron have none.
-            let is_better = six(&refined) > six(&front) || six(&refined) == 1.0;
-            let sampling = settings.sampling;
-            assert!(is_better, "{name}, {sampling:?}: {} after {}", six(&refined), six(&front));
-        }
-    }
 }

@@ -47,7 +47,7 @@ fn neighbours_never_differ_by_more_than_the_grading_allows() {
         for (radius_law, grading, relax_steps) in
             [(LAWS[0], 0.2, 10), (LAWS[1], 0.1, 3), (LAWS[2], 0.2, 3), (LAWS[0], 0.1, 0)]
         {
-            let settings = settings!(radius_law, grading; ..adaptive(4_000, relax_steps));
+            let settings = settings!(radius_law, grading; ..adaptive(2_000, relax_steps));
             let sampler = of_gallery(surface.id, &settings);
             let particles = sampler.particles();
             let neighbours = pairs(particles, 1.15);
@@ -102,7 +102,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
 fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface() {
     for surface in SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_law in LAWS {
-            let settings = settings!(radius_law; ..adaptive(4_000, 10));
+            let settings = settings!(radius_law; ..adaptive(2_000, 10));
             let sampler = of_gallery(surface.id, &settings);
             let energy = sampler.energy();
             assert_eq!(energy.len(), 11, "{} {radius_law:?}", surface.id);

@@ -3,6 +3,7 @@
 use core::f64::consts::PI;
 
 /// A solid, with what is known of it.
+#[derive(Clone, Copy)]
 pub(crate) struct Solid {
     pub(crate) name: &'static str,
     pub(crate) formula: &'static str,
