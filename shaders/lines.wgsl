@@ -22,7 +22,7 @@ struct Edge {
 struct Piece {
     @location(0) start: vec4<f32>,
     @location(1) to: vec4<f32>,
-    @location(5) colour: vec4<f32>,
+    @location(2) colour: vec4<f32>,
 }
 
 // Position of end `end` (0 or 1) of edge `edge` (0 to 11); there are four edges along each axis.

@@ -1,14 +1,13 @@
 //! Layout of the instance records, one per particle, one per face of a mesh and one per piece of a crease.
 //!
-//! The pipelines are built from the tables of attributes, and a test compares the tables with the WGSL.
+//! The pipelines are built from the lists of formats, and a test compares the lists with the WGSL.
 
 use bytemuck::{Pod, Zeroable};
-use core::mem::offset_of;
 
 /// Instance record of a particle without its colour: 28 bytes.
 ///
-/// Colours have a buffer of their own (see [`COLOUR_STRIDE`]). A change of colours then uploads 4 bytes per particle
-/// instead of 32, and no copy of the records has to be kept.
+/// Colours have a buffer of their own, of 4 bytes each: sRGB red, green, blue and opacity of 8 bits each. A change of colours then
+/// uploads 4 bytes per particle instead of 32, and no copy of the records has to be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
@@ -24,9 +23,6 @@ pub struct Record {
     /// Generation level, or −1 for a particle without one, which is always drawn. Single precision is exact up to 2²⁴.
     pub level: f32,
 }
-
-/// Bytes of a colour: sRGB red, green, blue and opacity of 8 bits each.
-pub const COLOUR_STRIDE: usize = 4;
 
 impl Record {
     /// Packs a particle. `level` is `u32::MAX` for a particle without a level.
@@ -81,20 +77,6 @@ impl FaceRecord {
         }
     }
 }
-
-/// Instance record of a piece of a crease without its colour: 32 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct LineRecord {
-    /// World position of each end, and the repulsion radius of the particle there.
-    pub ends: [[f32; 4]; 2],
-}
-
-/// Vertex attributes of a [`LineRecord`].
-pub const LINE_ATTRIBUTES: [Attribute; 2] = [
-    Attribute { location: 0, offset: 0, format: AttributeFormat::Float32x4 },
-    Attribute { location: 1, offset: 16, format: AttributeFormat::Float32x4 },
-];
 
 /// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point
 /// Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
@@ -157,7 +139,7 @@ impl AttributeFormat {
 
     /// Size in the buffer, in bytes.
     #[must_use]
-    pub const fn size(self) -> usize {
+    pub const fn size(self) -> u64 {
         match self {
             Self::Float32x3 => 12,
             Self::Float32x4 => 16,
@@ -166,63 +148,33 @@ impl AttributeFormat {
     }
 }
 
-/// A per-instance vertex attribute.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Attribute {
-    /// `@location` in the shaders.
-    pub location: u32,
-    /// Byte offset in its record.
-    pub offset: usize,
-    /// Format in the buffer.
-    pub format: AttributeFormat,
+/// Formats of the vertex attributes of the two buffers of an instance: those of the fields of its record in order, and those of its
+/// colours. They have the `@location`s from 0 on, without a gap from the one buffer to the other.
+pub type InstanceFormats = [&'static [AttributeFormat]; 2];
+
+use AttributeFormat::{Float32, Float32x3, Float32x4, Snorm16x2, Unorm8x4};
+
+/// Formats of a particle: a [`Record`] and its colour.
+pub const PARTICLE: InstanceFormats = [&[Float32x3, Float32, Snorm16x2, Float32, Float32], &[Unorm8x4]];
+
+/// Formats of a face: a [`FaceRecord`] and its [`FaceTint`].
+pub const FACE: InstanceFormats =
+    [&[Float32x4, Float32x4, Float32x4, Snorm16x2, Snorm16x2, Snorm16x2, Float32], &[Unorm8x4; 6]];
+
+/// Formats of a piece of a crease: the world position of each end with the repulsion radius of the particle there, and its colour.
+pub const PIECE: InstanceFormats = [&[Float32x4; 2], &[Unorm8x4]];
+
+/// Bytes of a record of fields with these formats.
+#[must_use]
+pub fn stride(formats: &[AttributeFormat]) -> u64 {
+    formats.iter().map(|format| format.size()).sum()
 }
-
-/// Vertex attributes of a [`Record`].
-pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
-    Attribute { location: 0, offset: offset_of!(Record, position), format: AttributeFormat::Float32x3 },
-    Attribute { location: 1, offset: offset_of!(Record, radius), format: AttributeFormat::Float32 },
-    Attribute { location: 2, offset: offset_of!(Record, normal), format: AttributeFormat::Snorm16x2 },
-    Attribute { location: 3, offset: offset_of!(Record, birth), format: AttributeFormat::Float32 },
-    Attribute { location: 4, offset: offset_of!(Record, level), format: AttributeFormat::Float32 },
-];
-
-/// Vertex attribute of the colour buffer.
-pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
-    [Attribute { location: 5, offset: 0, format: AttributeFormat::Unorm8x4 }];
-
-/// Vertex attributes of a [`FaceRecord`].
-pub const FACE_ATTRIBUTES: [Attribute; 7] = [
-    Attribute { location: 0, offset: 0, format: AttributeFormat::Float32x4 },
-    Attribute { location: 1, offset: 16, format: AttributeFormat::Float32x4 },
-    Attribute { location: 2, offset: 32, format: AttributeFormat::Float32x4 },
-    Attribute { location: 3, offset: offset_of!(FaceRecord, normals), format: AttributeFormat::Snorm16x2 },
-    Attribute {
-        location: 4,
-        offset: offset_of!(FaceRecord, normals) + 4,
-        format: AttributeFormat::Snorm16x2,
-    },
-    Attribute {
-        location: 5,
-        offset: offset_of!(FaceRecord, normals) + 8,
-        format: AttributeFormat::Snorm16x2,
-    },
-    Attribute { location: 6, offset: offset_of!(FaceRecord, level), format: AttributeFormat::Float32 },
-];
-
-/// Vertex attributes of a [`FaceTint`].
-pub const TINT_ATTRIBUTES: [Attribute; 6] = [
-    Attribute { location: 7, offset: 0, format: AttributeFormat::Unorm8x4 },
-    Attribute { location: 8, offset: 4, format: AttributeFormat::Unorm8x4 },
-    Attribute { location: 9, offset: 8, format: AttributeFormat::Unorm8x4 },
-    Attribute { location: 10, offset: offset_of!(FaceTint, marks), format: AttributeFormat::Unorm8x4 },
-    Attribute { location: 11, offset: offset_of!(FaceTint, marks) + 4, format: AttributeFormat::Unorm8x4 },
-    Attribute { location: 12, offset: offset_of!(FaceTint, marks) + 8, format: AttributeFormat::Unorm8x4 },
-];
 
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the tests go round circles; nothing depends on the last bits")]
 mod tests {
     use super::*;
+    use core::mem::offset_of;
 
     #[test]
     fn octahedral_normals_come_back_within_five_thousandths_of_a_degree() {
@@ -280,20 +232,30 @@ mod tests {
 
     #[test]
     fn attributes_tile_their_records_without_gap_or_overlap() {
-        let tables: [(&[Attribute], usize); 5] = [
-            (&RECORD_ATTRIBUTES, size_of::<Record>()),
-            (&COLOUR_ATTRIBUTES, COLOUR_STRIDE),
-            (&FACE_ATTRIBUTES, size_of::<FaceRecord>()),
-            (&TINT_ATTRIBUTES, size_of::<FaceTint>()),
-            (&LINE_ATTRIBUTES, size_of::<LineRecord>()),
-        ];
-        for (table, size) in tables {
-            let mut at = 0;
-            for attribute in table {
-                assert_eq!(attribute.offset, at, "location {}", attribute.location);
-                at += attribute.format.size();
-            }
-            assert_eq!(at, size);
-        }
+        let sizes =
+            |[record, colours]: InstanceFormats| [record, colours].map(|formats| stride(formats) as usize);
+        assert_eq!(sizes(PARTICLE), [size_of::<Record>(), size_of::<u32>()]);
+        assert_eq!(sizes(FACE), [size_of::<FaceRecord>(), size_of::<FaceTint>()]);
+        assert_eq!(sizes(PIECE), [8 * size_of::<f32>(), size_of::<u32>()]);
+        // The fields are those of the structs, in order.
+        let offsets = |formats: &[AttributeFormat]| -> Vec<usize> {
+            (0..formats.len()).map(|k| stride(&formats[..k]) as usize).collect()
+        };
+        let (marks, normals) = (offset_of!(FaceTint, marks), offset_of!(FaceRecord, normals));
+        assert_eq!(
+            offsets(PARTICLE[0]),
+            [
+                offset_of!(Record, position),
+                offset_of!(Record, radius),
+                offset_of!(Record, normal),
+                offset_of!(Record, birth),
+                offset_of!(Record, level)
+            ]
+        );
+        assert_eq!(
+            offsets(FACE[0]),
+            [0, 16, 32, normals, normals + 4, normals + 8, offset_of!(FaceRecord, level)]
+        );
+        assert_eq!(offsets(FACE[1]), [0, 4, 8, marks, marks + 4, marks + 8]);
     }
 }

@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use super::pipelines::{DEPTH_FORMAT, FrameBinding, Kind, NEAREST_FORMAT, Pipelines};
 use super::store::Store;
+use super::style::{Drawing, Style};
 
 /// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader could antialias. All devices of
 /// WebGPU and WebGL2 have targets with four samples, and not all with another number.
@@ -36,35 +37,22 @@ struct Occlusion {
     nearest: [(wgpu::TextureView, wgpu::BindGroup); 2],
 }
 
-/// Contents of a picture.
+/// The particles, faces and pieces of creases that are drawn.
+pub(super) struct Content {
+    pub(super) particles: Store,
+    pub(super) faces: Store,
+    /// Number of particles that the faces stand for. Only the particles after these are drawn as discs, except above a ghost.
+    pub(super) face_particles: u32,
+    pub(super) lines: Store,
+}
+
+/// A picture.
 pub(super) struct Scene<'a> {
-    pub(super) particles: &'a Store,
-    /// Number of particles.
-    pub(super) count: u32,
-    /// Whether the particles are drawn as spheres.
-    pub(super) spheres: bool,
-    pub(super) faces: Option<Faces<'a>>,
-    /// The pieces of creases, and their number.
-    pub(super) lines: &'a Store,
-    pub(super) line_count: u32,
-    /// Index of a particle that is marked by a ring.
-    pub(super) outline: Option<u32>,
-    /// Whether the edges of the clip box are drawn.
-    pub(super) clip_box: bool,
-    /// Whether a plane cuts the faces.
-    pub(super) is_cut: bool,
+    pub(super) content: &'a Content,
+    pub(super) style: &'a Style,
     pub(super) frame: Frame,
     /// Whether the background is left out.
     pub(super) transparent: bool,
-}
-
-/// Faces of a picture.
-pub(super) struct Faces<'a> {
-    pub(super) store: &'a Store,
-    pub(super) count: u32,
-    /// Number of particles that the faces stand for. Only the particles after these are drawn as discs, except above a ghost.
-    pub(super) particles: u32,
-    pub(super) is_ghost: bool,
 }
 
 /// Texture view that a picture is drawn on.
@@ -227,61 +215,79 @@ impl Scene<'_> {
         if self.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } }
     }
 
+    /// Whether there are faces in the picture.
+    fn has_faces(&self) -> bool {
+        self.style.drawing != Drawing::Discs && self.content.faces.count > 0
+    }
+
+    /// Whether the faces are a ghost beneath the discs.
+    fn is_ghost(&self) -> bool {
+        self.style.drawing == Drawing::Ghost
+    }
+
     /// Samples per pixel.
     fn samples(&self) -> u32 {
-        if self.faces.is_some() { FACE_SAMPLES } else { 1 }
+        if self.has_faces() { FACE_SAMPLES } else { 1 }
     }
 
     /// Whether the surface takes light from itself: a mesh or spheres do, discs and a ghost do not.
     fn is_occluded(&self) -> bool {
-        self.spheres || self.faces.as_ref().is_some_and(|faces| !faces.is_ghost)
+        self.style.spheres || self.has_faces() && !self.is_ghost()
     }
 
-    /// The particles that are drawn themselves.
-    fn drawn(&self) -> core::ops::Range<u32> {
-        self.faces.as_ref().map_or(0, |faces| if faces.is_ghost { 0 } else { faces.particles })..self.count
+    /// Draws the particles that are drawn themselves: all, or those that no face stands for.
+    fn draw_particles(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Content { particles, face_particles, .. } = self.content;
+        let first = if self.has_faces() && !self.is_ghost() { *face_particles } else { 0 };
+        draw_instances(pass, particles, 4, first..particles.count);
+    }
+
+    fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let faces = &self.content.faces;
+        draw_instances(pass, faces, 3, 0..faces.count);
     }
 
     fn draw_nearest(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
-        if let Some(&Faces { store, count, is_ghost: false, .. }) = self.faces.as_ref() {
+        if self.has_faces() && !self.is_ghost() {
             pass.set_pipeline(&get(Kind::FaceNearest));
-            draw_instances(pass, store, 3, 0..count);
+            self.draw_faces(pass);
         }
-        if self.spheres {
+        if self.style.spheres {
             pass.set_pipeline(&get(Kind::BallNearest));
-            draw_instances(pass, self.particles, 4, self.drawn());
+            self.draw_particles(pass);
         }
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
-        if let Some(&Faces { store, count, is_ghost, .. }) = self.faces.as_ref() {
-            pass.set_pipeline(&get(match (is_ghost, self.is_cut) {
+        let Self { content: Content { particles, lines, .. }, style, .. } = self;
+        if self.has_faces() {
+            pass.set_pipeline(&get(match (self.is_ghost(), style.plane) {
                 (true, _) => Kind::Ghost,
-                (false, true) => Kind::CutFace,
-                (false, false) => Kind::Face,
+                (false, Some(_)) => Kind::CutFace,
+                (false, None) => Kind::Face,
             }));
-            draw_instances(pass, store, 3, 0..count);
+            self.draw_faces(pass);
         }
-        let kinds: &[Kind] = if self.spheres {
+        let kinds: &[Kind] = if style.spheres {
             &[Kind::BallCore, Kind::BallRim]
         } else {
             &[Kind::DiscCore, Kind::RimBehind, Kind::RimFront]
         };
         for &kind in kinds {
             pass.set_pipeline(&get(kind));
-            draw_instances(pass, self.particles, 4, self.drawn());
+            self.draw_particles(pass);
         }
-        if self.line_count > 0 {
+        if lines.count > 0 {
             pass.set_pipeline(&get(Kind::Crease));
-            draw_instances(pass, self.lines, 4, 0..self.line_count);
+            draw_instances(pass, lines, 4, 0..lines.count);
         }
-        if self.clip_box {
+        if style.clip_box.is_some() {
             pass.set_pipeline(&get(Kind::ClipBox));
             pass.draw(0..4, 0..12);
         }
-        if let Some(index) = self.outline.filter(|&index| index < self.count) {
+        if let Some(index) = style.outline.filter(|&index| index < particles.count) {
             pass.set_pipeline(&get(Kind::Ring));
-            draw_instances(pass, self.particles, 4, index..index + 1);
+            draw_instances(pass, particles, 4, index..index + 1);
         }
     }
 }

@@ -1,10 +1,7 @@
 //! Render pipelines, and the uniform buffer that they share.
 
 use super::frame::Frame;
-use super::layout::{
-    Attribute, AttributeFormat, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint,
-    LINE_ATTRIBUTES, LineRecord, RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
-};
+use super::layout::{AttributeFormat, FACE, PARTICLE, PIECE, stride};
 use super::shaders::{DISCS, FACES, LINES, OCCLUSION, Shader};
 
 /// Format of the depth buffers.
@@ -57,15 +54,6 @@ pub(super) enum Kind {
     Crease,
 }
 
-/// Records in a vertex buffer: bytes of each, and its attributes.
-type Slot = (usize, &'static [Attribute]);
-
-const COLOURS: Slot = (COLOUR_STRIDE, &COLOUR_ATTRIBUTES);
-const PARTICLES: &[Slot] = &[(size_of::<Record>(), &RECORD_ATTRIBUTES), COLOURS];
-const TRIANGLES: &[Slot] =
-    &[(size_of::<FaceRecord>(), &FACE_ATTRIBUTES), (size_of::<FaceTint>(), &TINT_ATTRIBUTES)];
-const PIECES: &[Slot] = &[(size_of::<LineRecord>(), &LINE_ATTRIBUTES), COLOURS];
-
 /// How a pipeline draws on its target.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
@@ -88,31 +76,32 @@ struct Spec {
     shader: Shader,
     vertex: &'static str,
     fragment: &'static str,
-    slots: &'static [Slot],
+    /// Formats of the attributes of each vertex buffer.
+    buffers: &'static [&'static [AttributeFormat]],
     way: Way,
 }
 
 impl Kind {
     fn spec(self) -> Spec {
         use Way::{Above, Blended, Covering, Nearest, Screen, Solid};
-        let (shader, vertex, fragment, slots, way) = match self {
-            Self::DiscCore => (DISCS, "vs_core", "fs_core", PARTICLES, Solid),
-            Self::RimBehind => (DISCS, "vs_rim_behind", "fs_rim", PARTICLES, Blended),
-            Self::RimFront => (DISCS, "vs_rim_front", "fs_rim", PARTICLES, Blended),
-            Self::BallCore => (DISCS, "vs_ball_core", "fs_ball_core", PARTICLES, Solid),
-            Self::BallRim => (DISCS, "vs_ball_rim", "fs_ball_rim", PARTICLES, Blended),
-            Self::BallNearest => (DISCS, "vs_ball_core", "fs_ball_nearest", PARTICLES, Nearest),
-            Self::Ring => (DISCS, "vs_ring", "fs_ring", PARTICLES, Above),
-            Self::Face => (FACES, "vs_face", "fs_face", TRIANGLES, Solid),
-            Self::CutFace => (FACES, "vs_face", "fs_cut_face", TRIANGLES, Covering),
-            Self::FaceNearest => (FACES, "vs_face", "fs_nearest", TRIANGLES, Nearest),
-            Self::Ghost => (FACES, "vs_ghost", "fs_ghost", TRIANGLES, Covering),
+        let (shader, vertex, fragment, buffers, way) = match self {
+            Self::DiscCore => (DISCS, "vs_core", "fs_core", &PARTICLE[..], Solid),
+            Self::RimBehind => (DISCS, "vs_rim_behind", "fs_rim", &PARTICLE[..], Blended),
+            Self::RimFront => (DISCS, "vs_rim_front", "fs_rim", &PARTICLE[..], Blended),
+            Self::BallCore => (DISCS, "vs_ball_core", "fs_ball_core", &PARTICLE[..], Solid),
+            Self::BallRim => (DISCS, "vs_ball_rim", "fs_ball_rim", &PARTICLE[..], Blended),
+            Self::BallNearest => (DISCS, "vs_ball_core", "fs_ball_nearest", &PARTICLE[..], Nearest),
+            Self::Ring => (DISCS, "vs_ring", "fs_ring", &PARTICLE[..], Above),
+            Self::Face => (FACES, "vs_face", "fs_face", &FACE[..], Solid),
+            Self::CutFace => (FACES, "vs_face", "fs_cut_face", &FACE[..], Covering),
+            Self::FaceNearest => (FACES, "vs_face", "fs_nearest", &FACE[..], Nearest),
+            Self::Ghost => (FACES, "vs_ghost", "fs_ghost", &FACE[..], Covering),
             Self::ClipBox => (LINES, "vs_box", "fs_line", &[][..], Blended),
-            Self::Crease => (LINES, "vs_crease", "fs_line", PIECES, Blended),
+            Self::Crease => (LINES, "vs_crease", "fs_line", &PIECE[..], Blended),
             Self::Occlusion => (OCCLUSION, "vs_cover", "fs_occlusion", &[][..], Screen),
             Self::Mean => (OCCLUSION, "vs_cover", "fs_mean", &[][..], Screen),
         };
-        Spec { shader, vertex, fragment, slots, way }
+        Spec { shader, vertex, fragment, buffers, way }
     }
 
     /// Whether its shader reads what is nearest.
@@ -192,21 +181,26 @@ impl Pipelines {
     pub(super) fn get(&mut self, device: &wgpu::Device, kind: Kind, samples: u32) -> wgpu::RenderPipeline {
         let Self { format, layouts, modules, made, .. } = self;
         entry(made, (kind, samples), || {
-            let Spec { shader, vertex, fragment, slots, way } = kind.spec();
+            let Spec { shader, vertex, fragment, buffers, way } = kind.spec();
             let module = entry(modules, shader.name, || {
                 device.create_shader_module(wgpu::ShaderModuleDescriptor {
                     label: Some(shader.name),
                     source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
                 })
             });
-            let attributes: Vec<Vec<_>> =
-                slots.iter().map(|(_, table)| table.iter().map(vertex_attribute).collect()).collect();
-            let buffers: Vec<_> = slots
+            let mut locations = 0..;
+            let attributes: Vec<Vec<_>> = buffers
+                .iter()
+                .map(|formats| {
+                    (0..formats.len()).zip(&mut locations).map(|(k, at)| attribute(formats, k, at)).collect()
+                })
+                .collect();
+            let layouts_of: Vec<_> = buffers
                 .iter()
                 .zip(&attributes)
-                .map(|(&(stride, _), attributes)| {
+                .map(|(formats, attributes)| {
                     Some(wgpu::VertexBufferLayout {
-                        array_stride: stride as u64,
+                        array_stride: stride(formats),
                         step_mode: wgpu::VertexStepMode::Instance,
                         attributes,
                     })
@@ -226,7 +220,7 @@ impl Pipelines {
                     module: &module,
                     entry_point: Some(vertex),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &buffers,
+                    buffers: &layouts_of,
                 },
                 primitive: wgpu::PrimitiveState {
                     topology: wgpu::PrimitiveTopology::TriangleStrip,
@@ -292,16 +286,14 @@ impl FrameBinding {
     }
 }
 
-fn vertex_attribute(attribute: &Attribute) -> wgpu::VertexAttribute {
-    wgpu::VertexAttribute {
-        format: match attribute.format {
-            AttributeFormat::Float32 => wgpu::VertexFormat::Float32,
-            AttributeFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
-            AttributeFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
-            AttributeFormat::Snorm16x2 => wgpu::VertexFormat::Snorm16x2,
-            AttributeFormat::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
-        },
-        offset: attribute.offset as u64,
-        shader_location: attribute.location,
-    }
+/// Attribute `k` of a buffer, at a location of the shader.
+fn attribute(formats: &[AttributeFormat], k: usize, shader_location: u32) -> wgpu::VertexAttribute {
+    let format = match formats[k] {
+        AttributeFormat::Float32 => wgpu::VertexFormat::Float32,
+        AttributeFormat::Float32x3 => wgpu::VertexFormat::Float32x3,
+        AttributeFormat::Float32x4 => wgpu::VertexFormat::Float32x4,
+        AttributeFormat::Snorm16x2 => wgpu::VertexFormat::Snorm16x2,
+        AttributeFormat::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
+    };
+    wgpu::VertexAttribute { format, offset: stride(&formats[..k]), shader_location }
 }

@@ -1,13 +1,14 @@
 //! Renderer: a graphics device with a surface to draw on, and the particles and faces to draw.
 
+use super::chunks::MOST_RECORDS;
 use super::frame::Frame;
 use super::gpu::{Callbacks, CreateError, Gpu};
-use super::layout::{COLOUR_STRIDE, FaceRecord, FaceTint, LineRecord, Record};
-use super::painter::{Canvas, Faces, Painter, Scene};
+use super::layout::{FACE, FaceRecord, FaceTint, PARTICLE, PIECE, Record};
+use super::painter::{Canvas, Content, Painter, Scene};
 use super::pixels::{padded_row, straight_rgba};
 use super::screen::Screen;
 use super::store::{Part, Store};
-use super::style::{Drawing, PictureTarget, Style};
+use super::style::{PictureTarget, Style};
 use super::view::View;
 
 /// Outcome of [`Renderer::draw`].
@@ -41,41 +42,12 @@ impl Columns<'_> {
     ///
     /// # Panics
     ///
-    /// If the columns differ in length.
+    /// If another column is shorter than that of the radii.
     fn records(&self, birth: f32) -> impl Iterator<Item = Record> {
-        let Self { positions, normals, radii, levels, colours } = *self;
-        let count = radii.len();
-        assert!(
-            positions.len() == 3 * count
-                && normals.len() == 3 * count
-                && levels.len() == count
-                && colours.len() == count,
-            "columns of {count} radii, {} positions, {} normals, {} levels, {} colours",
-            positions.len() / 3,
-            normals.len() / 3,
-            levels.len(),
-            colours.len()
-        );
+        let Self { positions, normals, radii, levels, .. } = *self;
         let (positions, normals) = (positions.as_chunks::<3>().0, normals.as_chunks::<3>().0);
-        (0..count).map(move |i| Record::new(positions[i], normals[i], radii[i], birth, levels[i]))
+        (0..radii.len()).map(move |i| Record::new(positions[i], normals[i], radii[i], birth, levels[i]))
     }
-}
-
-/// The particles and faces that a renderer draws.
-struct Content {
-    particles: Store,
-    /// Number of particles that are drawn.
-    count: u32,
-    faces: Store,
-    /// Number of faces that are drawn, and of particles that they stand for.
-    face_count: u32,
-    face_particles: u32,
-    lines: Store,
-    /// Number of pieces of creases.
-    line_count: u32,
-    /// Buffer in which records are packed before they are uploaded.
-    scratch: Vec<Record>,
-    face_scratch: Vec<FaceRecord>,
 }
 
 /// The caller's clock, in single precision: time is counted from the first finite one that is asked for.
@@ -104,16 +76,17 @@ pub struct Renderer {
     screen: Screen,
     painter: Painter,
     content: Content,
+    /// Buffers in which records are packed before they are uploaded.
+    scratch: Vec<Record>,
+    face_scratch: Vec<FaceRecord>,
     view: View,
     style: Style,
     clock: Clock,
 }
 
 impl Renderer {
-    /// Largest number of particles that [`Renderer::write`] takes, which take 144 MiB on the GPU.
-    pub const MAX_PARTICLES: u32 = Store::MAX;
-    /// Largest number of faces that [`Renderer::write_faces`] takes, which take 396 MiB on the GPU.
-    pub const MAX_FACES: u32 = Store::MAX;
+    /// Largest number of records of each kind: particles, which take 144 MiB on the GPU, faces, which take 396 MiB, and pieces of creases.
+    pub const MAX: u32 = MOST_RECORDS;
 
     /// Opens a device that can draw on `surface_target`.
     ///
@@ -130,21 +103,18 @@ impl Renderer {
         let screen = Screen::new(surface, &adapter)?;
         let painter = Painter::new(&gpu.device, screen.view_format);
         let content = Content {
-            particles: Store::new(size_of::<Record>(), COLOUR_STRIDE),
-            count: 0,
-            faces: Store::new(size_of::<FaceRecord>(), size_of::<FaceTint>()),
-            face_count: 0,
+            particles: Store::new(PARTICLE),
+            faces: Store::new(FACE),
             face_particles: 0,
-            lines: Store::new(size_of::<LineRecord>(), COLOUR_STRIDE),
-            line_count: 0,
-            scratch: Vec::new(),
-            face_scratch: Vec::new(),
+            lines: Store::new(PIECE),
         };
         Ok(Self {
             gpu,
             screen,
             painter,
             content,
+            scratch: Vec::new(),
+            face_scratch: Vec::new(),
             view: View::default(),
             style: Style::default(),
             clock: Clock::default(),
@@ -215,26 +185,25 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If the columns differ in length or end beyond [`Renderer::MAX_PARTICLES`].
+    /// If a column is shorter than that of the radii, or they end beyond [`Renderer::MAX`].
     pub fn write(&mut self, first: u32, columns: Columns<'_>, birth_s: f64) {
         if self.is_lost() || columns.radii.is_empty() {
             return;
         }
         let end = first + columns.radii.len() as u32;
         let birth = self.clock.read(birth_s);
-        let (gpu, content) = (&self.gpu, &mut self.content);
-        content.scratch.clear();
-        content.scratch.extend(columns.records(birth));
-        content.particles.reserve(&gpu.device, &gpu.queue, end);
-        let bytes = bytemuck::cast_slice(&content.scratch);
-        content.particles.write(&gpu.queue, Part::Records, first, bytes);
-        content.count = content.count.max(end);
+        let Self { gpu, content: Content { particles, .. }, scratch, .. } = self;
+        scratch.clear();
+        scratch.extend(columns.records(birth));
+        particles.reserve(&gpu.device, &gpu.queue, end);
+        particles.write(&gpu.queue, Part::Records, first, bytemuck::cast_slice(scratch));
+        particles.count = particles.count.max(end);
         self.write_colours(first, columns.colours);
     }
 
     /// Writes the colours of particles from `first` on. Particles beyond the capacity of the buffers are skipped.
     pub fn write_colours(&mut self, first: u32, colours: &[u32]) {
-        if !self.is_lost() && (first as usize + colours.len()) <= Self::MAX_PARTICLES as usize {
+        if !self.is_lost() && (first as usize + colours.len()) <= Self::MAX as usize {
             let bytes = bytemuck::cast_slice(colours);
             self.content.particles.write(&self.gpu.queue, Part::Colours, first, bytes);
         }
@@ -242,7 +211,7 @@ impl Renderer {
 
     /// Sets the number of particles that are drawn. The buffers keep their size.
     pub fn set_count(&mut self, count: u32) {
-        self.content.count = count.min(Self::MAX_PARTICLES);
+        self.content.particles.count = count.min(Self::MAX);
     }
 
     /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from outside. `marks` has the
@@ -250,28 +219,26 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If the columns differ in length or end beyond [`Renderer::MAX_FACES`].
+    /// If a column is shorter than that of the radii, or they end beyond [`Renderer::MAX`].
     pub fn write_faces(&mut self, first: u32, corners: Columns<'_>, marks: &[u32]) {
         let count = (corners.radii.len() / 3) as u32;
         if self.is_lost() || count == 0 {
             return;
         }
-        let (gpu, content) = (&self.gpu, &mut self.content);
-        content.scratch.clear();
-        content.scratch.extend(corners.records(0.0));
-        content.face_scratch.clear();
-        let triples = content.scratch.as_chunks::<3>().0;
-        content.face_scratch.extend(triples.iter().map(|&corners| FaceRecord::new(corners)));
-        content.faces.reserve(&gpu.device, &gpu.queue, first + count);
-        let bytes = bytemuck::cast_slice(&content.face_scratch);
-        content.faces.write(&gpu.queue, Part::Records, first, bytes);
+        let Self { gpu, content: Content { faces, .. }, scratch, face_scratch, .. } = self;
+        scratch.clear();
+        scratch.extend(corners.records(0.0));
+        face_scratch.clear();
+        face_scratch.extend(scratch.as_chunks::<3>().0.iter().map(|&corners| FaceRecord::new(corners)));
+        faces.reserve(&gpu.device, &gpu.queue, first + count);
+        faces.write(&gpu.queue, Part::Records, first, bytemuck::cast_slice(face_scratch));
         self.tint_faces(first, corners.colours, marks);
     }
 
     /// Writes the colours of faces from `first` on, and those of their marks, three each. Faces beyond the capacity of the buffers
     /// are skipped.
     pub fn tint_faces(&mut self, first: u32, colours: &[u32], marks: &[u32]) {
-        if self.is_lost() || (first as usize + colours.len() / 3) > Self::MAX_FACES as usize {
+        if self.is_lost() || (first as usize + colours.len() / 3) > Self::MAX as usize {
             return;
         }
         let (colours, marks) = (colours.as_chunks::<3>().0, marks.as_chunks::<3>().0);
@@ -283,11 +250,11 @@ impl Renderer {
     /// Sets the number of faces, and of the particles that are not drawn as discs where faces are drawn. Without faces their
     /// buffers are given back.
     pub fn set_faces(&mut self, count: u32, particles: u32) {
-        let content = &mut self.content;
-        (content.face_count, content.face_particles) = (count.min(Self::MAX_FACES), particles);
+        let Content { faces, face_particles, .. } = &mut self.content;
+        (faces.count, *face_particles) = (count.min(Self::MAX), particles);
         if count == 0 {
-            content.faces.release();
-            content.face_scratch = Vec::new();
+            faces.release();
+            self.face_scratch = Vec::new();
         }
     }
 
@@ -296,17 +263,17 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If the columns differ in length or there are more than [`Renderer::MAX_PARTICLES`].
+    /// If the columns differ in length or there are more than [`Renderer::MAX`].
     pub fn write_lines(&mut self, ends: &[f32], colours: &[u32]) {
         assert_eq!(ends.len(), 8 * colours.len(), "numbers of ends, for as many colours times 8");
         if self.is_lost() {
             return;
         }
-        let (gpu, content) = (&self.gpu, &mut self.content);
-        content.line_count = colours.len() as u32;
-        content.lines.reserve(&gpu.device, &gpu.queue, content.line_count);
-        content.lines.write(&gpu.queue, Part::Records, 0, bytemuck::cast_slice(ends));
-        content.lines.write(&gpu.queue, Part::Colours, 0, bytemuck::cast_slice(colours));
+        let (gpu, lines) = (&self.gpu, &mut self.content.lines);
+        lines.count = colours.len() as u32;
+        lines.reserve(&gpu.device, &gpu.queue, lines.count);
+        lines.write(&gpu.queue, Part::Records, 0, bytemuck::cast_slice(ends));
+        lines.write(&gpu.queue, Part::Colours, 0, bytemuck::cast_slice(colours));
     }
 
     /// Sets the camera, which must be made for the current size of the surface.
@@ -413,26 +380,7 @@ impl Renderer {
 
     fn paint(&mut self, canvas: &Canvas<'_>, frame: Frame, transparent: bool) {
         let Self { gpu, painter, content, style, .. } = self;
-        let faces = Faces {
-            store: &content.faces,
-            count: content.face_count,
-            particles: content.face_particles,
-            is_ghost: style.drawing == Drawing::Ghost,
-        };
-        let has_faces = style.drawing != Drawing::Discs && content.face_count > 0;
-        let scene = Scene {
-            particles: &content.particles,
-            count: content.count,
-            spheres: style.spheres,
-            faces: has_faces.then_some(faces),
-            lines: &content.lines,
-            line_count: content.line_count,
-            outline: style.outline,
-            clip_box: style.clip_box.is_some(),
-            is_cut: style.plane.is_some(),
-            frame,
-            transparent,
-        };
+        let scene = Scene { content, style, frame, transparent };
         painter.paint(&gpu.device, &gpu.queue, canvas, &scene);
     }
 }

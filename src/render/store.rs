@@ -1,9 +1,11 @@
 //! Records on the GPU, in chunks of instance buffers that grow and keep their content.
 
 use super::chunks::{CHUNK, ChunkSpan, MOST_RECORDS, split_at_chunks};
+use super::layout::{InstanceFormats, stride};
 use core::ops::Range;
 
-/// Initial capacity of the first chunk.
+/// Initial capacity of the first chunk, of 128 KiB for particles. Six doublings lead from it to a whole [`CHUNK`], and each copies what is
+/// there once.
 const FIRST: u32 = 1 << 12;
 
 /// A buffer of a chunk: of the geometry of each record or, apart from it, of its colours, which change more often.
@@ -18,6 +20,8 @@ pub(super) struct Store {
     /// Bytes of a record and of its colours.
     strides: [u64; 2],
     chunks: Vec<Chunk>,
+    /// Number of records that are drawn.
+    pub(super) count: u32,
 }
 
 struct Chunk {
@@ -32,12 +36,9 @@ pub(super) struct RecordRun<'a> {
 }
 
 impl Store {
-    /// Maximum number of records.
-    pub(super) const MAX: u32 = MOST_RECORDS;
-
-    /// A store of records that take `record` bytes, and `colours` bytes of colours.
-    pub(super) fn new(record: usize, colours: usize) -> Self {
-        Self { strides: [record as u64, colours as u64], chunks: Vec::new() }
+    /// A store of records and colours with these formats.
+    pub(super) fn new(formats: InstanceFormats) -> Self {
+        Self { strides: formats.map(stride), chunks: Vec::new(), count: 0 }
     }
 
     /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the capacity of the buffers are
@@ -75,9 +76,9 @@ impl Store {
     ///
     /// # Panics
     ///
-    /// If that is more than [`Store::MAX`].
+    /// If that is more than [`MOST_RECORDS`].
     pub(super) fn reserve(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, count: u32) {
-        assert!(count <= Self::MAX, "{count} records asked for, at most {} are drawn", Self::MAX);
+        assert!(count <= MOST_RECORDS, "{count} records asked for, at most {MOST_RECORDS} are drawn");
         for index in 0..count.div_ceil(CHUNK) {
             let wanted = (count - index * CHUNK).min(CHUNK);
             let present = self.chunks.get(index as usize).map_or(0, |chunk| chunk.capacity);

@@ -5,7 +5,8 @@ use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
 ///
-/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound.
+/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound. Ranges of lengths and times are wider than
+/// anyone asks for: they keep what the shaders compute finite and not zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
@@ -14,16 +15,18 @@ pub struct Style {
     pub drawing: Drawing,
     /// Whether particles are drawn as spheres where they would be drawn as discs.
     pub spheres: bool,
-    /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
-    /// make the order visible.
+    /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch; the default is a choice, which leaves
+    /// gaps that make the order visible.
     pub disc_scale: f32,
-    /// Direction to the key light in view coordinates: x right, y up, z towards the viewer.
+    /// Direction to the key light in view coordinates: x right, y up, z towards the viewer. The default is a choice: from the upper left,
+    /// as drawings are lit.
     pub key_light_view: [f32; 3],
     /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
     /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and greyer, 0 to 1.
     pub dim_backfaces: f32,
-    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
+    /// Duration in seconds of the appearance of a new particle; 0 shows it at once. The default is a choice: some frames, in which the eye
+    /// catches that something appears.
     pub fade_s: f32,
     /// Newest generation level that is drawn. Particles of later levels are hidden, those of earlier ones fade by
     /// `mute`. With `None` all levels are drawn alike.

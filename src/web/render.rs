@@ -15,9 +15,10 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
 
-/// Particles copied at a time, so that a million need no second copy of themselves in this memory.
+/// Particles copied at a time: 2.4 MB of columns, so that a million need no second copy of themselves in this memory.
 const SLICE: u32 = 1 << 16;
-/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2).
+/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2). It is the least that the HTML Standard
+/// gives timers that are set from timers (§8.6, "Timers").
 const POLL_MS: i32 = 4;
 
 #[wasm_bindgen]
@@ -105,7 +106,7 @@ impl Renderer {
 
     /// Largest number of particles that `write` takes.
     pub fn max_particles(&self) -> u32 {
-        Inner::MAX_PARTICLES
+        Inner::MAX
     }
 
     /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
@@ -136,7 +137,7 @@ impl Renderer {
     ) -> Result<(), JsError> {
         let count = radii.length();
         check_columns(count, positions, normals, levels, colours)?;
-        check_end(first, count)?;
+        check_end(first, count, "particles")?;
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
         for from in (0..count).step_by(SLICE as usize) {
@@ -158,7 +159,7 @@ impl Renderer {
     /// Throws where there are more particles than `max_particles()`.
     pub fn write_colours(&self, first: u32, colours: &Uint32Array) -> Result<(), JsError> {
         let count = colours.length();
-        check_end(first, count)?;
+        check_end(first, count, "particles")?;
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
         for from in (0..count).step_by(SLICE as usize) {
@@ -176,7 +177,7 @@ impl Renderer {
 
     /// Largest number of faces that `write_faces` takes.
     pub fn max_faces(&self) -> u32 {
-        Inner::MAX_FACES
+        Inner::MAX
     }
 
     /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
@@ -235,10 +236,10 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// Throws where the columns disagree in length or there are more pieces than `max_particles()`.
+    /// Throws where the columns disagree in length or there are more of them than `max_particles()`.
     pub fn write_lines(&self, ends: &Float32Array, colours: &Uint32Array) -> Result<(), JsError> {
         let count = colours.length();
-        check_end(0, count)?;
+        check_end(0, count, "lines")?;
         if ends.length() != 8 * count {
             return Err(JsError::new(&format!("{} numbers of ends for {count} lines", ends.length())));
         }
@@ -391,17 +392,14 @@ fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), Js
     if !corners.is_multiple_of(3) || marks.length() != corners {
         return Err(JsError::new(&format!("{corners} corners and {} marks are no faces", marks.length())));
     }
-    let end = u64::from(first) + u64::from(corners / 3);
-    if end > u64::from(Inner::MAX_FACES) {
-        return Err(JsError::new(&format!("{end} faces, at most {} are drawn", Inner::MAX_FACES)));
-    }
-    Ok(())
+    check_end(first, corners / 3, "faces")
 }
 
-fn check_end(first: u32, count: u32) -> Result<(), JsError> {
-    let end = u64::from(first) + u64::from(count);
-    if end > u64::from(Inner::MAX_PARTICLES) {
-        return Err(JsError::new(&format!("{end} particles, at most {} are drawn", Inner::MAX_PARTICLES)));
+/// Refuses more records than a renderer draws of either kind.
+fn check_end(first: u32, count: u32, what: &str) -> Result<(), JsError> {
+    let (end, most) = (u64::from(first) + u64::from(count), Inner::MAX);
+    if end > u64::from(most) {
+        return Err(JsError::new(&format!("{end} {what}, at most {most} are drawn")));
     }
     Ok(())
 }
