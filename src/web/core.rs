@@ -1,6 +1,6 @@
 //! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
-use super::values::{answer, to_js};
+use super::values::{answer, read, to_js};
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::particles::Particles;
@@ -9,7 +9,6 @@ use crate::session::{
     Fault, FaultKind, FieldRequest, FileRecord, FileRequest, Session, SolidSettings, describe,
 };
 use glam::{DVec3, Vec3};
-use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -35,10 +34,6 @@ const TYPES: &str = r"import type {
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
-}
-
-fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
-    serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }
 
 #[wasm_bindgen]

@@ -1,6 +1,6 @@
 //! The lesson's bundle: a [`lesson::Lesson`] behind plain objects and copies of its particles.
 
-use super::values::{answer, to_js};
+use super::values::{answer, read, to_js};
 use crate::field::formula::Formula;
 use crate::field::rbf::{Pull, RbfData, RbfField};
 use crate::field::{Field, Jet};
@@ -9,7 +9,6 @@ use crate::math::Bounds;
 use crate::paper::Particle;
 use crate::session::{Excess, Fault, FaultKind};
 use glam::DVec3;
-use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -35,10 +34,6 @@ const TYPES: &str = r"import type {
 #[derive(Default)]
 pub struct Lesson {
     run: Option<lesson::Lesson>,
-}
-
-fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
-    serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }
 
 /// A field that is only asked for jets. Evaluation in lanes and bounds over boxes stay out of the bundle.
