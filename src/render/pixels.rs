@@ -31,16 +31,15 @@ pub fn straight_rgba(padded: &[u8], width_px: u32, height_px: u32, bgra: bool, o
         } else if pixel[3] < 255 {
             let opacity = f32::from(pixel[3]) / 255.0;
             for c in &mut pixel[..3] {
-                *c = if opacity > 0.0 { encode(decode(*c) / opacity) } else { 0 };
+                *c = if opacity > 0.0 { encode(decode(f32::from(*c) / 255.0) / opacity) } else { 0 };
             }
         }
     }
     out
 }
 
-/// Linear value of an sRGB component.
-fn decode(byte: u8) -> f32 {
-    let c = f32::from(byte) / 255.0;
+/// Linear value of an sRGB component from 0 to 1 (IEC 61966-2-1).
+pub(super) fn decode(c: f32) -> f32 {
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
@@ -92,7 +91,7 @@ mod tests {
     #[test]
     fn every_byte_survives_the_curve() {
         for byte in 0..=255 {
-            assert_eq!(encode(decode(byte)), byte);
+            assert_eq!(encode(decode(f32::from(byte) / 255.0)), byte);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Style of a picture, and the uniform block that follows from style and camera.
 
 use super::frame::{self, Appearance, Camera, Frame, Light, Look};
+use super::pixels::decode;
 use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
@@ -192,8 +193,7 @@ fn luminance(linear: [f32; 4]) -> f32 {
 #[must_use]
 pub fn linear(srgb: [f32; 4]) -> [f32; 4] {
     let [r, g, b, a] = srgb.map(|c| if c >= 0.0 { c.min(1.0) } else { 0.0 });
-    let curve = |c: f32| if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) };
-    [curve(r), curve(g), curve(b), a]
+    [decode(r), decode(g), decode(b), a]
 }
 
 #[cfg(test)]
