@@ -30,8 +30,10 @@ use measuring::Measuring;
 use mesh::Meshing;
 use serde::Serialize;
 
-/// Bytes per particle that a run takes beside the sampler: the particles kept after the front, and the report as measured.
-const KEPT_BYTES: usize = 28;
+/// Bytes of a particle that is kept after the front: its position, normal and radius.
+const KEPT_BYTES: usize = 12 + 12 + 4;
+/// Bytes per particle that a report takes while it is made. Natively, runs on 100,000 to 400,000 particles of an ellipsoid take 378 bytes of
+/// resident memory for each at the peak, where this, the bytes kept and those of the sampler add up to 348.
 const REPORT_BYTES: usize = 225;
 
 /// Why there is no sample of a surface.

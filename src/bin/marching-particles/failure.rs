@@ -71,7 +71,7 @@ impl fmt::Display for Failure {
 /// Writes the message, the formula with carets under the span, and suggestions.
 fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt::Result {
     write!(f, "error: {}", error.message)?;
-    // A very long formula is not readable, and an error in --param has no span.
+    // A formula of more than three lines of a terminal breaks, and the carets are not below it; an error in --param has no span.
     const LONGEST: usize = 240;
     let has_span = error.kind != FormulaErrorKind::BadParameter;
     if has_span && !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {

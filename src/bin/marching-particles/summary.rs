@@ -8,9 +8,9 @@ use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// Width of the labels.
+/// Width of the labels: the longest in the table, of 22 characters, and a gap.
 const LABEL: usize = 26;
-/// Width of a column of figures.
+/// Width of a column of figures: its longest head, `after front`, and a gap.
 const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
