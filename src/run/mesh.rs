@@ -23,9 +23,6 @@ pub struct MeshAnswer {
     pub triangles: usize,
     /// Connected components, in the order of their first particles.
     pub components: Vec<MeshComponent>,
-    /// Number of border loops where the surface ends. The page shows the open edges.
-    #[serde(skip)]
-    pub borders: usize,
     /// Number of border loops where no manifold could be had, other than those where the surface ends.
     pub unfilled: usize,
     /// Number of particles in no triangle.
@@ -77,6 +74,14 @@ impl Meshing {
         }
     }
 
+    /// The mesh, if it is there, which is taken out.
+    pub(super) fn into_joined(self) -> Option<Triangulation> {
+        match self.state {
+            MeshState::Joined(mesh) => Some(mesh),
+            _ => None,
+        }
+    }
+
     /// Joins particles to triangles, or takes those that are `known`, in slices of work.
     fn work(
         particles: &Particles,
@@ -98,8 +103,8 @@ impl Meshing {
     }
 
     /// Joins all particles at once. `bounds` is the clip box, counted from their origin.
-    pub(super) fn join(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
-        slices::complete(Self::work(particles, particles.len(), known, *bounds))
+    pub(super) fn join(particles: &Particles, known: &[[u32; 3]], bounds: Bounds) -> Triangulation {
+        slices::complete(Self::work(particles, particles.len(), known, bounds))
     }
 }
 
@@ -129,7 +134,6 @@ impl MeshAnswer {
         Self {
             triangles: mesh.triangles.len(),
             components: mesh.topology.components.iter().map(component).collect(),
-            borders: mesh.topology.borders.len() - mesh.unfilled.len(),
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
             volume: mesh.volume(particles),

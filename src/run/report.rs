@@ -208,12 +208,21 @@ impl<F: Field> Run<F> {
         self.measuring.stop();
         let bounds = self.local_bounds();
         self.measuring.measured = slices::complete(measure(placed, &mut self.field, &bounds, sampling));
-        let measured = &self.measuring.measured;
+        Measures { quality_before: None, ..self.measures() }
+    }
+
+    /// The figures of the last measurement, with places in the coordinates of the field.
+    fn measures(&self) -> Measures {
+        let (measured, origin) = (&self.measuring.measured, self.particles().origin);
+        let mut places = measured.places.clone();
+        for hole in &mut places.holes {
+            hole.position = (origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
+        }
         Measures {
             quality: (!measured.valence.is_empty()).then_some(measured.figures),
-            quality_before: None,
+            quality_before: self.measuring.front_figures,
             nearest_histogram: measured.histogram.clone(),
-            places: measured.places.clone(),
+            places,
         }
     }
 
@@ -239,11 +248,6 @@ impl<F: Field> Run<F> {
         let count = particles.count();
         let measured = &self.measuring.measured;
         let proof = self.proof(measured.figures.connectivity.components);
-        let mut places = measured.places.clone();
-        for hole in &mut places.holes {
-            hole.position =
-                (particles.origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
-        }
         let border = self.at_border();
         let mut warnings = self.warnings_of_run(&proof.sampled, facing);
         warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
@@ -259,12 +263,7 @@ impl<F: Field> Run<F> {
             growth: self.growth(),
             warnings,
             proof,
-            measures: Measures {
-                quality: (!measured.valence.is_empty()).then_some(measured.figures),
-                quality_before: self.measuring.front_figures,
-                nearest_histogram: measured.histogram.clone(),
-                places,
-            },
+            measures: self.measures(),
             volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             pairs: particles.pairs(),

@@ -47,8 +47,6 @@ pub struct Sample {
     report: Report,
     measured: quality::Measurements,
     bounds: Bounds,
-    /// The clip box, counted from the origin of the particles.
-    local_bounds: Bounds,
     /// The triangles that a refined run has led to.
     known: Vec<[u32; 3]>,
     mesh: OnceCell<Triangulation>,
@@ -58,12 +56,11 @@ impl Sample {
     pub(super) fn new<F: Field>(run: Run<F>, report: Report) -> Self {
         Self {
             bounds: run.bounds(),
-            local_bounds: run.local_bounds(),
             known: run.sampler.triangles().to_vec(),
             particles: run.sampler.particles().clone(),
             measured: run.measuring.measured,
             report,
-            mesh: OnceCell::new(),
+            mesh: run.meshing.into_joined().map_or_else(OnceCell::new, OnceCell::from),
         }
     }
 
@@ -95,7 +92,8 @@ impl Sample {
     /// first call joins the particles, in below a microsecond each.
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
-        self.mesh.get_or_init(|| Meshing::join(&self.particles, &self.known, &self.local_bounds))
+        let bounds = || self.bounds.relative_to(self.particles.origin);
+        self.mesh.get_or_init(|| Meshing::join(&self.particles, &self.known, bounds()))
     }
 
     /// The warning about the [mesh](Sample::mesh) if it has another topology than the particles as they were measured.

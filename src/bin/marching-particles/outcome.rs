@@ -3,7 +3,7 @@
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
-use marching_particles::{MeshAnswer, Report};
+use marching_particles::{Report, Sample, Triangulation};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -67,16 +67,18 @@ pub(crate) struct MeshCounts {
 }
 
 impl MeshCounts {
-    pub(crate) fn new(mesh: &MeshAnswer) -> Self {
+    pub(crate) fn new(sample: &Sample) -> Self {
+        let (Triangulation { triangles, topology, unfilled, left_out, .. }, report) =
+            (sample.mesh(), sample.report());
         Self {
-            triangles: mesh.triangles,
-            components: mesh.components.len(),
-            euler: mesh.components.iter().map(|component| component.euler).sum(),
-            borders: mesh.borders,
-            holes: mesh.unfilled,
-            left_out: mesh.left_out,
-            volume: mesh.volume,
-            smallest_angle: mesh.smallest_angle,
+            triangles: triangles.len(),
+            components: topology.components.len(),
+            euler: topology.euler(),
+            borders: topology.borders.len() - unfilled.len(),
+            holes: unfilled.len(),
+            left_out: left_out.len(),
+            volume: report.volume,
+            smallest_angle: report.smallest_angle,
         }
     }
 }

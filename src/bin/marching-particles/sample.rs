@@ -15,7 +15,7 @@ use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
 use marching_particles::{
-    Bounds, Error, Field, Format, Formula, FormulaError, MeshAnswer, MeshFile, MeshFormat, Method, Parameter,
+    Bounds, Error, Field, Format, Formula, FormulaError, MeshFile, MeshFormat, Method, Parameter,
     ParticleFile, Phase, Reach, RecordText, Run, Settings, StopReason, Warning, gallery,
 };
 use std::collections::BTreeMap;
@@ -101,6 +101,10 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
     let reach = run.reach();
+    let is_joined = !mesh_formats.is_empty() && run.count() > 0;
+    if is_joined {
+        timed(&mut seconds.mesh, || run.join(u32::MAX));
+    }
     let finished =
         timed(
             &mut seconds.quality,
@@ -114,10 +118,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         }
         error => Failure::Nothing(error.to_string()),
     })?;
-    let mesh = timed(&mut seconds.mesh, || {
-        (!mesh_formats.is_empty())
-            .then(|| MeshCounts::new(&MeshAnswer::new(sample.mesh(), sample.particles())))
-    });
+    let mesh = is_joined.then(|| MeshCounts::new(&sample));
     let made = FileRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         digest: sample.report().digest.clone(),
@@ -146,11 +147,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     })?;
 
     let mut report = sample.report().clone();
-    report.warnings.extend(mesh.as_ref().and_then(|_| sample.mesh_warning()));
     let differs = model.as_ref().and_then(|model| Warning::of_file(model, &report));
     report.warnings.extend(differs);
-    report.volume = mesh.as_ref().and_then(|mesh| mesh.volume);
-    report.smallest_angle = mesh.as_ref().and_then(|mesh| mesh.smallest_angle);
     if has_own_box {
         report.cut = None;
     }
