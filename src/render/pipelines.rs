@@ -195,7 +195,7 @@ impl Pipelines {
                     (0..formats.len()).zip(&mut locations).map(|(k, at)| attribute(formats, k, at)).collect()
                 })
                 .collect();
-            let layouts_of: Vec<_> = buffers
+            let vertex_layouts: Vec<_> = buffers
                 .iter()
                 .zip(&attributes)
                 .map(|(formats, attributes)| {
@@ -220,7 +220,7 @@ impl Pipelines {
                     module: &module,
                     entry_point: Some(vertex),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &layouts_of,
+                    buffers: &vertex_layouts,
                 },
                 primitive: wgpu::PrimitiveState {
                     topology: wgpu::PrimitiveTopology::TriangleStrip,
