@@ -51,7 +51,9 @@ const MOST_OUTLIERS: f64 = 0.02;
 /// them. Where 10 % or 20 % of the normals of tori and plates are flipped at random, 0.1 to 0.3 find all of them and 0.5 nearly all. On
 /// 2,000 random points of a plate that is thinner than they are apart, 0.1 turns 9 right normals round, 0.3 one.
 const DISAGREEING: f64 = 0.3;
-/// Largest number of times that all given normals are compared with their neighbours: each time those beside turned ones are clearer.
+/// Largest number of times that all given normals are compared with their neighbours: each time those beside turned ones are clearer. Of
+/// 128 clouds of 1,500 random points of tori, plates and noisy spheres, 5 to 30 % of whose normals were flipped, each settles within 7;
+/// the limit is for clouds that never do, since a point need not be a neighbour of its neighbours.
 const MOST_ROUNDS: u32 = 16;
 
 /// Share of such pairs above which the user is warned. Half and double warn of the same ones of twelve random clouds.
