@@ -2,6 +2,7 @@
 //!
 //! The pipelines are built from the lists of formats, and a test compares the lists with the WGSL.
 
+use AttributeFormat::{Float32, Float32x3, Float32x4, Snorm16x2, Unorm8x4};
 use bytemuck::{Pod, Zeroable};
 
 /// Instance record of a particle without its colour: 28 bytes.
@@ -151,8 +152,6 @@ impl AttributeFormat {
 /// Formats of the vertex attributes of the two buffers of an instance: those of the fields of its record in order, and those of its
 /// colours. They have the `@location`s from 0 on, without a gap from the one buffer to the other.
 pub type InstanceFormats = [&'static [AttributeFormat]; 2];
-
-use AttributeFormat::{Float32, Float32x3, Float32x4, Snorm16x2, Unorm8x4};
 
 /// Formats of a particle: a [`Record`] and its colour.
 pub const PARTICLE: InstanceFormats = [&[Float32x3, Float32, Snorm16x2, Float32, Float32], &[Unorm8x4]];
