@@ -52,13 +52,34 @@ impl Default for Figures {
             dup: 0,
             not_finite: 0,
             boundary_excluded: 0,
-            accuracy: Accuracy::default(),
-            spacing: Spacing::default(),
-            coverage: Coverage::default(),
-            order: Order::default(),
-            edges: Edges::default(),
-            connectivity: Connectivity::default(),
-            angles: Angles::default(),
+            accuracy: Accuracy { err_max: NONE, err_mean: NONE, undefined: 0, nrm_mean: NONE, nrm_max: NONE },
+            spacing: Spacing {
+                nn_min: NONE,
+                nn_mean: NONE,
+                nn_cv: NONE,
+                nn_ratio: NONE,
+                rho: NONE,
+                rho_1: NONE,
+                crowded: None,
+            },
+            coverage: Coverage {
+                cover: NONE,
+                cover_local: NONE,
+                quant: NONE,
+                uncovered: NONE,
+                wide_holes: None,
+            },
+            order: Order { six: NONE, five_seven: NONE, val_sd: NONE, open: 0, psi6: NONE },
+            edges: Edges { edge_cv: NONE, size_cv: NONE, overlap_min: NONE },
+            connectivity: Connectivity { tri_ok: NONE, agree: NONE, euler: 0, components: 0 },
+            angles: Angles {
+                ang_min: NONE,
+                ang_min_mean: NONE,
+                lt30: NONE,
+                gt90: NONE,
+                a_lt30: NONE,
+                a_gt90: NONE,
+            },
         }
     }
 }
@@ -77,12 +98,6 @@ pub struct Accuracy {
     pub nrm_mean: f64,
     /// Largest angle between the given normals (either sign) and ∇f, in degrees.
     pub nrm_max: f64,
-}
-
-impl Default for Accuracy {
-    fn default() -> Self {
-        Self { err_max: NONE, err_mean: NONE, undefined: 0, nrm_mean: NONE, nrm_max: NONE }
-    }
 }
 
 /// Distances of the points from their nearest ones.
@@ -107,20 +122,6 @@ pub struct Spacing {
     pub crowded: Option<usize>,
 }
 
-impl Default for Spacing {
-    fn default() -> Self {
-        Self {
-            nn_min: NONE,
-            nn_mean: NONE,
-            nn_cv: NONE,
-            nn_ratio: NONE,
-            rho: NONE,
-            rho_1: NONE,
-            crowded: None,
-        }
-    }
-}
-
 /// Holes between the points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -141,12 +142,6 @@ pub struct Coverage {
     pub wide_holes: Option<usize>,
 }
 
-impl Default for Coverage {
-    fn default() -> Self {
-        Self { cover: NONE, cover_local: NONE, quant: NONE, uncovered: NONE, wide_holes: None }
-    }
-}
-
 /// Valences of the points, and their six-fold order.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -163,12 +158,6 @@ pub struct Order {
     pub psi6: f64,
 }
 
-impl Default for Order {
-    fn default() -> Self {
-        Self { six: NONE, five_seven: NONE, val_sd: NONE, open: 0, psi6: NONE }
-    }
-}
-
 /// Lengths of the edges between natural neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -180,12 +169,6 @@ pub struct Edges {
     /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
     /// duplicates.
     pub overlap_min: f64,
-}
-
-impl Default for Edges {
-    fn default() -> Self {
-        Self { edge_cv: NONE, size_cv: NONE, overlap_min: NONE }
-    }
 }
 
 /// Triangles of natural neighbours, and the topology that they show.
@@ -204,12 +187,6 @@ pub struct Connectivity {
     pub components: usize,
 }
 
-impl Default for Connectivity {
-    fn default() -> Self {
-        Self { tri_ok: NONE, agree: NONE, euler: 0, components: 0 }
-    }
-}
-
 /// Angles of the triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -226,12 +203,6 @@ pub struct Angles {
     pub a_lt30: f64,
     /// Fraction of all angles above 90°.
     pub a_gt90: f64,
-}
-
-impl Default for Angles {
-    fn default() -> Self {
-        Self { ang_min: NONE, ang_min_mean: NONE, lt30: NONE, gt90: NONE, a_lt30: NONE, a_gt90: NONE }
-    }
 }
 
 /// Returns d_hex, the spacing of a perfect hexagonal lattice of `count` points on this `area`: √(2A/(√3 N)).

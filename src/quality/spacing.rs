@@ -1,6 +1,6 @@
 //! Figures of the nearest-neighbour distances.
 
-use super::figures::Spacing;
+use super::figures::{Figures, Spacing};
 use super::moments::Moments;
 use super::places::{CROWDED, Pairs};
 use super::points::MeasuredPoints;
@@ -82,7 +82,7 @@ pub(super) fn measure(points: &MeasuredPoints, inner: &[bool], duplicates: usize
         .map(|d| key(d, 0))
         .collect();
     if sorted.is_empty() {
-        return Spacing::default();
+        return Figures::default().spacing;
     }
     sorted.sort_unstable();
     let distance = |k: usize| f64::from(unkey(sorted[k]).0);
