@@ -11,13 +11,9 @@ use glam::Vec3;
 /// An edge may lead across a gap if it is longer than this many times the spacing at either end. With half of it all of 34 random
 /// surfaces fall into pieces; with twice as much 4 of them have another number of components.
 pub(super) const LONG: f32 = 2.0;
-/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times that of the one
-/// before it: a single neighbour may be far too near. With 2 the figures of 7 of 34 random surfaces are others, with 4 those of
-/// 5, in the fourth digit.
+/// The distance of the natural neighbour with this rank is the spacing at a point, of fewer that of the last: a single neighbour may be
+/// far too near. With 2 the figures of 7 of 34 random surfaces are others, with 4 those of 5, in the fourth digit.
 const RANK: usize = 3;
-/// Keeps the spacing at the end of a row of particles, where the third neighbour lies across a gap, near that of the second. Half
-/// and double give the same figures on 34 random surfaces.
-const FARTHEST: f32 = 3.0;
 /// Evaluations on the way from the middle of an edge to the surface: after three Newton steps. One fewer or one more gives the
 /// same figures on 34 random surfaces.
 const STEPS: u32 = 4;
@@ -40,8 +36,7 @@ pub(super) async fn spacing_of(points: &MeasuredPoints) -> Vec<f32> {
             lengths.clear();
             lengths.extend(points.rings.of(i).map(|j| p.distance(points.tree.position[j])));
             sort_few(&mut lengths, |a, b| a < b);
-            let before: f32 = lengths.get(RANK - 2).or(lengths.first()).copied().unwrap_or(0.0);
-            lengths.get(RANK - 1).map_or(before, |&third| third.min(FARTHEST * before))
+            lengths.get(RANK - 1).or(lengths.last()).copied().unwrap_or(0.0)
         }));
         pause().await;
     }
