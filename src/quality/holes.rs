@@ -2,7 +2,6 @@
 
 use super::border::Border;
 use super::creases::CreaseRows;
-use super::nearby::PointsInBox;
 use super::places::{Hole, WIDE};
 use super::probe;
 use super::projection::{LAST_STEP, is_reached, project};
@@ -46,8 +45,6 @@ pub(super) struct Cover<'a> {
     pub(super) discs: &'a [f32],
     /// Radius of a hole in the perfect lattice, d_hex/√3.
     pub(super) lattice: f32,
-    /// Largest leash of a sample whose surroundings are gathered at once: farther ones hold too many points.
-    pub(super) wide: f32,
 }
 
 impl Cover<'_> {
@@ -57,12 +54,12 @@ impl Cover<'_> {
     }
 
     /// Returns whether a sample counts: it is away from the border.
-    pub(super) fn counts(&self, p: Vec3) -> bool {
+    fn counts(&self, p: Vec3) -> bool {
         self.border.is_none_or(|border| !border.is_near(p))
     }
 
     /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if there are no wanted radii.
-    pub(super) fn ideal(&self, points: &[u32]) -> f32 {
+    fn ideal(&self, points: &[u32]) -> f32 {
         self.wanted.map_or(self.lattice, |wanted| wanted.hole_between(points))
     }
 
@@ -83,26 +80,84 @@ impl Cover<'_> {
     }
 }
 
-/// Radii of the largest holes. A hole's radius is the distance of a sample of the surface to its nearest point.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LargestHoles {
-    /// Largest radius.
+/// The holes between the points of a surface, and statistics of the distances from its samples to their nearest points. The radius of
+/// a hole is the distance of a sample to its nearest point.
+pub(super) struct Holes {
+    /// Radius of the largest hole.
     pub(super) widest: f64,
     /// Largest radius over that of an ideal hole at the same position.
     pub(super) relative: f64,
+    /// Mean squared distance of the random samples; NaN if there are none.
+    pub(super) mean_sq: f64,
+    /// Share of the random samples that lies outside the discs around them; NaN if there are none.
+    pub(super) bare: f64,
+    /// The wide holes, and those that were the largest when they were found.
+    pub(super) found: Vec<Hole>,
 }
 
-impl LargestHoles {
-    /// Returns the larger of the two radii and of the two ratios.
-    pub(super) fn or(self, other: Self) -> Self {
-        Self { widest: self.widest.max(other.widest), relative: self.relative.max(other.relative) }
+/// Measures the holes by about `count` random samples on the triangles and by their Voronoi corners and, in a box, by random lines.
+pub(super) async fn measure(
+    field: &mut dyn Field,
+    cover: &Cover<'_>,
+    count: usize,
+    bounds: Option<&Bounds>,
+) -> Holes {
+    let mut search = HoleSearch::default();
+    search.add_samples(field, cover, count).await;
+    search.add_corners(field, cover).await;
+    let samples = search.samples as f64;
+    let mut holes = Holes {
+        widest: f64::from(search.widest_sq).sqrt(),
+        relative: f64::from(search.relative_sq).sqrt(),
+        mean_sq: search.sum_sq / samples,
+        bare: search.bare as f64 / samples,
+        found: search.found,
+    };
+    if let Some(bounds) = bounds {
+        holes.add_missed(field, cover, bounds).await;
+    }
+    holes
+}
+
+impl Holes {
+    /// Takes in what the triangles cannot show: components without a point, and regions where the points end. The part of the surface
+    /// that is farther from every point than any sample on the triangles counts by its share of the area.
+    async fn add_missed(&mut self, field: &mut dyn Field, cover: &Cover<'_>, bounds: &Bounds) {
+        // The hundredth allows for the rounding of the samples.
+        let (widest, relative) = (1.01 * self.widest, 1.01 * self.relative);
+        let (mut all, mut far, mut sum_sq) = (0.0, 0.0, 0.0);
+        for chunk in probe::crossings(field, bounds).await.chunks(HEAVY) {
+            for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
+                all += 1.0;
+                let (gap_sq, index) = cover.tree.nearest(p, u32::MAX, f32::INFINITY);
+                if index == u32::MAX {
+                    continue;
+                }
+                let gap = f64::from(gap_sq).sqrt();
+                let ratio = gap / f64::from(cover.ideal(&[index]));
+                if gap > widest {
+                    far += 1.0;
+                    sum_sq += gap * gap;
+                    self.widest = self.widest.max(gap);
+                }
+                if ratio > relative {
+                    self.relative = self.relative.max(ratio);
+                    self.found.push(hole(p, gap, ratio));
+                }
+            }
+            pause().await;
+        }
+        if all > 0.0 {
+            let share = far / all;
+            self.mean_sq = self.mean_sq * (1.0 - share) + sum_sq / all;
+            self.bare = self.bare * (1.0 - share) + share;
+        }
     }
 }
 
-/// Statistics of the distances from samples of the surface to their nearest points.
+/// Search for holes by samples of the surface over the triangles.
 #[derive(Default)]
-pub(super) struct HoleSearch {
-    nearby: PointsInBox,
+struct HoleSearch {
     widest_sq: f32,
     relative_sq: f32,
     /// Sum of the squared distances of the random samples, and their number.
@@ -110,29 +165,10 @@ pub(super) struct HoleSearch {
     samples: usize,
     /// Random samples outside the discs around them.
     bare: usize,
-    /// The wide holes, and those that were the largest when they were found.
-    pub(super) found: Vec<Hole>,
+    found: Vec<Hole>,
 }
 
 impl HoleSearch {
-    /// Returns the largest holes so far.
-    pub(super) fn largest(&self) -> LargestHoles {
-        LargestHoles {
-            widest: f64::from(self.widest_sq).sqrt(),
-            relative: f64::from(self.relative_sq).sqrt(),
-        }
-    }
-
-    /// Returns the mean squared distance of the random samples; NaN if there are none.
-    pub(super) fn mean_sq(&self) -> f64 {
-        self.sum_sq / self.samples as f64
-    }
-
-    /// Returns the share of the random samples that lies outside the discs; NaN if there are none.
-    pub(super) fn bare(&self) -> f64 {
-        self.bare as f64 / self.samples as f64
-    }
-
     /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or relative to the ideal one.
     fn matters(&self, gap_sq: f32, ideal_sq: f32) -> bool {
         gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq || gap_sq > WIDE_SQ * ideal_sq
@@ -148,34 +184,36 @@ impl HoleSearch {
         self.relative_sq = self.relative_sq.max(relative_sq);
     }
 
-    /// Takes in a batch of random samples.
-    fn add_random(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
+    /// Takes in a batch of samples once they are projected, of which the statistics are made if they are `random`.
+    fn add(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch, random: bool) {
         project(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
-            if cover.counts(p) {
-                let bound_sq = cover.nearest_of(p, triangle);
-                let gap_sq = if leash < cover.wide {
-                    self.nearby.nearest_sq(cover.tree, p, bound_sq, leash)
-                } else {
-                    cover.tree.nearest_sq(p, u32::MAX, bound_sq)
-                };
-                let ideal = cover.ideal(triangle);
-                let ideal_sq = ideal * ideal;
-                // On a triangle across a gap in the surface a sample may find no surface.
-                if self.matters(gap_sq, ideal_sq) && !is_reached(field, p, leash.min(gap_sq.sqrt())) {
-                    continue;
-                }
-                self.widen(p, gap_sq, ideal_sq);
+            if !cover.counts(p) {
+                continue;
+            }
+            let gap_sq = cover.tree.nearest_sq(p, u32::MAX, cover.nearest_of(p, triangle));
+            let ideal = cover.ideal(triangle);
+            let ideal_sq = ideal * ideal;
+            let matters = self.matters(gap_sq, ideal_sq);
+            // On a triangle across a gap in the surface a sample may find no surface. The leash of an almost flat triangle is far longer
+            // than the gap.
+            if matters && !is_reached(field, p, leash.min(gap_sq.sqrt())) {
+                continue;
+            }
+            if random {
                 self.sum_sq += f64::from(gap_sq);
                 self.samples += 1;
                 self.bare += usize::from(cover.is_bare(p, triangle));
+            }
+            if matters && cover.creases.reaches(field, triangle[0] as usize, p) {
+                self.widen(p, gap_sq, ideal_sq);
             }
         }
         batch.clear();
     }
 
     /// Takes in the Voronoi corners on the surface: the projected circumcentres of the triangles.
-    pub(super) async fn add_corners(&mut self, field: &mut dyn Field, cover: &Cover<'_>) {
+    async fn add_corners(&mut self, field: &mut dyn Field, cover: &Cover<'_>) {
         let mut batch = Batch::default();
         for triangles in cover.patches() {
             cover.creases.select(field, triangles[0][0] as usize);
@@ -185,49 +223,20 @@ impl HoleSearch {
                         batch.push(centre.as_vec3(), radius as f32, triangle);
                     }
                 }
-                self.add_corner_batch(field, cover, &mut batch);
+                self.add(field, cover, &mut batch, false);
                 pause().await;
             }
         }
         cover.creases.release(field);
     }
 
-    fn add_corner_batch(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
-        project(field, &mut batch.position, &batch.leash, LAST_STEP);
-        for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
-            // Corners that are no wide holes and cannot exceed the largest distances so far are passed over.
-            let bound_sq = cover.nearest_of(p, triangle);
-            let ideal = cover.ideal(triangle);
-            let ideal_sq = ideal * ideal;
-            if self.matters(bound_sq, ideal_sq) {
-                let gap_sq = cover.tree.nearest_sq(p, u32::MAX, bound_sq);
-                // The leash of an almost flat triangle is far longer than the gap.
-                let near = leash.min(gap_sq.sqrt());
-                if self.matters(gap_sq, ideal_sq)
-                    && cover.counts(p)
-                    && is_reached(field, p, near)
-                    && cover.creases.reaches(field, triangle[0] as usize, p)
-                {
-                    self.widen(p, gap_sq, ideal_sq);
-                }
-            }
-        }
-        batch.clear();
-    }
-
     /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their
     /// area, and projected onto the surface.
-    pub(super) async fn add_samples(
-        &mut self,
-        field: &mut dyn Field,
-        cover: &Cover<'_>,
-        count: usize,
-        seed: u64,
-    ) {
+    async fn add_samples(&mut self, field: &mut dyn Field, cover: &Cover<'_>, count: usize) {
         let position = &cover.tree.position;
         let total: f64 = cover.mesh.iter().map(|&t| area_vector(position, t).length()).sum();
         let share = total / count as f64;
-        let mut random = Pcg32::seed_from_u64(seed);
+        let mut random = Pcg32::seed_from_u64(0);
         let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
         let mut batch = Batch::default();
         let mut passed = 0.0;
@@ -247,7 +256,7 @@ impl HoleSearch {
                     let corner = (p - a).length().min((p - b).length()).min((p - c).length());
                     batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
                     if batch.position.len() == BATCH {
-                        self.add_random(field, cover, &mut batch);
+                        self.add(field, cover, &mut batch, true);
                         pause().await;
                     }
                     next = share * (stratum + unit());
@@ -255,10 +264,10 @@ impl HoleSearch {
                 }
             }
             if !cover.creases.is_empty() {
-                self.add_random(field, cover, &mut batch);
+                self.add(field, cover, &mut batch, true);
             }
         }
-        self.add_random(field, cover, &mut batch);
+        self.add(field, cover, &mut batch, true);
         cover.creases.release(field);
     }
 }
@@ -287,58 +296,6 @@ impl Batch {
     }
 }
 
-/// The part of the surface that is farther from every point than any sample on the triangles.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Uncovered {
-    /// Share of the area.
-    pub(super) share: f64,
-    /// Sum of the squared distances to the nearest point over the number of all samples.
-    pub(super) sum_sq: f64,
-    pub(super) largest: LargestHoles,
-    /// The holes among them that are wide.
-    pub(super) found: Vec<Hole>,
-}
-
-/// Measures what the triangles cannot show: components without a point, and regions where the points end. `spanned` are
-/// the largest holes on the triangles.
-pub(super) async fn uncovered(
-    cover: &Cover<'_>,
-    field: &mut dyn Field,
-    bounds: &Bounds,
-    seed: u64,
-    spanned: LargestHoles,
-) -> Uncovered {
-    let mut uncovered = Uncovered::default();
-    let (mut all, mut far) = (0.0, 0.0);
-    for chunk in probe::crossings(field, bounds, seed).await.chunks(HEAVY) {
-        for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
-            all += 1.0;
-            let (gap_sq, index) = cover.tree.nearest(p, u32::MAX, f32::INFINITY);
-            if index == u32::MAX {
-                continue;
-            }
-            let gap = f64::from(gap_sq).sqrt();
-            let relative = gap / f64::from(cover.ideal(&[index]));
-            // The hundredth allows for the rounding of the samples.
-            if gap > 1.01 * spanned.widest {
-                far += 1.0;
-                uncovered.sum_sq += gap * gap;
-                uncovered.largest.widest = uncovered.largest.widest.max(gap);
-            }
-            if relative > 1.01 * spanned.relative {
-                uncovered.largest.relative = uncovered.largest.relative.max(relative);
-                uncovered.found.push(hole(p, gap, relative));
-            }
-        }
-        pause().await;
-    }
-    if all > 0.0 {
-        uncovered.share = far / all;
-        uncovered.sum_sq /= all;
-    }
-    uncovered
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -363,11 +320,11 @@ mod tests {
                 wanted: None,
                 discs: &[],
                 lattice: 1.0,
-                wide: 1.0,
             };
             let mut search = HoleSearch::default();
             complete(search.add_corners(&mut field, &cover));
-            assert!(holes.contains(&search.largest().widest), "{}", search.largest().widest);
+            let widest = search.widest_sq.sqrt();
+            assert!(holes.contains(&widest), "{widest}");
         }
     }
 }

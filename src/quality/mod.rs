@@ -28,7 +28,6 @@ pub mod figures;
 mod gaps;
 mod holes;
 mod moments;
-mod nearby;
 mod one_rings;
 mod options;
 mod order;
@@ -56,23 +55,23 @@ use accuracy::first_order_height;
 use border::Border;
 use figures::hexagonal_spacing;
 use glam::Vec3;
-use holes::{Cover, HoleSearch, Uncovered, uncovered};
+use holes::Cover;
 use moments::{Moments, share};
 use order::ValenceTally;
 use places::Pairs;
 use points::MeasuredPoints;
 use prepared::Prepared;
-use sizes::{EdgeRatios, WantedRadii};
+use sizes::WantedRadii;
 use triangles::TriangleAngles;
 
+/// Smallest number of random samples for `quant`, of which there is at least one for each particle: stratified, so many give it to about
+/// 0.1 %.
+const LEAST_SAMPLES: usize = 65_536;
 /// Largest number of random samples for `quant`. Over a disc the squared distance scatters by 0.58 of its mean, so that the error
 /// of so many samples is 0.1 %.
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
-/// Size of a triangle, in d_hex, from which on it lies in a hole, and its samples look for the nearest point one by one. Half and
-/// double give the same figures, in the same time within 2 %.
-const SPREAD: f64 = 2.0;
 
 /// The figures of a set of particles, and columns with values for each particle, in the order given.
 #[derive(Clone, Debug, Default)]
@@ -259,7 +258,7 @@ async fn figures_of(
     (measured.component, measured.opening) = measure_triangles(prepared, [&inner, &once], &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
-        let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
+        let lattice = (figures.d_hex / SQRT_3) as f32;
         let cover = Cover {
             tree: &points.tree,
             creases: &points.creases,
@@ -268,9 +267,8 @@ async fn figures_of(
             wanted,
             discs: options.discs,
             lattice,
-            wide,
         };
-        measured.holes = measure_holes(&cover, field, bounds, options, &mut figures).await;
+        measured.holes = measure_holes(&cover, field, bounds, &mut figures).await;
     }
     DistinctFigures { figures, ..measured }
 }
@@ -296,29 +294,34 @@ async fn measure_neighbourhoods(
     figures: &mut Figures,
 ) -> Pairs {
     let mut order = ValenceTally::default();
-    let mut edge = Moments::default();
-    let mut ratios = EdgeRatios::default();
+    let (mut edge, mut size) = (Moments::default(), Moments::default());
+    let mut pairs = Pairs::default();
     for range in ranges(points.tree.len(), MEDIUM) {
         for i in range.filter(|&i| inner[i]) {
             // On a crease a particle has neighbours on one side only.
             if !points.creases.holds(i) {
                 order.add(points, i);
             }
-            let mutual = points.mutual(inner, i).filter(|&j| points.creases.is_first_pair(i, j));
-            mutual.for_each(|j| edge.add(points.distance(i, j)));
-            wanted.iter().for_each(|wanted| ratios.add(wanted, points, inner, i));
+            for j in points.mutual(inner, i).filter(|&j| points.creases.is_first_pair(i, j)) {
+                edge.add(points.distance(i, j));
+                let ratio = wanted.map_or(f64::NAN, |wanted| wanted.ratio(points, i, j));
+                if ratio.is_finite() {
+                    size.add(ratio);
+                }
+            }
         }
         pause().await;
     }
     figures.order = order.figures();
     figures.edges.edge_cv = edge.variation();
-    if wanted.is_some() {
-        figures.edges.size_cv = ratios.edge.variation();
-        figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { ratios.least };
+    if let Some(wanted) = wanted {
+        figures.edges.size_cv = size.variation();
+        let least = wanted.add_pairs(points, inner, &mut pairs).await;
+        figures.edges.overlap_min = if figures.dup > 0 { 0.0 } else { least };
     } else {
-        spacing::add_pairs(points, inner, figures.d_hex, &mut ratios.pairs).await;
+        spacing::add_pairs(points, inner, figures.d_hex, &mut pairs).await;
     }
-    ratios.pairs
+    pairs
 }
 
 /// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of those that are also counted
@@ -374,35 +377,24 @@ fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[V
     Some(Opening { edges: open().count(), points: bare().count(), position: position[first] })
 }
 
-/// Measures the holes by samples on the triangles and, in a box, on random lines. Returns the wide ones.
+/// Measures the holes. Returns the wide ones.
 async fn measure_holes(
     cover: &Cover<'_>,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &MeasureOptions<'_>,
     figures: &mut Figures,
 ) -> Vec<Hole> {
     let n = cover.tree.len() - cover.creases.further();
-    let samples = n.max(options.samples).min(MOST_SAMPLES);
-    let mut search = HoleSearch::default();
-    search.add_samples(field, cover, samples, options.seed).await;
-    search.add_corners(field, cover).await;
-    let uncovered = match bounds {
-        Some(bounds) => uncovered(cover, field, bounds, options.seed, search.largest()).await,
-        None => Uncovered::default(),
-    };
-    let holes = search.largest().or(uncovered.largest);
+    let holes = holes::measure(field, cover, n.clamp(LEAST_SAMPLES, MOST_SAMPLES), bounds).await;
     figures.coverage.cover = holes.widest / (figures.d_hex / SQRT_3);
     if cover.wanted.is_some() {
         figures.coverage.cover_local = holes.relative;
     }
-    let mean_sq = search.mean_sq() * (1.0 - uncovered.share) + uncovered.sum_sq;
-    figures.coverage.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
-    if !options.discs.is_empty() {
-        figures.coverage.uncovered = search.bare() * (1.0 - uncovered.share) + uncovered.share;
+    figures.coverage.quant = holes.mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
+    if !cover.discs.is_empty() {
+        figures.coverage.uncovered = holes.bare;
     }
-    search.found.extend(uncovered.found);
-    let (wide, reported) = places::distinct(search.found).await;
+    let (wide, reported) = places::distinct(holes.found).await;
     figures.coverage.wide_holes = Some(wide);
     reported
 }

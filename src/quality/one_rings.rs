@@ -1,12 +1,11 @@
 //! One-rings: the natural neighbours of every point, counter-clockwise around its normal.
 
 use super::cell::VoronoiCell;
-use super::nearby::PointsInBox;
 use super::sheets::Sheets;
 use crate::field::Field;
 use crate::math::{LANES, key, tangent_frame, unkey};
 use crate::slices::pause;
-use crate::spatial::tree::{Leaf, Tree};
+use crate::spatial::tree::{Leaf, PointsInBox, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Numbers of nearest points that are tried in turn while a cell is not proven complete, each about three times the one before.

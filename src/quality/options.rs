@@ -1,9 +1,9 @@
-//! Options of a measurement: the wanted radii, the exact area where it is known, and the sampling of holes.
+//! Options of a measurement: what is known of the surface and its particles.
 
 use crate::particles::Particles;
 
-/// Options of a measurement: what is known of the surface and its particles, and the number of random samples.
-#[derive(Clone, Copy, Debug)]
+/// Options of a measurement: what is known of the surface and its particles.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct MeasureOptions<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
@@ -16,16 +16,4 @@ pub struct MeasureOptions<'a> {
     /// The particles of which patch, twins, segments and sides are used, where the surface has creases. Neighbours of a particle are looked for on
     /// its own patch, and the patches are one surface by the particles on creases. Each column is then one of rows.
     pub rows: Option<&'a Particles>,
-    /// Smallest number of random samples for [`Coverage::quant`](super::figures::Coverage::quant). There is at least one for each
-    /// particle, and there are at most 262,144.
-    pub samples: usize,
-    /// Seed of the random samples.
-    pub seed: u64,
-}
-
-impl Default for MeasureOptions<'_> {
-    fn default() -> Self {
-        // 65,536 stratified samples give `quant` to about 0.1 %.
-        Self { area: None, radii: None, discs: &[], rows: None, samples: 65_536, seed: 0 }
-    }
 }

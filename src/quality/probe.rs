@@ -24,14 +24,14 @@ const BATCH: usize = 8;
 /// A crossing counts if its first-order distance from the surface after projection is below this share of the step along the
 /// line: at poles and jumps the sign changes too. Half and double give the same figures on 34 random surfaces.
 const RESIDUAL: f32 = 1e-2;
-/// Separates these random numbers from others with the same seed: the letters of `lines`.
+/// Seed of the lines, other than that of the samples on triangles: the letters of `lines`.
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
 /// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each line.
-pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Vec<Vec3> {
+pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds) -> Vec<Vec3> {
     let mut found = Vec::new();
     if bounds.is_valid() {
-        let mut random = Pcg32::seed_from_u64(seed ^ STREAM);
+        let mut random = Pcg32::seed_from_u64(STREAM);
         for _ in 0..LINES / BATCH {
             cross(field, bounds, &mut random, &mut found);
             pause().await;

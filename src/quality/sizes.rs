@@ -1,9 +1,9 @@
 //! Figures relative to the wanted radius of each point.
 
-use super::moments::Moments;
 use super::places::Pairs;
 use super::points::MeasuredPoints;
 use crate::math::{HEXAGONAL_CELL, SQRT_3};
+use crate::slices::{MEDIUM, pause, ranges};
 
 /// Radius of a hole in a hexagonal lattice of radius 1: the circumradius of a triangle of side 2.
 const HOLE: f64 = 2.0 / SQRT_3;
@@ -36,42 +36,25 @@ impl WantedRadii {
         let sum: f64 = points.iter().map(|&i| self.radius[i as usize]).sum();
         (self.hole * sum / points.len() as f64) as f32
     }
-}
-
-/// Statistics of the edge lengths over the sums of the wanted radii at their ends.
-pub(super) struct EdgeRatios {
-    /// Ratios of the edges between mutual natural neighbours.
-    pub(super) edge: Moments,
-    /// Smallest ratio of two natural neighbours.
-    pub(super) least: f64,
-    /// Pairs of natural neighbours by their ratios.
-    pub(super) pairs: Pairs,
-}
-
-impl Default for EdgeRatios {
-    fn default() -> Self {
-        Self { edge: Moments::default(), least: f64::NAN, pairs: Pairs::default() }
-    }
-}
-
-impl EdgeRatios {
-    /// Takes in the edges of point `i`.
-    pub(super) fn add(&mut self, wanted: &WantedRadii, points: &MeasuredPoints, inner: &[bool], i: usize) {
-        points
-            .mutual(inner, i)
-            .filter(|&j| points.creases.is_first_pair(i, j))
-            .map(|j| wanted.ratio(points, i, j))
-            .filter(|ratio| ratio.is_finite())
-            .for_each(|ratio| self.edge.add(ratio));
-        for j in points.rings.of(i) {
-            let ratio = wanted.ratio(points, i, j);
-            self.least = self.least.min(ratio);
-            // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
-            let is_seen_again = j < i && inner[j] && points.rings.adjacent(j, i);
-            if ratio.is_finite() && !is_seen_again && points.creases.is_first_pair(i, j) {
-                let [i, j] = [i, j].map(|i| points.creases.particle(&points.tree, i));
-                self.pairs.add(ratio, i, j);
+    /// Adds the pairs of natural neighbours, of which at least one is `inner`, by their ratios. Returns the smallest ratio; NaN if there
+    /// is none.
+    pub(super) async fn add_pairs(&self, points: &MeasuredPoints, inner: &[bool], pairs: &mut Pairs) -> f64 {
+        let MeasuredPoints { tree, rings, creases, .. } = points;
+        let mut least = f64::NAN;
+        for range in ranges(inner.len(), MEDIUM) {
+            for i in range.filter(|&i| inner[i]) {
+                for j in rings.of(i) {
+                    let ratio = self.ratio(points, i, j);
+                    least = least.min(ratio);
+                    // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
+                    let is_seen_again = j < i && inner[j] && rings.adjacent(j, i);
+                    if ratio.is_finite() && !is_seen_again && creases.is_first_pair(i, j) {
+                        pairs.add(ratio, creases.particle(tree, i), creases.particle(tree, j));
+                    }
+                }
             }
+            pause().await;
         }
+        least
     }
 }

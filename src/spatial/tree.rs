@@ -1,7 +1,7 @@
 //! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the
-//! points are distributed nor on distant outliers.
+//! points are distributed nor on distant outliers. What lies around the points of a leaf is gathered once, in lanes.
 
-use crate::math::{key, sort_few, unkey};
+use crate::math::{LANES, Lanes, key, sort_few, unkey};
 use crate::slices::{self, LIGHT, pause};
 use glam::Vec3;
 
@@ -209,6 +209,41 @@ impl Tree {
             depth -= 1;
             index = stack[depth];
         }
+    }
+}
+
+/// The points of a tree in a box.
+#[derive(Debug, Default)]
+pub(crate) struct PointsInBox {
+    /// Indices of the points in tree order.
+    pub(crate) index: Vec<u32>,
+    /// Coordinates of the points; the last lanes are filled up with points infinitely far away.
+    pub(crate) position: Vec<[Lanes; 3]>,
+}
+
+impl PointsInBox {
+    /// Replaces the content by the points in the closed box from `lo` to `hi`.
+    pub(crate) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
+        self.index.clear();
+        tree.within_box(lo, hi, &mut self.index);
+        self.position.clear();
+        self.position.extend(self.index.chunks(LANES).map(|chunk| {
+            let mut lanes = [Lanes::splat(f32::INFINITY); 3];
+            for (k, &i) in chunk.iter().enumerate() {
+                let p = tree.position[i as usize];
+                (lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]) = (p.x, p.y, p.z);
+            }
+            lanes
+        }));
+    }
+
+    /// Returns the squared distances from `p` in the order of the points, followed by some infinite ones.
+    #[inline]
+    pub(crate) fn distances_sq(&self, p: Vec3) -> impl Iterator<Item = Lanes> {
+        self.position.iter().map(move |[x, y, z]| {
+            let (dx, dy, dz) = (*x - Lanes::splat(p.x), *y - Lanes::splat(p.y), *z - Lanes::splat(p.z));
+            dx * dx + dy * dy + dz * dz
+        })
     }
 }
 

@@ -1,8 +1,8 @@
 //! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
 
-use crate::math::{LANES, tangent_frame, unkey};
+use crate::math::{LANES, Lanes, tangent_frame, unkey};
 use crate::spatial::LANES_OF;
-use crate::spatial::tree::Tree;
+use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
 /// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds some 18.
@@ -18,12 +18,10 @@ const MIN_FLAT: f32 = 0.2;
 /// random runs are in no triangle; with twice as much 81, but a surface that crosses itself has a hole more.
 pub(super) const MAX_LIFT: f32 = 0.35;
 
-/// The points of a tree in a box.
+/// The points of a tree in a box, with their normals.
 #[derive(Default)]
 pub(super) struct BallPoints {
-    index: Vec<u32>,
-    /// Positions, by coordinate; the last ones are infinitely far away.
-    place: Vec<[[f32; LANES]; 3]>,
+    near: PointsInBox,
     /// Position and normal of each point.
     point: Vec<[f32; 6]>,
 }
@@ -31,19 +29,12 @@ pub(super) struct BallPoints {
 impl BallPoints {
     /// Replaces the content by the points in the closed box from `lo` to `hi`.
     pub(super) fn gather(&mut self, tree: &Tree, normal: &[Vec3], lo: Vec3, hi: Vec3) {
-        self.index.clear();
-        tree.within_box(lo, hi, &mut self.index);
-        self.place.clear();
+        self.near.gather(tree, lo, hi);
         self.point.clear();
-        for chunk in self.index.chunks(LANES) {
-            let mut lanes = [[f32::INFINITY; LANES]; 3];
-            for (k, &i) in chunk.iter().enumerate() {
-                let (p, n) = (tree.position[i as usize], normal[i as usize]);
-                (lanes[0][k], lanes[1][k], lanes[2][k]) = (p.x, p.y, p.z);
-                self.point.push([p.x, p.y, p.z, n.x, n.y, n.z]);
-            }
-            self.place.push(lanes);
-        }
+        self.point.extend(self.near.index.iter().map(|&i| {
+            let (p, n) = (tree.position[i as usize], normal[i as usize]);
+            [p.x, p.y, p.z, n.x, n.y, n.z]
+        }));
     }
 }
 
@@ -94,13 +85,13 @@ impl Ball {
         except: u32,
     ) -> bool {
         self.count = 0;
-        let BallPoints { index, place, point } = surroundings;
+        let BallPoints { near: PointsInBox { index, position }, point } = surroundings;
         let mut hits = [0_u32; MOST + LANES];
         let mut count = 0;
         let bound_sq = Vec4::splat(bound_sq);
-        for (block, [x, y, z]) in place.iter().enumerate() {
+        for (block, [x, y, z]) in position.iter().enumerate() {
             let near = |first: usize| {
-                let offset = |row: &[f32; LANES], c: f32| Vec4::from_slice(&row[first..first + WIDTH]) - c;
+                let offset = |row: &Lanes, c: f32| Vec4::from_slice(&row.0[first..first + WIDTH]) - c;
                 let (dx, dy, dz) = (offset(x, centre.x), offset(y, centre.y), offset(z, centre.z));
                 (dx * dx + dy * dy + dz * dz).cmplt(bound_sq).bitmask()
             };
