@@ -142,9 +142,12 @@ fn document(columns: &[BufferColumn], length: usize, origin: DVec3, record: &Rec
 /// Colour of a generation level, linear, with opacity: a rhombus in the a–b plane of OKLab at constant lightness, the page's light
 /// cycle. OKLab is Björn Ottosson's, "A perceptual color space for image processing", 2020.
 fn colour(level: u32) -> [u8; 4] {
+    /// Lightness of the page's cycle on a light ground.
     const LIGHTNESS: f32 = 0.7;
-    /// Half the lengths of the rhombus' axes.
+    /// Half the length of the rhombus along a: at this lightness sRGB has no colour of a larger a than 0.127, positive and negative.
     const A: f32 = 0.12;
+    /// Half the length of the rhombus along b: at the lightness 0.75 of the page's cycle on a dark ground, which has the same rhombus, sRGB
+    /// has no colour of a larger b than 0.127, positive and negative.
     const B: f32 = 0.125;
     // Triangle wave of period 1: 0 → 1 → 0 → −1.
     let triangle = |t: f32| match t - t.floor() {

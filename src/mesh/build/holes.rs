@@ -15,7 +15,9 @@ const AT_BOX: f64 = 1.5;
 /// Rounds in which holes are filled and, where that fails, made larger by a vertex. One of 46 unrelaxed random runs takes more
 /// than six; with twice as many it has 11 particles fewer in triangles.
 const ROUNDS: u32 = 12;
-/// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface.
+/// Largest number of edges of a hole that is filled. A longer loop is taken for a border of the surface. Half and double give the same
+/// meshes of 33 random runs. Where 40 % of the particles of 36 are taken out, half leaves 117 borders instead of 114 and double 108; but
+/// of 12 random surfaces that end at loops of 12 to 55 edges, double closes 10 instead of 2, and half one.
 const LARGEST: usize = 24;
 /// Largest number of edges of a hole along a rim that is filled: the work grows with the cube of it, to some 10 ms at this number.
 const LARGEST_AT_RIM: usize = 96;
