@@ -1,6 +1,5 @@
-//! Why a command was refused, as the page shows it.
+//! Why a command was refused. What was there before stays.
 
-use super::FieldError;
 use crate::field::formula::{FormulaError, FormulaErrorKind, Mended};
 use core::fmt;
 use serde::Serialize;
@@ -28,7 +27,8 @@ pub enum FaultKind {
 }
 
 /// The error with which a command is refused.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize)]
+#[error("{message}")]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fault {
     /// Kind of the error.
@@ -36,9 +36,9 @@ pub struct Fault {
     /// The error as a sentence for the user, in plain text.
     pub message: String,
     /// Start of the mistake in the formula, in UTF-16 code units, as the selection of a text field counts.
-    pub start: usize,
+    pub start: u32,
     /// End of the mistake in the formula, in UTF-16 code units.
-    pub end: usize,
+    pub end: u32,
     /// Text that would mend the span, if there is a good guess.
     pub suggestion: Option<String>,
     /// The formula with every mistake of this kind mended, if there are several.
@@ -85,23 +85,12 @@ impl Fault {
         Self {
             kind: FaultKind::Formula(error.kind),
             message: error.message,
-            start: span.start,
-            end: span.end,
+            start: span.start as u32,
+            end: span.end as u32,
             suggestion: error.suggestion,
             mended: error.mended,
             names: error.names,
             excess: None,
-        }
-    }
-
-    /// Why a field was refused whose formula, if it has one, is `text`.
-    #[must_use]
-    pub fn in_field(error: FieldError, text: &str) -> Self {
-        match error {
-            FieldError::Formula(error) => Self::in_formula(error, text),
-            FieldError::UnknownSurface(_) => Self::new(FaultKind::UnknownSurface, &error),
-            FieldError::Box => Self::new(FaultKind::Box, &error),
-            FieldError::Points(_) => Self::new(FaultKind::Points, &error),
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
-use crate::field::rbf::{DataError, Pull, RbfData, RbfField, pulled_box};
+use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
 use crate::run::{Report, Run, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
@@ -87,24 +87,6 @@ pub struct FieldAnswer {
     pub mathml: Option<MathNode>,
     /// What has become of the surface that was to pass through the pins of the request; none without pins.
     pub grip: Option<Grip>,
-}
-
-/// Why a field was refused. The field before it stays.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FieldError {
-    /// The formula has a mistake.
-    #[error(transparent)]
-    Formula(#[from] FormulaError),
-    /// There is no surface of that name.
-    #[error("there is no surface `{0}` in the gallery")]
-    UnknownSurface(String),
-    /// The box is not valid.
-    #[error("the box {}", Bounds::REQUIREMENT)]
-    Box,
-    /// The centres and coefficients do not describe a field.
-    #[error(transparent)]
-    Points(#[from] DataError),
 }
 
 /// The field of a session.
@@ -233,15 +215,16 @@ impl Session {
     ///
     /// If the surface is unknown, the formula has a mistake, a value is not finite or the box is not one; nothing is
     /// changed then.
-    pub fn set_field(&mut self, request: &FieldRequest) -> Result<FieldAnswer, FieldError> {
+    pub fn set_field(&mut self, request: &FieldRequest) -> Result<FieldAnswer, Fault> {
         let surface = match &request.surface {
-            Some(id) => Some(gallery::find(id).ok_or_else(|| FieldError::UnknownSurface(id.clone()))?),
+            Some(id) => Some(gallery::find(id).ok_or_else(|| {
+                let message = format!("there is no surface `{id}` in the gallery");
+                Fault::new(FaultKind::UnknownSurface, &message)
+            })?),
             None => None,
         };
         let own = request.bounds.or(surface.map(|s| s.bounds)).unwrap_or(self.own);
-        if !own.is_valid() {
-            return Err(FieldError::Box);
-        }
+        check_box(&own)?;
         // A box stays given while the present field is changed.
         let is_given = request.bounds.is_some() || surface.is_none() && self.fitting.is_given;
         let present = self.source().formula();
@@ -257,7 +240,8 @@ impl Session {
             }
         };
         let declared = self.declared_for(surface, text, request);
-        let mut field = self.formula_field(text, &declared, request)?;
+        let mut field =
+            self.formula_field(text, &declared, request).map_err(|error| Fault::in_formula(error, text))?;
         let pins: Vec<DVec3> = request.pins.iter().map(|&pin| pin.into()).collect();
         let grip = (!pins.is_empty()).then(|| field.pass_through(&pins));
         let surface = surface
@@ -301,7 +285,7 @@ impl Session {
         text: &str,
         declared: &[Parameter],
         request: &FieldRequest,
-    ) -> Result<Formula, FieldError> {
+    ) -> Result<Formula, FormulaError> {
         let mut field = match self.source().formula() {
             Some(field) if text == field.text() && declared == self.declared => field.clone(),
             _ => Formula::as_written(text, declared)?.without_powers(),
@@ -379,20 +363,19 @@ impl Session {
         info: ModelInfo,
         bounds: Bounds,
         request: &FieldRequest,
-    ) -> Result<FieldAnswer, FieldError> {
+    ) -> Result<FieldAnswer, Fault> {
         let pulls = request.pulls.as_slice();
         let bounds = request.bounds.unwrap_or_else(|| pulled_box(&bounds, pulls));
-        if !bounds.is_valid() {
-            return Err(FieldError::Box);
-        }
+        check_box(&bounds)?;
         let data = data.into();
         let known = match self.source() {
             Source::Points { field, .. } if *field.data() == data => Some(field.clone()),
             _ => None,
         };
         let is_same = known.as_ref().is_some_and(|field| field.pulls() == pulls);
-        let mut field = known.map_or_else(|| RbfField::new(data), Ok)?;
-        field.pull(pulls)?;
+        let refused = |error| Fault::new(FaultKind::Points, &error);
+        let mut field = known.map_or_else(|| RbfField::new(data), Ok).map_err(refused)?;
+        field.pull(pulls).map_err(refused)?;
         self.run.set_field(Source::Points { field, info }, is_same);
         self.run.set_bounds(bounds, None);
         self.surface = None;
@@ -456,4 +439,10 @@ impl Session {
             }
         }
     }
+}
+
+/// Checks that a box can be sampled.
+fn check_box(bounds: &Bounds) -> Result<(), Fault> {
+    let fault = || Fault::new(FaultKind::Box, &format_args!("the box {}", Bounds::REQUIREMENT));
+    bounds.is_valid().then_some(()).ok_or_else(fault)
 }

@@ -58,10 +58,8 @@ impl Core {
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
     ) -> JsValue {
-        answer(read::<FieldRequest>(request, FaultKind::Request).and_then(|request| {
-            let formula = request.formula.as_deref().unwrap_or_default();
-            self.session.set_field(&request).map_err(|error| Fault::in_field(error, formula))
-        }))
+        let request = read::<FieldRequest>(request, FaultKind::Request);
+        answer(request.and_then(|request| self.session.set_field(&request)))
     }
 
     /// Refuses runs that need more than about `megabytes` with their report.
@@ -82,7 +80,7 @@ impl Core {
         answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
             let request = read::<FieldRequest>(request, FaultKind::Request)?;
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
-            self.session.set_points(data, info, bounds, &request).map_err(|error| Fault::in_field(error, ""))
+            self.session.set_points(data, info, bounds, &request)
         }))
     }
 
