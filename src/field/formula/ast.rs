@@ -3,6 +3,7 @@
 //! Sums and products are flat lists. The depth of a tree is therefore bounded by [`MAX_DEPTH`](super::MAX_DEPTH), which
 //! the parser enforces, and recursive walks cannot overflow the stack.
 
+use super::operations::{Binary, Unary};
 use core::ops::Range;
 
 /// An expression and the range of bytes it was parsed from.
@@ -91,39 +92,16 @@ impl Constant {
     }
 }
 
-macro_rules! functions {
-    ($($variant:ident $name:literal $signature:literal $least:literal..=$most:literal $help:literal),* $(,)?) => {
-        /// A function of the language.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(crate) enum Function { $($variant),* }
-
-        impl Function {
-            pub(crate) const ALL: &[Self] = &[$(Self::$variant),*];
-
-            pub(crate) const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
-            }
-
-            /// Minimum and maximum number of arguments.
-            pub(crate) const fn arity(self) -> (usize, usize) {
-                match self { $(Self::$variant => ($least, $most)),* }
-            }
-
-            /// Whether it can have so many arguments.
-            pub(crate) fn takes(self, count: usize) -> bool {
-                let (least, most) = self.arity();
-                (least..=most).contains(&count)
-            }
-
-            pub(crate) const fn signature(self) -> &'static str {
-                match self { $(Self::$variant => $signature),* }
-            }
-        }
-
-        /// Every function of the language, in the order of the help page.
-        pub const FUNCTIONS: &[FunctionInfo] =
-            &[$(FunctionInfo { name: $name, signature: $signature, help: $help }),*];
-    };
+/// A function of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    /// An operation of the graph on one value.
+    Unary(Unary),
+    /// An operation of the graph on two values, applied to all arguments from left to right.
+    Binary(Binary),
+    Hypot,
+    Smin,
+    Smax,
 }
 
 /// Entry of the function reference.
@@ -136,36 +114,79 @@ pub struct FunctionInfo {
     pub signature: &'static str,
     /// Description in one sentence.
     pub help: &'static str,
+    #[serde(skip)]
+    pub(crate) function: Function,
+}
+
+/// Entry of a function, whose name is what stands before the bracket of its signature.
+const fn described(function: Function, signature: &'static str, help: &'static str) -> FunctionInfo {
+    let mut length = 0;
+    while signature.as_bytes()[length] != b'(' {
+        length += 1;
+    }
+    FunctionInfo { name: signature.split_at(length).0, signature, help, function }
+}
+
+macro_rules! functions {
+    ($($kind:ident $(($operation:expr))? $signature:literal $help:literal),* $(,)?) => {
+        /// Every function of the language, in the order of the help page.
+        pub const FUNCTIONS: &[FunctionInfo] =
+            &[$(described(Function::$kind $(($operation))?, $signature, $help)),*];
+    };
 }
 
 functions! {
-    Sqrt "sqrt" "sqrt(a)" 1..=1 "Square root; undefined for a < 0.",
-    Cbrt "cbrt" "cbrt(a)" 1..=1 "Cube root, of negative numbers too.",
-    Abs "abs" "abs(a)" 1..=1 "Absolute value; its slope at 0 counts as 0.",
-    Sign "sign" "sign(a)" 1..=1 "−1, 0 or 1; its slope counts as 0.",
-    Min "min" "min(a, b, …)" 2..=16 "The least of two or more values; at a tie the slope is the first one's.",
-    Max "max" "max(a, b, …)" 2..=16 "The greatest of two or more values; at a tie the slope is the first one's.",
-    Floor "floor" "floor(a)" 1..=1 "The greatest whole number not above a; its slope counts as 0.",
-    Exp "exp" "exp(a)" 1..=1 "e to the power a.",
-    Ln "ln" "ln(a)" 1..=1 "Natural logarithm; undefined for a < 0.",
-    Log10 "log10" "log10(a)" 1..=1 "Logarithm to base 10; undefined for a < 0.",
-    Sin "sin" "sin(a)" 1..=1 "Sine, a in radians.",
-    Cos "cos" "cos(a)" 1..=1 "Cosine, a in radians.",
-    Tan "tan" "tan(a)" 1..=1 "Tangent, a in radians.",
-    Asin "asin" "asin(a)" 1..=1 "Inverse sine in radians; undefined outside −1 … 1.",
-    Acos "acos" "acos(a)" 1..=1 "Inverse cosine in radians; undefined outside −1 … 1.",
-    Atan "atan" "atan(a)" 1..=1 "Inverse tangent in radians.",
-    Atan2 "atan2" "atan2(a, b)" 2..=2 "The angle of the point (b, a), from −pi to pi.",
-    Sinh "sinh" "sinh(a)" 1..=1 "Hyperbolic sine.",
-    Cosh "cosh" "cosh(a)" 1..=1 "Hyperbolic cosine.",
-    Tanh "tanh" "tanh(a)" 1..=1 "Hyperbolic tangent.",
-    Hypot "hypot" "hypot(a, b, …)" 2..=16 "Length of the vector (a, b, …): sqrt(a^2 + b^2 + …).",
-    Smin "smin" "smin(a, b, k)" 3..=3 "Smooth minimum: the union of two solids, blended where |a − b| < k.",
-    Smax "smax" "smax(a, b, k)" 3..=3 "Smooth maximum: the intersection of two solids, blended where |a − b| < k.",
+    Unary(Unary::Sqrt) "sqrt(a)" "Square root; undefined for a < 0.",
+    Unary(Unary::Cbrt) "cbrt(a)" "Cube root, of negative numbers too.",
+    Unary(Unary::Abs) "abs(a)" "Absolute value; its slope at 0 counts as 0.",
+    Unary(Unary::Sign) "sign(a)" "−1, 0 or 1; its slope counts as 0.",
+    Binary(Binary::Min) "min(a, b, …)" "The least of two or more values; at a tie the slope is the first one's.",
+    Binary(Binary::Max) "max(a, b, …)" "The greatest of two or more values; at a tie the slope is the first one's.",
+    Unary(Unary::Floor) "floor(a)" "The greatest whole number not above a; its slope counts as 0.",
+    Unary(Unary::Exp) "exp(a)" "e to the power a.",
+    Unary(Unary::Ln) "ln(a)" "Natural logarithm; undefined for a < 0.",
+    Unary(Unary::Log10) "log10(a)" "Logarithm to base 10; undefined for a < 0.",
+    Unary(Unary::Sin) "sin(a)" "Sine, a in radians.",
+    Unary(Unary::Cos) "cos(a)" "Cosine, a in radians.",
+    Unary(Unary::Tan) "tan(a)" "Tangent, a in radians.",
+    Unary(Unary::Asin) "asin(a)" "Inverse sine in radians; undefined outside −1 … 1.",
+    Unary(Unary::Acos) "acos(a)" "Inverse cosine in radians; undefined outside −1 … 1.",
+    Unary(Unary::Atan) "atan(a)" "Inverse tangent in radians.",
+    Binary(Binary::Atan2) "atan2(a, b)" "The angle of the point (b, a), from −pi to pi.",
+    Unary(Unary::Sinh) "sinh(a)" "Hyperbolic sine.",
+    Unary(Unary::Cosh) "cosh(a)" "Hyperbolic cosine.",
+    Unary(Unary::Tanh) "tanh(a)" "Hyperbolic tangent.",
+    Hypot "hypot(a, b, …)" "Length of the vector (a, b, …): sqrt(a^2 + b^2 + …).",
+    Smin "smin(a, b, k)" "Smooth minimum: the union of two solids, blended where |a − b| < k.",
+    Smax "smax(a, b, k)" "Smooth maximum: the intersection of two solids, blended where |a − b| < k.",
 }
+
+/// Maximum number of arguments of a function that takes any number of them.
+const MOST_ARGUMENTS: usize = 16;
 
 impl Function {
     pub(crate) fn find(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|function| function.name() == name)
+        FUNCTIONS.iter().find(|info| info.name == name).map(|info| info.function)
+    }
+
+    pub(crate) fn info(self) -> &'static FunctionInfo {
+        FUNCTIONS.iter().find(|info| info.function == self).expect("every function is described")
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// Minimum and maximum number of arguments, as the signature shows them.
+    pub(crate) fn arity(self) -> (usize, usize) {
+        let signature = self.info().signature;
+        let commas = signature.matches(',').count();
+        if signature.contains('…') { (commas, MOST_ARGUMENTS) } else { (commas + 1, commas + 1) }
+    }
+
+    /// Whether it can have so many arguments.
+    pub(crate) fn takes(self, count: usize) -> bool {
+        let (least, most) = self.arity();
+        (least..=most).contains(&count)
     }
 }

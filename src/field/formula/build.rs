@@ -105,28 +105,9 @@ impl Builder<'_> {
             ids.push(self.expression(argument)?);
         }
         let graph = &mut *self.graph;
-        let unary = |graph: &mut Graph, operation| graph.unary(operation, ids[0]);
         Ok(match function {
-            Function::Sqrt => unary(graph, Unary::Sqrt),
-            Function::Cbrt => unary(graph, Unary::Cbrt),
-            Function::Abs => unary(graph, Unary::Abs),
-            Function::Sign => unary(graph, Unary::Sign),
-            Function::Floor => unary(graph, Unary::Floor),
-            Function::Exp => unary(graph, Unary::Exp),
-            Function::Ln => unary(graph, Unary::Ln),
-            Function::Log10 => unary(graph, Unary::Log10),
-            Function::Sin => unary(graph, Unary::Sin),
-            Function::Cos => unary(graph, Unary::Cos),
-            Function::Tan => unary(graph, Unary::Tan),
-            Function::Asin => unary(graph, Unary::Asin),
-            Function::Acos => unary(graph, Unary::Acos),
-            Function::Atan => unary(graph, Unary::Atan),
-            Function::Sinh => unary(graph, Unary::Sinh),
-            Function::Cosh => unary(graph, Unary::Cosh),
-            Function::Tanh => unary(graph, Unary::Tanh),
-            Function::Atan2 => graph.binary(Binary::Atan2, ids[0], ids[1]),
-            Function::Min => fold(graph, Binary::Min, &ids),
-            Function::Max => fold(graph, Binary::Max, &ids),
+            Function::Unary(operation) => graph.unary(operation, ids[0]),
+            Function::Binary(operation) => fold(graph, operation, &ids),
             Function::Hypot => {
                 let squares: Vec<Id> = ids.iter().map(|&id| graph.power(id, 2)).collect();
                 let sum = fold(graph, Binary::Add, &squares);

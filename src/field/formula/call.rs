@@ -7,6 +7,7 @@
 
 use super::ast::{Expr, ExprKind, Factor, Function};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use super::operations::Unary;
 use super::parse::{CallArguments, Parse, Parser, integer};
 use super::token::{Spanned, Token, slice};
 use core::ops::Range;
@@ -55,8 +56,11 @@ impl Parser<'_> {
                 (least, most) if least == most => format!("{least} arguments"),
                 (least, most) => format!("{least} to {most} arguments"),
             };
-            let message =
-                format!("`{}` takes {wanted}, and here it has {}", function.signature(), arguments.len());
+            let message = format!(
+                "`{}` takes {wanted}, and here it has {}",
+                function.info().signature,
+                arguments.len()
+            );
             return Err(FormulaError::new(ErrorKind::WrongArity, whole, message));
         }
         let call = Expr { kind: ExprKind::Call(function, arguments), span: whole.clone() };
@@ -126,7 +130,7 @@ impl Parser<'_> {
             return Err(error.suggest(format!("{name}(…)")));
         }
         let operand = self.deeper(Self::beside)?;
-        let is_root = matches!(function, Function::Sqrt | Function::Cbrt);
+        let is_root = matches!(function, Function::Unary(Unary::Sqrt | Unary::Cbrt));
         if self.is_ambiguous_after() || is_root && matches!(operand.kind, ExprKind::Product(_)) {
             return Err(bracketed(self.text, error, name, &operand.span));
         }

@@ -3,6 +3,7 @@
 use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::display::{Precedence, level};
 use super::latex::greek;
+use super::operations::Unary;
 use crate::math::shortest_text;
 use serde::Serialize;
 
@@ -179,7 +180,7 @@ fn power(base: &Expr, exponent: &Expr) -> MathNode {
     {
         return row([msup(mi(name), number(*n)), mo(APPLY), arguments(inputs)]);
     }
-    let exponential = matches!(base.kind, ExprKind::Call(Function::Exp | Function::Log10, _));
+    let exponential = matches!(base.kind, ExprKind::Call(Function::Unary(Unary::Exp | Unary::Log10), _));
     let long_number = matches!(base.kind, ExprKind::Number(value) if shortest_text(value).contains('e'));
     let base =
         if exponential || long_number { bracketed(expression(base)) } else { at(base, Precedence::Atom) };
@@ -189,11 +190,11 @@ fn power(base: &Expr, exponent: &Expr) -> MathNode {
 fn call(function: Function, inputs: &[Expr]) -> MathNode {
     let first = || expression(&inputs[0]);
     match function {
-        Function::Sqrt => group(MathGroup::Msqrt, [first()]),
-        Function::Cbrt => group(MathGroup::Mroot, [first(), mn("3")]),
-        Function::Abs => fenced(["|", "|"], first()),
-        Function::Floor => fenced(["⌊", "⌋"], first()),
-        Function::Exp => msup(mi(constant_letter(Constant::E)), first()),
+        Function::Unary(Unary::Sqrt) => group(MathGroup::Msqrt, [first()]),
+        Function::Unary(Unary::Cbrt) => group(MathGroup::Mroot, [first(), mn("3")]),
+        Function::Unary(Unary::Abs) => fenced(["|", "|"], first()),
+        Function::Unary(Unary::Floor) => fenced(["⌊", "⌋"], first()),
+        Function::Unary(Unary::Exp) => msup(mi(constant_letter(Constant::E)), first()),
         Function::Hypot => {
             let squares = inputs.iter().map(|input| msup(at(input, Precedence::Atom), mn("2")));
             group(MathGroup::Msqrt, separated(squares, "+"))
@@ -257,17 +258,14 @@ fn constant_letter(constant: Constant) -> &'static str {
 /// Name of a function that is written with its name and brackets; `None` for one with a notation of its own.
 fn plain_name(function: Function) -> Option<&'static str> {
     Some(match function {
-        Function::Sqrt
-        | Function::Cbrt
-        | Function::Abs
-        | Function::Floor
-        | Function::Exp
-        | Function::Hypot
-        | Function::Log10 => return None,
-        Function::Sign => "sgn",
-        Function::Asin => "arcsin",
-        Function::Acos => "arccos",
-        Function::Atan => "arctan",
+        Function::Hypot
+        | Function::Unary(
+            Unary::Sqrt | Unary::Cbrt | Unary::Abs | Unary::Floor | Unary::Exp | Unary::Log10,
+        ) => return None,
+        Function::Unary(Unary::Sign) => "sgn",
+        Function::Unary(Unary::Asin) => "arcsin",
+        Function::Unary(Unary::Acos) => "arccos",
+        Function::Unary(Unary::Atan) => "arctan",
         other => other.name(),
     })
 }

@@ -517,12 +517,12 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
         );
         return Some((meant, message));
     }
-    for function in Function::ALL {
-        if let Some(rest) = name.strip_prefix(function.name())
+    for function in FUNCTIONS {
+        if let Some(rest) = name.strip_prefix(function.name)
             && !rest.is_empty()
             && rest.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'))
         {
-            let meant = format!("{}({rest})", function.name());
+            let meant = format!("{}({rest})", function.name);
             let message = format!("`{name}` reads as one name: write `{meant}`. Or add a slider `{name}`");
             return Some((meant, message));
         }
@@ -537,7 +537,7 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
     let words = COORDINATES
         .into_iter()
         .chain(Constant::ALL.map(Constant::name))
-        .chain(Function::ALL.iter().map(|function| function.name()))
+        .chain(FUNCTIONS.iter().map(|function| function.name))
         .chain(declared.iter().copied());
     // A name that differs by a digit or an index, such as `phi0` or `r_1`, differs on purpose.
     let indexed = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains('_');

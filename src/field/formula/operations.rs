@@ -2,7 +2,7 @@
 
 /// Operations of one operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Unary {
+pub(crate) enum Unary {
     Neg,
     Sqrt,
     Cbrt,
@@ -25,7 +25,7 @@ pub(super) enum Unary {
 
 /// Operations of two operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Add,
     Sub,
     Mul,

@@ -14,10 +14,11 @@
 //! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call) says what a function without
 //! brackets is applied to.
 
-use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, FUNCTIONS, Factor, Function, Sign};
 use super::elsewhere::{call_error, is_elsewhere, name_elsewhere};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::lex::tokens;
+use super::operations::Unary;
 use super::token::{Bar, Spanned, Token, closing, slice};
 use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
@@ -355,7 +356,10 @@ impl Parser<'_> {
                 if !(self.take(&Token::Bar(Bar::Either)) || self.take(&Token::Bar(Bar::Closing))) {
                     return Err(self.unclosed(&span, '|'));
                 }
-                Ok(Expr { kind: ExprKind::Call(Function::Abs, vec![inner]), span: span.start..end })
+                Ok(Expr {
+                    kind: ExprKind::Call(Function::Unary(Unary::Abs), vec![inner]),
+                    span: span.start..end,
+                })
             }
             Token::Fraction => {
                 self.next += 1;
@@ -511,7 +515,7 @@ impl Parser<'_> {
 
     /// Function that was probably meant by `name`.
     fn similar(&self, name: &str) -> Option<&'static str> {
-        name_elsewhere(name).or_else(|| similar(name, Function::ALL.iter().map(|function| function.name())))
+        name_elsewhere(name).or_else(|| similar(name, FUNCTIONS.iter().map(|function| function.name)))
     }
 }
 
@@ -524,9 +528,13 @@ pub(super) fn integer(value: i32, span: Range<usize>) -> Expr {
 /// The root of the given degree, or the square root.
 fn root(degree: Option<Expr>, inner: Expr) -> ExprKind {
     match degree {
-        None => ExprKind::Call(Function::Sqrt, vec![inner]),
-        Some(Expr { kind: ExprKind::Number(2.0), .. }) => ExprKind::Call(Function::Sqrt, vec![inner]),
-        Some(Expr { kind: ExprKind::Number(3.0), .. }) => ExprKind::Call(Function::Cbrt, vec![inner]),
+        None => ExprKind::Call(Function::Unary(Unary::Sqrt), vec![inner]),
+        Some(Expr { kind: ExprKind::Number(2.0), .. }) => {
+            ExprKind::Call(Function::Unary(Unary::Sqrt), vec![inner])
+        }
+        Some(Expr { kind: ExprKind::Number(3.0), .. }) => {
+            ExprKind::Call(Function::Unary(Unary::Cbrt), vec![inner])
+        }
         Some(degree) => {
             let span = degree.span.clone();
             let one = Expr { kind: ExprKind::Number(1.0), span: span.clone() };

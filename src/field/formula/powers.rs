@@ -7,6 +7,7 @@
 use super::ast::{Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::build::build;
 use super::graph::Graph;
+use super::operations::Unary;
 
 /// Equation of the same surface without powers of factors and without repeated factors, or `None` if there are none.
 ///
@@ -53,8 +54,8 @@ fn reduced(expr: &Expr, sole: bool) -> Expr {
             });
             with(ExprKind::Product(factors.collect()))
         }
-        ExprKind::Call(Function::Sqrt, arguments) if sole => reduced(&arguments[0], true),
-        ExprKind::Call(Function::Cbrt | Function::Abs, arguments) => reduced(&arguments[0], sole),
+        ExprKind::Call(Function::Unary(Unary::Sqrt), arguments) if sole => reduced(&arguments[0], true),
+        ExprKind::Call(Function::Unary(Unary::Cbrt | Unary::Abs), arguments) => reduced(&arguments[0], sole),
         // Without poles only: where a pole meets a zero, the order of the zero matters.
         ExprKind::Product(factors)
             if !factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) =>
@@ -102,8 +103,10 @@ fn lower_bound(expr: &Expr) -> Option<LowerBound> {
             Some(n) if n > 0.0 && n % 2.0 == 0.0 => or_zero(lower_bound(base)),
             _ => lower_bound(base),
         },
-        ExprKind::Call(Function::Exp, _) => Some(LowerBound::Positive),
-        ExprKind::Call(Function::Abs | Function::Sqrt, arguments) => or_zero(lower_bound(&arguments[0])),
+        ExprKind::Call(Function::Unary(Unary::Exp), _) => Some(LowerBound::Positive),
+        ExprKind::Call(Function::Unary(Unary::Abs | Unary::Sqrt), arguments) => {
+            or_zero(lower_bound(&arguments[0]))
+        }
         _ => None,
     }
 }
