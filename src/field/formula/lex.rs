@@ -27,35 +27,19 @@ fn mapped(c: char) -> char {
     }
 }
 
-fn superscript(c: char) -> Option<u8> {
-    Some(match c {
-        '⁰' => 0,
-        '¹' => 1,
-        '²' => 2,
-        '³' => 3,
-        '⁴' => 4,
-        '⁵' => 5,
-        '⁶' => 6,
-        '⁷' => 7,
-        '⁸' => 8,
-        '⁹' => 9,
-        _ => return None,
-    })
+/// The raised digits, from 0 to 9.
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+fn superscript(c: char) -> Option<i64> {
+    (0..).zip(SUPERSCRIPTS).find(|&(_, raised)| raised == c).map(|(digit, _)| digit)
 }
 
-/// Constant that a Greek letter stands for.
-fn greek_constant(c: char) -> Option<&'static str> {
+/// Name of the constant or the function that one character stands for.
+fn name_of(c: char) -> Option<&'static str> {
     match c {
         'π' => Some("pi"),
         'τ' => Some("tau"),
         'φ' => Some("phi"),
-        _ => None,
-    }
-}
-
-/// Function that a root sign stands for.
-fn root(c: char) -> Option<&'static str> {
-    match c {
         '√' => Some("sqrt"),
         '∛' => Some("cbrt"),
         _ => None,
@@ -172,8 +156,7 @@ impl Lexer<'_> {
             }
             '0'..='9' | '.' => Token::Number(self.number(start)?),
             _ if superscript(c).is_some() || c == '⁻' => Token::Superscript(self.superscript(start)?),
-            _ if greek_constant(c).is_some() => Token::Name(greek_constant(c).unwrap_or_default().into()),
-            _ if root(c).is_some() => Token::Name(root(c).unwrap_or_default().into()),
+            _ if name_of(c).is_some() => Token::Name(name_of(c).unwrap_or_default().into()),
             _ if starts_name(c) => {
                 let name = self.name(start);
                 if self.is_product(&name) {
@@ -339,7 +322,7 @@ impl Lexer<'_> {
         let mut value: i64 = 0;
         self.next = first;
         while let Some(digit) = self.get(self.next).and_then(superscript) {
-            value = (value * 10 + i64::from(digit)).min(i64::from(i32::MAX));
+            value = (value * 10 + digit).min(i64::from(i32::MAX));
             self.next += 1;
         }
         if self.next == first {
