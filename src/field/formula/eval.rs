@@ -176,7 +176,6 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
         Op::Unary(operation) => execute_unary(operation, i, registers),
         Op::Reciprocal => unary(registers, i, |a| Lanes::splat(1.0) / a),
         Op::SineCosine => sine_cosine(registers, i),
-        Op::Second => unreachable!("removed when registers are allocated"),
         Op::Binary(Binary::Add) => binary(registers, i, |a, b| a + b),
         Op::Binary(Binary::Sub) => binary(registers, i, |a, b| a - b),
         Op::Binary(Binary::Mul) => binary(registers, i, |a, b| a * b),

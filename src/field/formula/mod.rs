@@ -46,7 +46,6 @@ mod parse;
 mod periods;
 mod powers;
 mod program;
-mod registers;
 mod repair;
 mod scalar;
 mod solids;

@@ -7,7 +7,6 @@
 
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
-use super::registers::RegisterAllocator;
 
 /// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +19,6 @@ pub(super) enum Op {
     Reciprocal,
     /// sin R[a]; register b receives cos R[a]
     SineCosine,
-    /// Second result of the previous instruction; removed when registers are allocated
-    Second,
     /// R[a] ∘ R[b]
     Binary(Binary),
     /// R[a] ∘ U[b]
@@ -165,8 +162,10 @@ struct Compiler<'a> {
     needed: Vec<Id>,
     /// Index in `uniform_nodes` of each uniform node that is needed.
     uniform: Vec<u32>,
-    /// Instructions over virtual registers. The virtual register of an instruction is its index.
+    /// Instructions over virtual registers, each of which is set once. The coordinates have the first three, used or not.
     code: Vec<Instruction>,
+    /// Number of virtual registers.
+    values: usize,
     /// Virtual register of each varying node.
     register: Vec<Option<u32>>,
 }
@@ -180,15 +179,12 @@ impl<'a> Compiler<'a> {
             needed: graph.needed_by(outputs),
             uniform: vec![0; graph.len()],
             code: Vec::new(),
+            values: 3,
             register: vec![None; graph.len()],
         }
     }
 
     fn compile(mut self) -> Program {
-        for axis in 0..3 {
-            // The coordinates have the first three virtual registers, used or not.
-            self.push(Op::Splat, [axis, 0, 0]);
-        }
         for at in 0..self.needed.len() {
             let id = self.needed[at];
             if self.graph.is_uniform(id) {
@@ -211,9 +207,15 @@ impl<'a> Compiler<'a> {
     }
 
     fn push(&mut self, op: Op, [a, b, c]: [u32; 3]) -> u32 {
-        let out = index(self.code.len());
+        let out = self.new_value();
         self.code.push(Instruction { op, out, a, b, c });
         out
+    }
+
+    /// A virtual register that has no value yet.
+    fn new_value(&mut self) -> u32 {
+        self.values += 1;
+        index(self.values - 1)
     }
 
     /// Virtual register of an operand. A uniform operand is broadcast into a register.
@@ -258,8 +260,8 @@ impl<'a> Compiler<'a> {
             self.needed.binary_search(partner).is_ok() && self.register[*partner as usize].is_none()
         });
         let Some(partner) = partner else { return self.push(Op::Unary(operation), [angle, 0, 0]) };
-        let sine = self.push(Op::SineCosine, [angle, 0, 0]);
-        let cosine = self.push(Op::Second, [0, 0, 0]);
+        let cosine = self.new_value();
+        let sine = self.push(Op::SineCosine, [angle, cosine, 0]);
         let (own, partners) = if operation == Unary::Sin { (sine, cosine) } else { (cosine, sine) };
         self.register[partner as usize] = Some(partners);
         own
@@ -287,38 +289,54 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Assigns real registers to virtual ones.
+    /// Assigns real registers to virtual ones: each is free after the last use of its value.
     fn allocate(&mut self) {
-        let steps = || self.code.iter().enumerate().skip(3);
-        let uses =
-            steps().flat_map(|(at, instruction)| registers(instruction).map(move |operand| (at, operand)));
-        let kept = self.program.outputs.iter().filter_map(|output| match *output {
-            Location::Register(register) => Some(register),
-            Location::Uniform(_) => None,
-        });
-        let mut real = RegisterAllocator::new(self.code.len(), uses, kept);
-        for (axis, coordinate) in (0..).zip(&mut self.program.coordinates) {
-            *coordinate = real.is_used(axis).then(|| real.assign(axis));
+        /// The last use of a value that is a result of the program.
+        const NEVER: usize = usize::MAX;
+        let mut last_use = vec![None; self.values];
+        for (at, instruction) in self.code.iter().enumerate() {
+            registers(instruction).for_each(|value| last_use[value as usize] = Some(at));
         }
-        for (at, instruction) in steps() {
-            let mapped = substituted(instruction, &real);
-            real.free(at, registers(instruction));
-            let out = real.assign(instruction.out);
-            match instruction.op {
-                Op::Second => {
-                    let first = self.program.instructions.last_mut().expect("it follows its first result");
-                    first.b = out;
-                }
-                _ => self.program.instructions.push(Instruction { out, ..mapped }),
+        for output in &self.program.outputs {
+            if let Location::Register(value) = output {
+                last_use[*value as usize] = Some(NEVER);
             }
+        }
+        let (mut real, mut is_free) = (vec![0; self.values], Vec::new());
+        for (axis, coordinate) in self.program.coordinates.iter_mut().enumerate() {
+            *coordinate = last_use[axis].map(|_| lowest_free(&mut is_free));
+            real[axis] = coordinate.unwrap_or(0);
+        }
+        for (at, instruction) in self.code.iter().enumerate() {
+            let mut mapped = substituted(instruction, &real);
+            for value in registers(instruction).filter(|&value| last_use[value as usize] == Some(at)) {
+                is_free[real[value as usize] as usize] = true;
+            }
+            mapped.out = lowest_free(&mut is_free);
+            real[instruction.out as usize] = mapped.out;
+            if instruction.op == Op::SineCosine {
+                mapped.b = lowest_free(&mut is_free);
+                real[instruction.b as usize] = mapped.b;
+            }
+            self.program.instructions.push(mapped);
         }
         for output in &mut self.program.outputs {
             if let Location::Register(register) = output {
-                *register = real.of(*register);
+                *register = real[*register as usize];
             }
         }
-        self.program.registers = real.count();
+        self.program.registers = is_free.len();
     }
+}
+
+/// The lowest register that is free, which it is no longer.
+fn lowest_free(is_free: &mut Vec<bool>) -> u32 {
+    let lowest = is_free.iter().position(|&is_free| is_free).unwrap_or_else(|| {
+        is_free.push(true);
+        is_free.len() - 1
+    });
+    is_free[lowest] = false;
+    index(lowest)
 }
 
 fn index(length: usize) -> u32 {
@@ -328,7 +346,7 @@ fn index(length: usize) -> u32 {
 /// Whether each of the operands a, b and c is a register.
 fn register_operands(op: Op) -> [bool; 3] {
     match op {
-        Op::Splat | Op::Second => [false; 3],
+        Op::Splat => [false; 3],
         Op::Unary(_) | Op::Reciprocal | Op::SineCosine | Op::Uniform(_) | Op::Reversed(_) => {
             [true, false, false]
         }
@@ -345,9 +363,9 @@ fn registers(instruction: &Instruction) -> impl Iterator<Item = u32> {
 }
 
 /// Instruction with its register operands replaced through `real`.
-fn substituted(instruction: &Instruction, real: &RegisterAllocator) -> Instruction {
+fn substituted(instruction: &Instruction, real: &[u32]) -> Instruction {
     let [a, b, c] = register_operands(instruction.op);
-    let replaced = |used: bool, operand: u32| if used { real.of(operand) } else { operand };
+    let replaced = |used: bool, operand: u32| if used { real[operand as usize] } else { operand };
     Instruction {
         a: replaced(a, instruction.a),
         b: replaced(b, instruction.b),
