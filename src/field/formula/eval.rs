@@ -3,6 +3,7 @@
 //! A register holds up to [`BLOCK`] × 8 points, which spreads the cost of decoding an instruction over many points. The
 //! same IEEE operations are applied in every lane, so the result at a point does not depend on the other points.
 
+use super::graph::whole_power;
 use super::operations::{Binary, Unary};
 use super::program::{Instruction, Location, Op, Program};
 use crate::math::functions;
@@ -151,19 +152,10 @@ fn small_integer(exponent: f32) -> Option<i32> {
     small.then_some(exponent as i32)
 }
 
-/// a^n by repeated squaring. For n < 0 the reciprocal is raised to −n.
+/// a^n. For n < 0 the reciprocal is raised to −n.
 fn integer_power(a: Lanes, n: i32) -> Lanes {
-    let mut square = if n < 0 { Lanes::splat(1.0) / a } else { a };
-    let mut rest = n.unsigned_abs();
-    let mut result = Lanes::splat(1.0);
-    while rest > 0 {
-        if rest & 1 == 1 {
-            result = result * square;
-        }
-        square = square * square;
-        rest >>= 1;
-    }
-    result
+    let one = Lanes::splat(1.0);
+    whole_power(one, if n < 0 { one / a } else { a }, n.unsigned_abs())
 }
 
 fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {

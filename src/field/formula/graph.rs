@@ -4,6 +4,7 @@
 //! constants are folded.
 
 use super::operations::{Binary, Unary};
+use core::ops::Mul;
 use glam::DVec3;
 
 /// Index of a node. Operands have smaller indices than their uses.
@@ -78,14 +79,17 @@ impl Node {
 
 /// x^n by repeated squaring. For n < 0 the reciprocal is raised to −n.
 pub(super) fn power(x: f64, n: i32) -> f64 {
-    let mut square = if n < 0 { 1.0 / x } else { x };
-    let mut rest = n.unsigned_abs();
-    let mut result = 1.0;
+    whole_power(1.0, if n < 0 { 1.0 / x } else { x }, n.unsigned_abs())
+}
+
+/// x^n by repeated squaring, from the `one` of these numbers.
+pub(super) fn whole_power<T: Copy + Mul<Output = T>>(one: T, x: T, n: u32) -> T {
+    let (mut square, mut rest, mut result) = (x, n, one);
     while rest > 0 {
         if rest & 1 == 1 {
-            result *= square;
+            result = result * square;
         }
-        square *= square;
+        square = square * square;
         rest >>= 1;
     }
     result

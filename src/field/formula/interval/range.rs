@@ -1,7 +1,7 @@
 //! A single interval, with the operations that are too rare or too long for [rows](super::rows).
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
+use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin, whole_power};
 use crate::field::formula::operations::Unary;
 use crate::math::{Bounds, Interval};
 
@@ -306,8 +306,8 @@ impl Range {
         let base = if even { self.abs() } else { self };
         // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
         let error = 2.0 * f64::from(natural) * f64::EPSILON;
-        let lo = widened(integer_power(base.bounds.lo, natural), -error, f64::NEG_INFINITY);
-        let hi = widened(integer_power(base.bounds.hi, natural), error, f64::INFINITY);
+        let lo = widened(whole_power(1.0, base.bounds.lo, natural), -error, f64::NEG_INFINITY);
+        let hi = widened(whole_power(1.0, base.bounds.hi, natural), error, f64::INFINITY);
         let flags = joined(self.flags, self.flags) | self.flags & NONZERO;
         let range = Self { bounds: Interval::new(if even { lo.max(0.0) } else { lo }, hi), flags };
         if n < 0 { range.reciprocal() } else { range }
@@ -330,19 +330,4 @@ impl Range {
             Self { bounds: Interval::new(lo.min(0.0), hi.max(0.0)), flags: flags & !CONTINUOUS }
         }
     }
-}
-
-/// x^n for n ≥ 1 by repeated products.
-fn integer_power(x: f64, n: u32) -> f64 {
-    let (mut result, mut square, mut rest) = (1.0, x, n);
-    while rest > 0 {
-        if rest & 1 == 1 {
-            result *= square;
-        }
-        rest >>= 1;
-        if rest > 0 {
-            square *= square;
-        }
-    }
-    result
 }
