@@ -410,15 +410,17 @@ impl Graph {
                 let product = self.mul(a, b);
                 return self.neg(product);
             }
-            (Node::Power(p, m), Node::Power(q, n)) if p == q && m > 0 && n > 0 => {
-                if let Some(sum) = m.checked_add(n) {
-                    return self.power(p, sum);
-                }
-            }
-            (Node::Power(p, n), _) if p == b && (1..i32::MAX).contains(&n) => return self.power(p, n + 1),
-            (_, Node::Power(q, n)) if q == a && (1..i32::MAX).contains(&n) => return self.power(q, n + 1),
-            _ if a == b => return self.power(a, 2),
             _ => {}
+        }
+        let as_power = |id: Id| match self.node(id) {
+            Node::Power(base, n) if n > 0 => (base, n),
+            _ => (id, 1),
+        };
+        let ((p, m), (q, n)) = (as_power(a), as_power(b));
+        if p == q
+            && let Some(sum) = m.checked_add(n)
+        {
+            return self.power(p, sum);
         }
         self.folded(Node::Binary(Binary::Mul, a, b))
     }
