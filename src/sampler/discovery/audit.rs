@@ -213,7 +213,8 @@ fn on_factor(
     let index_if_on = |(near, known): (&NearParticle, Enclosure)| {
         let p = particles.position[near.index].as_dvec3();
         let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
-        // As near as the particle is to its own sheet: that of another factor may be within the slack too.
+        // As near as the particle is to its own sheet: that of another factor may be within the slack too. By the slack alone 1 of 200
+        // random surfaces has a component without particles that is not named.
         let (value, gradient) = field.value_and_gradient(p);
         let own = value.abs() / gradient.length() + ROUNDING * p.abs().max_element();
         (known.value.magnitude() <= 2.0 * own.min(slack) * steepest).then_some(near.index)

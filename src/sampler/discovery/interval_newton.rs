@@ -84,7 +84,8 @@ pub(crate) fn narrowed(
                     let rest = -(coefficients[1 - k] * d[other]);
                     d[axis] = solved(d[axis], coefficients[k], combined(rights) + rest)?;
                 }
-                // Also without the inverse, which is of no use where the equations are nearly dependent.
+                // Also without the inverse, which is of no use where the equations are nearly dependent: else 6 of 300 random surfaces
+                // are no longer proven, and those with cone points take 1.17 times the cells.
                 for (axis, other) in [(i, j), (j, i)] {
                     let rest = -(h(axis, other) * d[other]);
                     d[axis] = solved(d[axis], h(axis, axis), right(axis, &d) + rest)?;

@@ -22,8 +22,8 @@ use glam::{DMat3, DVec3, Vec3};
 
 /// Number of sizes of a box around a singular point that are tried: the longest side of the whole box, and each half the one before.
 const SIZES: usize = 10;
-/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes. Without any, a surface of sixteen cone
-/// points is no longer proven, and of 177 random surfaces all that are with them.
+/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes. Without any, 7 of 150 random surfaces
+/// with cone points are no longer proven.
 const MOST_LARGER: usize = 2;
 /// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
@@ -51,7 +51,7 @@ const SMALL: f64 = 1e-6;
 /// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular points the step runs along the curve.
 const DAMPED: f64 = 0.1;
 /// Factors by which steps shrink where the first derivatives that do not vanish are of third to eighth order: (n − 2)/(n − 1). Such a
-/// step is lengthened to where the steps would end.
+/// step is lengthened to where the steps would end. Without, 5 of 50 random surfaces with cusps no longer show theirs.
 const SLOW: core::ops::Range<f64> = 0.45..0.88;
 /// Two singular points count as one if they are nearer to each other than this share of the search distance: Newton's method ends at
 /// 10⁻¹² of it.
