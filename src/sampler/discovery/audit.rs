@@ -232,7 +232,8 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
     const STEPS: u32 = 256;
     /// A step as a share of the radius of curvature: its sagitta is a fiftieth of that. With 0.4, 1 of those 25 takes another seed.
     const SHARE: f64 = 0.2;
-    /// Largest step as a share of `most`: what is flat at its start may bend farther on.
+    /// Largest step as a share of `most`: what is flat at its start may bend farther on. Half and twice of it name the same pieces of the
+    /// same sizes on 80 random surfaces of spheres, tori and flat quartics.
     const LARGEST: f64 = 1.0 / 16.0;
     let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
