@@ -79,8 +79,6 @@ pub enum Event {
         value: f64,
         /// Length |∇f| of the gradient at the position.
         slope: f64,
-        /// Angles between which f changes its sign, where Newton's method has given way to a bracketed search.
-        bracket_rad: Option<[f64; 2]>,
     },
     /// The child has come to the surface.
     Landed {

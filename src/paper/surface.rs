@@ -46,8 +46,6 @@ pub(crate) struct Trial {
     pub(crate) position: DVec3,
     /// The field at that position.
     pub(crate) sample: FieldSample,
-    /// Angles between which f changes its sign, in the bracketed search.
-    pub(crate) bracket_rad: Option<[f64; 2]>,
 }
 
 /// Result of a search for the surface.
@@ -104,7 +102,7 @@ impl ImplicitSurface {
         let mut position = start;
         for step in 0..MAX_NEWTON {
             let sample = self.sample(position);
-            note(Trial { step, theta_rad: None, position, sample, bracket_rad: None });
+            note(Trial { step, theta_rad: None, position, sample });
             if sample.is_zero(residual) {
                 return Landing::On { position, normal: sample.gradient / sample.slope };
             }

@@ -476,9 +476,7 @@ position: [number, number, number],
 /** Value f at the position. */
 value: number,
 /** Length |∇f| of the gradient at the position. */
-slope: number,
-/** Angles between which f changes its sign, where Newton's method has given way to a bracketed search. */
-bracket_rad: [number, number] | null, } | { "type": "landed",
+slope: number, } | { "type": "landed",
 /** The particle that places the child. */
 parent: number,
 /** Number of the slot. */

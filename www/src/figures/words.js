@@ -140,12 +140,9 @@ export function tell({ event, slot, children, evaluations }, subject) {
 }
 
 /** @param {Extract<LessonEvent, {type: 'iterate'}>} event */
-function tellIterate({ slot, step, theta_rad: angle, value, bracket_rad: bracket }) {
+function tellIterate({ slot, step, theta_rad: angle, value }) {
   const where = angle === null ? `step ${step}` : `${theta(step)} = ${inDegrees(angle)}`;
-  const between = bracket
-    ? ` f changes its sign between ${inDegrees(bracket[0])} and ${inDegrees(bracket[1])}, and the search stays there.`
-    : '';
-  return `The child of slot ${slot} at ${where}: f = ${formatSignificant(value, 3)}.${between}`;
+  return `The child of slot ${slot} at ${where}: f = ${formatSignificant(value, 3)}.`;
 }
 
 /** @param {Extract<LessonEvent, {type: 'compared'}>} event @param {number} radius */

@@ -31,7 +31,6 @@ const events = [
     position: [0.1, 0.1732, 0],
     value: 0.002,
     slope: 4,
-    bracket_rad: null,
   },
   {
     type: 'iterate',
@@ -42,7 +41,6 @@ const events = [
     position: [0.1, 0.1732, -0.0025],
     value: 1e-7,
     slope: 4,
-    bracket_rad: [-0.1, 0.1],
   },
   { type: 'landed', parent: 47, slot: 1, position: [0.1, 0.1732, -0.0025], normal: [0, 0, 1], distance: 0.2 },
   { type: 'slot', parent: 47, slot: 2, direction: [-0.5, 0.866, 0], theta_rad: 0, place: [-0.1, 0.1732, 0] },
@@ -125,7 +123,7 @@ describe('the words', () => {
   test('tell each event with its lengths in radii', () => {
     expect(told(1)).toContain('Slot 0 points to its parent, particle 20');
     expect(told(5)).toBe('The child of slot 1 lands on the surface, 2.000\u00a0r from its parent.');
-    expect(told(4)).toContain('f changes its sign between −5.73° and 5.73°');
+    expect(told(4)).toContain('at θ₁ = −0.72°: f = ');
     expect(told(8)).toBe('1 particle within 4\u00a0r: the children are compared with it.');
     expect(told(10)).toContain('2.000\u00a0r from particle 31, its nearest. That is more than 1.40\u00a0r');
     expect(told(13)).toContain('0.120\u00a0r from particle 31, its nearest. That is within 1.40\u00a0r');
@@ -227,7 +225,6 @@ const sized = [
     position: [0.1, 0.173, 0],
     value: 1e-7,
     slope: 2,
-    bracket_rad: null,
   },
   { type: 'landed', parent: 5, slot: 1, position: [0.1, 0.173, 0], normal: [0, 0, 1], distance: 0.2 },
   { type: 'fate', parent: 5, slot: 1, fate: 'added', particle: 9 },
