@@ -4,11 +4,11 @@
 //! particle system.
 
 use super::dynamics::Dynamics;
+use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
 use crate::field::Field;
-use crate::paper::Event;
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, Place, QueueOrder};
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, Place, QueueOrder, step_size};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -188,8 +188,10 @@ impl Course {
             Some(ChapterKind::Filling)
         } else if self.run.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
-            self.run.begin_step();
-            Some(ChapterKind::Relaxation { step: self.run.steps + 1 })
+            let energy = self.run.begin_step();
+            let (step, size) = (self.run.steps + 1, step_size(&self.run.rules));
+            self.run.seen.push(Event::StepBegins { step, size, energy });
+            Some(ChapterKind::Relaxation { step })
         } else {
             None
         }
@@ -227,11 +229,7 @@ impl Course {
                 self.is_filled = self.left == 0;
             }
             Some(ChapterKind::Relaxation { .. }) => {
-                self.run.move_particle(self.run.particles.len() - self.left as usize);
-                self.left -= 1;
-                if self.left == 0 {
-                    self.run.end_step();
-                }
+                self.relax_next();
             }
             Some(ChapterKind::Iteration { .. }) => self.iterate(),
         }
@@ -242,12 +240,45 @@ impl Course {
         is_over
     }
 
+    /// Does one unit of a relaxation step.
+    fn relax_next(&mut self) {
+        let i = self.run.particles.len() - self.left as usize;
+        let moved = self.run.move_particle(i);
+        let (force, target) = (moved.force, moved.target);
+        self.tell_move(i, force, target, moved.is_kept);
+        self.left -= 1;
+        if self.left == 0 {
+            let energy = self.run.end_step();
+            let (step, largest_move) = (self.run.steps, self.run.largest_move);
+            self.run.seen.push(Event::StepEnds { step, energy, largest_move });
+        }
+    }
+
+    /// Tells that a particle was moved to where it is now, by a force and towards a target.
+    pub(super) fn tell_move(&mut self, i: usize, force: DVec3, target: DVec3, is_kept: bool) {
+        let Particle { position, normal, radius, .. } = self.run.particles[i];
+        let (particle, force, target) = (i as u32, force.to_array(), target.to_array());
+        self.run.seen.push(Event::Moved { particle, force, target, position, normal, radius, is_kept });
+    }
+
+    /// Marks a particle as done.
+    pub(super) fn finish(&mut self, particle: u32) {
+        self.run.particles[particle as usize].is_done = true;
+        self.run.seen.push(Event::Done { particle, evaluations: self.run.surface.evaluations });
+    }
+
     /// Does one unit of a generation level.
     fn place(&mut self) {
-        match self.setup.settings.placing {
-            Placing::OneByOne => self.run.treat_next(),
-            Placing::LevelByLevel if self.left > 0 => self.predict_next(),
-            Placing::LevelByLevel => self.settle_next(),
+        let placing = self.setup.settings.placing;
+        if placing == Placing::LevelByLevel && self.left == 0 {
+            self.settle_next();
+        } else if let Some(particle) = self.run.next() {
+            self.run.seen.push(Event::Taken { particle });
+            match placing {
+                Placing::OneByOne => self.run.treat(particle),
+                Placing::LevelByLevel => self.predict(particle),
+            }
+            self.finish(particle);
         }
         self.left = self.left.saturating_sub(1);
         if self.run.is_capped {
@@ -271,6 +302,8 @@ impl Course {
                 return;
             }
             if self.run.begin_at(candidate, self.fronts) {
+                let particle = self.run.particles.len() as u32 - 1;
+                self.run.seen.push(Event::Seed { particle, data: self.run.particles[particle as usize] });
                 self.fronts += 1;
                 if setup.settings.seeding == Seeding::OneByOne {
                     break;

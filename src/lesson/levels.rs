@@ -6,7 +6,7 @@
 
 use super::course::{Course, Predicted};
 use crate::paper::{
-    ChildSlot, Circle, DIRECTIONS, Event, Nearby, Place, REACH, TangentFrame, predicted_angle,
+    ChildSlot, Circle, DIRECTIONS, Moment, Nearby, Place, REACH, TangentFrame, predicted_angle,
 };
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -19,10 +19,8 @@ const RING: f64 = 2.6;
 const ISOTROPY: f64 = 0.005;
 
 impl Course {
-    /// First stage: predicts the children of the next particle and compares them there. Those that are free wait to be projected.
-    pub(super) fn predict_next(&mut self) {
-        let Some(particle) = self.run.waiting.pop_front() else { return };
-        self.run.tell(Event::Taken { particle });
+    /// First stage: predicts the children of a particle and compares them there. Those that are free wait to be projected.
+    pub(super) fn predict(&mut self, particle: u32) {
         let radius = self.setup.settings.radius;
         let neighbours = self.run.gather(particle, REACH * radius);
         let frame = self.run.tangent_frame(particle);
@@ -32,7 +30,7 @@ impl Course {
         } else {
             self.fitted_form(radius, particle, &frame, &neighbours)
         };
-        self.run.tell_frame(particle, &frame, Some(form));
+        self.run.tell(ChildSlot { parent: particle, slot: 0 }, Moment::Frame(&frame, Some(form)));
         let candidates = self.run.candidates(&neighbours);
         if let Some(parent) = self.run.particles[particle as usize].parent {
             self.run.decide(ChildSlot { parent: particle, slot: 0 }, SlotFate::Parent, Some(parent));
@@ -42,7 +40,8 @@ impl Course {
             let circle =
                 Circle { centre: p, normal: frame.n, direction: frame.direction(slot), radius: 2.0 * radius };
             let theta_rad = predicted_angle(form, DIRECTIONS[slot], radius);
-            let position = self.run.propose(child, &circle, theta_rad);
+            let position = circle.point(theta_rad);
+            self.run.tell(child, Moment::Proposed(circle.direction, theta_rad, position));
             // The normal turns with the offset.
             let [cos, sin] = DIRECTIONS[slot];
             let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
@@ -60,7 +59,6 @@ impl Course {
                 self.predicted.push_back(Predicted { child, circle, theta_rad, place });
             }
         }
-        self.run.finish(particle);
     }
 
     /// Second stage: projects the next child and decides its fate where it lands.

@@ -1,10 +1,13 @@
-//! The log of the chapter under way, and the seams of the fronts.
+//! The log of the chapter under way, in which the moments of the paper's run are events, and the seams of the fronts.
 
+use super::event::Event;
 use super::settings::LessonSettings;
-use crate::paper::{Event, Observer, Particle};
+use crate::paper::{ChildSlot, Comparison, Moment, Observer, Particle, Trial};
+use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 
-/// A child that meets a particle farther away than this share of 2r is out of step with it. In a lattice it is below 0.2.
+/// A child that meets a particle farther away than this share of 2r is out of step with it. Half and 1.5 times as much fill the same gaps on 16
+/// random surfaces; double is the match radius, beyond which nothing is met.
 const SEAM: f64 = 0.35;
 
 /// The events of the chapter under way, as the run tells them.
@@ -32,15 +35,60 @@ impl Log {
 }
 
 impl Observer for Log {
-    fn event(&mut self, event: Event, particles: &[Particle]) {
-        let meeting = match event {
-            Event::Compared {
-                parent, slot, against, distance: Some(distance), corresponds: true, ..
-            } if distance > self.seam => Some((parent, slot, against)),
-            _ => None,
+    fn see(&mut self, child: ChildSlot, moment: Moment<'_>, particles: &[Particle]) {
+        let ChildSlot { parent, slot } = child;
+        if let Moment::Decided(SlotFate::Added, Some(particle)) = moment {
+            self.push(Event::Added { particle, data: particles[particle as usize] });
+        }
+        self.push(match moment {
+            Moment::Frame(frame, form) => {
+                let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
+                Event::Frame { particle: parent, normal, u, w, form }
+            }
+            Moment::Proposed(direction, theta_rad, place) => {
+                let (direction, place) = (direction.to_array(), place.to_array());
+                Event::Slot { parent, slot, direction, theta_rad, place }
+            }
+            Moment::Tried(Trial { step, theta_rad, position, sample }) => {
+                let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
+                Event::Iterate { parent, slot, step, theta_rad, position, value, slope }
+            }
+            Moment::Landed(position, normal, distance) => {
+                let (position, normal) = (position.to_array(), normal.to_array());
+                Event::Landed { parent, slot, position, normal, distance }
+            }
+            Moment::Gathered(reach, neighbours) => {
+                Event::Gathered { particle: parent, reach, neighbours: neighbours.to_vec() }
+            }
+            Moment::Compared(Comparison { position, against, distance, limit, corresponds }) => {
+                let position = position.to_array();
+                Event::Compared { parent, slot, position, against, distance, limit, corresponds }
+            }
+            Moment::Decided(fate, particle) => Event::Fate { parent, slot, fate, particle },
+            Moment::Space(particles, angles_rad) => {
+                let [before, behind] = particles.map_or([None; 2], |both| both.map(Some));
+                Event::Arc { parent, before, behind, angles_rad }
+            }
+            Moment::Started(tangent, position, radius) => {
+                let (tangent, position) = (tangent.map(|tangent| tangent.to_array()), position.to_array());
+                Event::Start { parent, slot, tangent, position, radius }
+            }
+            Moment::Pushed(position, radius) => {
+                Event::Push { parent, slot, position: position.to_array(), radius }
+            }
+            Moment::Turned(position, radius, overlap) => {
+                Event::PushOnCircle { parent, slot, position: position.to_array(), radius, overlap }
+            }
+            Moment::Room(phi_rad, tau_rad, fits) => Event::Room { parent, slot, phi_rad, tau_rad, fits },
+        });
+        let Moment::Compared(Comparison { against, distance: Some(distance), corresponds: true, .. }) =
+            moment
+        else {
+            return;
         };
-        self.push(event);
-        let Some((parent, slot, against)) = meeting else { return };
+        if distance <= self.seam {
+            return;
+        }
         if self.seams.last() != Some(&parent) {
             self.seams.push(parent);
         }

@@ -34,6 +34,7 @@
 
 mod course;
 mod dynamics;
+mod event;
 mod forces;
 mod gaps;
 mod levels;
@@ -45,8 +46,8 @@ mod survey;
 mod system;
 mod witkin_heckbert;
 
-pub use crate::paper::{Event, Vector};
 pub use course::ChapterKind;
+pub use event::{Event, Vector};
 pub use section::Iterate;
 pub use settings::{LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, Seeding};
 

@@ -2,8 +2,8 @@
 //! iterates of Newton's method in space from a given point.
 
 use super::Lesson;
+use super::event::Vector;
 use crate::paper::Trial;
-use crate::paper::Vector;
 use glam::DVec3;
 use serde::Serialize;
 

@@ -21,10 +21,10 @@
 
 use super::course::{ChapterKind, Course};
 use super::dynamics::{Displacement, Dynamics};
+use super::event::Event;
 use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
 use crate::math::frame_of;
-use crate::paper::Event;
 use crate::paper::{Buckets, Particle};
 use glam::DVec3;
 use rand_core::Rng;
@@ -33,7 +33,8 @@ use rand_pcg::Pcg32;
 /// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has moved by a tenth of its radius at most.
 pub(super) const QUIET: u32 = 20;
 
-/// Mean move in an iteration, in radii, up to which particles count as not moving.
+/// Mean move in an iteration, in radii, up to which particles count as not moving. On 16 random surfaces Witkin and Heckbert's system ends
+/// after 99 iterations; with double of it after 74, where 56 % of the particles have six neighbours in place of 59 %.
 const REST: f64 = 0.005;
 
 /// A random number in [0, 1).
@@ -147,15 +148,7 @@ impl Course {
             dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
         }
         self.run.largest_move = self.run.largest_move.max(dynamics.moved);
-        self.run.seen.push(Event::Moved {
-            particle: i as u32,
-            force: force.to_array(),
-            target: target.to_array(),
-            position: particle.position,
-            normal: particle.normal,
-            radius: particle.radius,
-            is_kept: arrived.is_none(),
-        });
+        self.tell_move(i, force, target, arrived.is_none());
     }
 
     /// "Split or kill particles when necessary".

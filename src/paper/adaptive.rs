@@ -9,7 +9,7 @@
 
 use super::PaperRun;
 use super::buckets::Nearby;
-use super::event::{ChildSlot, Event, Observer};
+use super::observer::{ChildSlot, Moment, Observer};
 use super::particle::{Place, TangentFrame};
 use super::projection::Circle;
 use super::surface::Landing;
@@ -60,20 +60,15 @@ struct SheetNeighbour {
 
 /// The parent whose children are placed, with the particles around it.
 struct Circumference {
-    parent: u32,
+    /// The next child.
+    child: ChildSlot,
     p: DVec3,
     radius: f64,
     frame: TangentFrame,
     around: Vec<SheetNeighbour>,
-    /// The next slot.
-    slot: u32,
 }
 
 impl Circumference {
-    fn child(&self) -> ChildSlot {
-        ChildSlot { parent: self.parent, slot: self.slot }
-    }
-
     fn place(&self, centre: DVec2) -> DVec3 {
         self.p + self.frame.u * centre.x + self.frame.w * centre.y
     }
@@ -120,35 +115,27 @@ impl<O: Observer> PaperRun<O> {
         // Gather the neighbouring particles (Fig. 8a).
         let neighbours = self.gather(particle, REACH * own.radius);
         let frame = self.tangent_frame(particle);
-        self.tell_frame(particle, &frame, None);
-        let mut ring = Circumference {
-            parent: particle,
-            p: own.p(),
-            radius: own.radius,
-            frame,
-            around: Vec::new(),
-            slot: 0,
-        };
+        let child = ChildSlot { parent: particle, slot: 0 };
+        self.tell(child, Moment::Frame(&frame, None));
+        let mut ring = Circumference { child, p: own.p(), radius: own.radius, frame, around: Vec::new() };
         ring.around = neighbours.iter().filter_map(|near| self.around(&ring, near)).collect();
         if let Some(parent) = own.parent {
-            self.decide(ring.child(), SlotFate::Parent, Some(parent));
-            ring.slot = 1;
+            self.decide(child, SlotFate::Parent, Some(parent));
+            ring.child.slot = 1;
         }
         // "If we have n existing particles we have n free available spaces."
         let mut touching: Vec<SheetNeighbour> =
             ring.around.iter().filter(|other| other.touches).copied().collect();
         touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
         if touching.is_empty() {
-            let (before, behind, angles_rad) = (None, None, [0.0, TAU]);
-            self.tell(Event::Arc { parent: particle, before, behind, angles_rad });
+            self.tell(child, Moment::Space(None, [0.0, TAU]));
             self.fill_space(&mut ring, None);
         }
         for (k, &before) in touching.iter().enumerate() {
             let behind = touching[(k + 1) % touching.len()];
             let ends = [before.disc, behind.disc];
-            let (before, behind) = (Some(before.particle), Some(behind.particle));
-            let angles_rad = ends.map(|end| end.angle());
-            self.tell(Event::Arc { parent: particle, before, behind, angles_rad });
+            let particles = [before.particle, behind.particle];
+            self.tell(child, Moment::Space(Some(particles), ends.map(|end| end.angle())));
             self.fill_space(&mut ring, Some(ends));
         }
     }
@@ -157,7 +144,7 @@ impl<O: Observer> PaperRun<O> {
     fn around(&self, ring: &Circumference, near: &Nearby) -> Option<SheetNeighbour> {
         let other = &self.particles[near.particle as usize];
         let both = ring.radius + other.radius;
-        let own = self.particles[ring.parent as usize].place();
+        let own = self.particles[ring.child.parent as usize].place();
         self.rules.is_same_sheet(&own, &other.place()).then(|| SheetNeighbour {
             particle: near.particle,
             disc: ring.disc(other.p(), other.radius),
@@ -169,7 +156,7 @@ impl<O: Observer> PaperRun<O> {
     fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[Disc; 2]>) {
         let mut last = ends.map(|[before, _]| before);
         let mut behind = ends.map(|[_, behind]| behind);
-        while ring.slot < MAX_SLOTS && !self.is_capped {
+        while ring.child.slot < MAX_SLOTS && !self.is_capped {
             let child = self.pushed(ring, last);
             // "The projection of its diameter", φ, and "the actual free circumference", τ (Fig. 7g).
             let phi_rad = ring.taken(child);
@@ -178,14 +165,13 @@ impl<O: Observer> PaperRun<O> {
                 _ => TAU,
             };
             let fits = tau_rad >= self.rules.fit * phi_rad;
-            let ChildSlot { parent, slot } = ring.child();
-            self.tell(Event::Room { parent, slot, phi_rad, tau_rad, fits });
+            self.tell(ring.child, Moment::Room(phi_rad, tau_rad, fits));
             if fits {
                 self.settle(ring, child);
             } else {
-                self.decide(ring.child(), SlotFate::Matched, None);
+                self.decide(ring.child, SlotFate::Matched, None);
             }
-            ring.slot += 1;
+            ring.child.slot += 1;
             if !fits {
                 break;
             }
@@ -196,22 +182,19 @@ impl<O: Observer> PaperRun<O> {
 
     /// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
     fn pushed(&mut self, ring: &Circumference, last: Option<Disc>) -> Disc {
-        let ChildSlot { parent, slot } = ring.child();
         // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
         let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
         let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
         let mut child = self.sized(ring, way * ring.radius);
-        let tangent = tangent.map(|tangent| ring.place(tangent).to_array());
-        let (position, radius) = (ring.place(child.centre).to_array(), child.radius);
-        self.tell(Event::Start { parent, slot, tangent, position, radius });
+        let tangent = tangent.map(|tangent| ring.place(tangent));
+        self.tell(ring.child, Moment::Started(tangent, ring.place(child.centre), child.radius));
         // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
         for _ in 0..MAX_PUSHES {
             if child.centre.length() >= ring.radius + child.radius {
                 break;
             }
             child = self.sized(ring, child.centre + way * (PUSH * ring.radius));
-            let (position, radius) = (ring.place(child.centre).to_array(), child.radius);
-            self.tell(Event::Push { parent, slot, position, radius });
+            self.tell(ring.child, Moment::Pushed(ring.place(child.centre), child.radius));
         }
         // Along the circle until it overlaps least (Fig. 7f).
         let mut overlap = ring.overlap(child);
@@ -229,8 +212,7 @@ impl<O: Observer> PaperRun<O> {
                 break;
             }
             (child, overlap) = (next, next_overlap);
-            let position = ring.place(child.centre).to_array();
-            self.tell(Event::PushOnCircle { parent, slot, position, radius, overlap });
+            self.tell(ring.child, Moment::Turned(ring.place(child.centre), radius, overlap));
         }
         child
     }
@@ -244,7 +226,7 @@ impl<O: Observer> PaperRun<O> {
 
     /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a particle is in its way.
     fn settle(&mut self, ring: &mut Circumference, child: Disc) {
-        let of = ring.child();
+        let of = ring.child;
         let direction = ring.frame.u * child.centre.x + ring.frame.w * child.centre.y;
         let distance = child.centre.length();
         let direction = direction / distance;

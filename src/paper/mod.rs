@@ -10,8 +10,8 @@
 //! | §4.5 and §5.4 relaxation | `relaxation` |
 //! | §4.4 "a space partitioning scheme" | `buckets` |
 //!
-//! [`Rules`] holds every choice that the paper discusses or leaves open. An [`Observer`] is told every event. Tests hold the fast
-//! fronts of the sampler to these algorithms, and the lesson is built on them.
+//! [`Rules`] holds every choice that the paper discusses or leaves open. An observer is told the moments of a treatment that leave no
+//! trace in the particles. Tests hold the fast fronts of the sampler to these algorithms, and the lesson is built on them.
 //!
 //! ```
 //! use marching_particles::field::gallery;
@@ -34,7 +34,7 @@
 
 mod adaptive;
 mod buckets;
-mod event;
+mod observer;
 mod particle;
 mod projection;
 mod relaxation;
@@ -43,16 +43,17 @@ mod surface;
 mod uniform;
 
 pub use buckets::Nearby;
-pub use event::{ChildSlot, Event, Observer, Vector};
+pub use observer::ChildSlot;
 pub use particle::Particle;
 pub use relaxation::Push;
 pub use rules::{Matched, Projection, QueueOrder, RadiusRule, Rules, SearchStart, sum_of_curvatures};
 pub use surface::ImplicitSurface;
 
 pub(crate) use buckets::Buckets;
+pub(crate) use observer::{Comparison, Moment, Observer};
 pub(crate) use particle::{Place, TangentFrame};
 pub(crate) use projection::Circle;
-pub(crate) use relaxation::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, overlap};
+pub(crate) use relaxation::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, overlap, step_size};
 pub(crate) use surface::{Landing, Trial};
 pub(crate) use uniform::{DIRECTIONS, REACH, predicted_angle};
 
@@ -138,36 +139,38 @@ impl<O: Observer> PaperRun<O> {
         {
             return false;
         }
-        let seed = Particle::seed(position, normal, r, front);
-        let particle = self.enter(seed);
-        self.waiting.push_back(particle);
-        self.tell(Event::Seed { particle, data: seed });
+        let seed = self.enter(Particle::seed(position, normal, r, front));
+        self.waiting.push_back(seed);
         true
     }
 
     /// The complete process (§4.4, §5.2): treats all particles that wait, and those that come of it, then relaxes in `steps` steps.
     pub fn sample(&mut self, steps: u32) {
-        while !self.waiting.is_empty() && !self.is_capped {
-            self.treat_next();
+        while !self.is_capped
+            && let Some(particle) = self.next()
+        {
+            self.treat(particle);
         }
         for _ in 0..steps {
             self.relax();
         }
     }
 
-    /// Treats the next particle that waits, if there is one.
-    pub fn treat_next(&mut self) {
-        let next = match self.rules.order {
+    /// "While it exists one particle marked as not done": takes the next one out of the queue.
+    pub(crate) fn next(&mut self) -> Option<u32> {
+        match self.rules.order {
             QueueOrder::Queue => self.waiting.pop_front(),
             QueueOrder::Stack => self.waiting.pop_back(),
-        };
-        let Some(particle) = next else { return };
-        self.tell(Event::Taken { particle });
+        }
+    }
+
+    /// Treats a particle, and marks it as done.
+    pub(crate) fn treat(&mut self, particle: u32) {
         match self.rules.sizes {
             RadiusRule::Same(radius) => self.treat_uniform(particle, radius),
             RadiusRule::ByCurvature { .. } => self.treat_adaptive(particle),
         }
-        self.finish(particle);
+        self.particles[particle as usize].is_done = true;
     }
 
     /// Radius of a particle at a point; `None` where the curvature is undefined.
@@ -187,10 +190,7 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn add(&mut self, parent: u32, place: &Place) -> u32 {
         let Particle { level, front, .. } = self.particles[parent as usize];
         let Place { position, normal, radius } = *place;
-        let child = Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) };
-        let particle = self.enter(child);
-        self.tell(Event::Added { particle, data: child });
-        particle
+        self.enter(Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) })
     }
 
     /// Adds a child, marked as not done, unless there are as many particles as there may be.
@@ -209,18 +209,11 @@ impl<O: Observer> PaperRun<O> {
     /// Decides the fate of a child. `particle` is the one that was added, or the one that was there.
     pub(crate) fn decide(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
         self.particles[child.parent as usize].slots.set(child.slot as usize, fate);
-        let ChildSlot { parent, slot } = child;
-        self.tell(Event::Fate { parent, slot, fate, particle });
-    }
-
-    /// "Mark the particle as done."
-    pub(crate) fn finish(&mut self, particle: u32) {
-        self.particles[particle as usize].is_done = true;
-        self.tell(Event::Done { particle, evaluations: self.surface.evaluations });
+        self.tell(child, Moment::Decided(fate, particle));
     }
 
     /// Tells the observer what has happened.
-    pub(crate) fn tell(&mut self, event: Event) {
-        self.seen.event(event, &self.particles);
+    pub(crate) fn tell(&mut self, child: ChildSlot, moment: Moment<'_>) {
+        self.seen.see(child, moment, &self.particles);
     }
 }

@@ -83,7 +83,7 @@ pub(crate) struct Place {
 
 /// The tangent frame of a particle (Fig. 3).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TangentFrame {
+pub struct TangentFrame {
     /// Unit normal N̂.
     pub(crate) n: DVec3,
     /// V̂⁰: unit tangent vector towards the first child.

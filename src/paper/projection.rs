@@ -1,7 +1,7 @@
 //! The projection of a child onto the surface, paper §4.3: along a circle around its parent.
 
 use super::PaperRun;
-use super::event::{ChildSlot, Event, Observer};
+use super::observer::{ChildSlot, Moment, Observer};
 use super::particle::Particle;
 use super::rules::Projection;
 use super::surface::{ImplicitSurface, Landing, MAX_NEWTON, Trial};
@@ -10,10 +10,11 @@ use core::f64::consts::PI;
 use glam::DVec3;
 
 /// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. On 16 random surfaces half of it takes 2 % more
-/// evaluations for large particles, and double changes no figure by more than 0.1 %.
+/// evaluations for large particles. Twice as much changes counts and evaluations by less than 0.1 %.
 const MAX_TURN: f64 = 0.2;
 
-/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its parent, behind a rim.
+/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its parent, behind a rim. On 16 random surfaces
+/// 75° and 130° change nothing.
 const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 
 /// The circle C(p, 2r) in the plane (p, N̂, V̂).
@@ -81,25 +82,11 @@ impl ImplicitSurface {
 }
 
 impl<O: Observer> PaperRun<O> {
-    /// Proposes a child at an angle on its circle, and returns the position there.
-    pub(crate) fn propose(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> DVec3 {
-        let ChildSlot { parent, slot } = child;
-        let position = circle.point(theta_rad);
-        let (direction, place) = (circle.direction.to_array(), position.to_array());
-        self.tell(Event::Slot { parent, slot, direction, theta_rad, place });
-        position
-    }
-
     /// Moves a child onto the surface (§4.3), from an angle on its circle.
     pub(crate) fn land(&mut self, child: ChildSlot, circle: &Circle, theta_rad: f64) -> Landing {
         let residual = self.rules.residual * self.particles[child.parent as usize].radius;
-        let ChildSlot { parent, slot } = child;
         let (seen, particles) = (&mut self.seen, &self.particles);
-        let mut note = |Trial { step, theta_rad, position, sample }: Trial| {
-            let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
-            let event = Event::Iterate { parent, slot, step, theta_rad, position, value, slope };
-            seen.event(event, particles);
-        };
+        let mut note = |trial: Trial| seen.see(child, Moment::Tried(trial), particles);
         let landing = match self.rules.projection {
             Projection::Circle => self.surface.land_on_circle(circle, theta_rad, residual, &mut note),
             Projection::Newton => {
@@ -108,9 +95,7 @@ impl<O: Observer> PaperRun<O> {
             }
         };
         if let Landing::On { position, normal } = landing {
-            let distance = position.distance(circle.centre);
-            let (position, normal) = (position.to_array(), normal.to_array());
-            self.tell(Event::Landed { parent, slot, position, normal, distance });
+            self.tell(child, Moment::Landed(position, normal, position.distance(circle.centre)));
         }
         landing
     }

@@ -3,7 +3,7 @@
 
 use super::PaperRun;
 use super::buckets::{Buckets, Nearby};
-use super::event::{Event, Observer};
+use super::observer::Observer;
 use super::rules::{RadiusRule, Rules};
 use glam::DVec3;
 use serde::Serialize;
@@ -19,6 +19,16 @@ pub struct Push {
     pub force: [f64; 3],
     /// Energy of the pair.
     pub energy: f64,
+}
+
+/// How a particle was moved, beside where it is now.
+pub(crate) struct Move {
+    /// Sum of the repulsion, in the tangent plane.
+    pub(crate) force: DVec3,
+    /// Target of the move.
+    pub(crate) target: DVec3,
+    /// Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold.
+    pub(crate) is_kept: bool,
 }
 
 /// Particles of one size repel each other up to this distance, in σ, where the energy exp(−d²/2σ²) is 1 % of that at 0.
@@ -61,7 +71,7 @@ pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
 }
 
 /// The size of a step: the share of the force by which a particle moves.
-fn step_size(rules: &Rules) -> f64 {
+pub(crate) fn step_size(rules: &Rules) -> f64 {
     rules.step_size.unwrap_or(match rules.sizes {
         RadiusRule::Same(_) => STEP,
         RadiusRule::ByCurvature { .. } => OVERLAP_STEP,
@@ -78,12 +88,12 @@ impl<O: Observer> PaperRun<O> {
         self.end_step();
     }
 
-    /// Begins a step: sums the repulsion on every particle where it is.
-    pub(crate) fn begin_step(&mut self) {
+    /// Begins a step: sums the repulsion on every particle where it is, and returns the energy per particle.
+    pub(crate) fn begin_step(&mut self) -> f64 {
         let (energy, pushes) = self.sum_repulsion();
         self.interactions += pushes;
         self.largest_move = 0.0;
-        self.tell(Event::StepBegins { step: self.steps + 1, size: step_size(&self.rules), energy });
+        energy
     }
 
     /// Fills the forces and returns the energy per particle, and the number of pushes.
@@ -133,7 +143,7 @@ impl<O: Observer> PaperRun<O> {
     }
 
     /// Moves a particle by its force and brings it back onto the surface.
-    pub(crate) fn move_particle(&mut self, particle: usize) {
+    pub(crate) fn move_particle(&mut self, particle: usize) -> Move {
         let own = self.particles[particle];
         let force = self.forces[particle];
         let reach = MAX_MOVE * own.radius;
@@ -144,22 +154,12 @@ impl<O: Observer> PaperRun<O> {
         let radius = self.radius_at(position).unwrap_or(own.radius);
         let moved = &mut self.particles[particle];
         (moved.position, moved.normal, moved.radius) = (position.to_array(), normal.to_array(), radius);
-        let event = Event::Moved {
-            particle: particle as u32,
-            force: force.to_array(),
-            target: target.to_array(),
-            position: moved.position,
-            normal: moved.normal,
-            radius,
-            is_kept: landed.is_none(),
-        };
-        self.tell(event);
+        Move { force, target, is_kept: landed.is_none() }
     }
 
-    /// Ends a step: the energy where the particles are now.
-    pub(crate) fn end_step(&mut self) {
+    /// Ends a step, and returns the energy per particle where the particles are now.
+    pub(crate) fn end_step(&mut self) -> f64 {
         self.steps += 1;
-        let (energy, _) = self.sum_repulsion();
-        self.tell(Event::StepEnds { step: self.steps, energy, largest_move: self.largest_move });
+        self.sum_repulsion().0
     }
 }

@@ -37,7 +37,7 @@ impl FieldSample {
 
 /// An evaluation on the way to the surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial {
+pub struct Trial {
     /// Number of the evaluation, from 0.
     pub(crate) step: u32,
     /// Angle on the circle; none in space.

@@ -11,7 +11,7 @@
 
 use super::PaperRun;
 use super::buckets::Nearby;
-use super::event::{ChildSlot, Event, Observer};
+use super::observer::{ChildSlot, Comparison, Moment, Observer};
 use super::particle::{Place, TangentFrame};
 use super::projection::Circle;
 use super::rules::{Matched, SearchStart};
@@ -63,7 +63,7 @@ impl<O: Observer> PaperRun<O> {
             SearchStart::Tangent => None,
             SearchStart::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
         };
-        self.tell_frame(particle, &frame, form);
+        self.tell(child(0), Moment::Frame(&frame, form));
 
         // "Place its six children on the surface."
         let landings: Vec<(usize, Landing)> = frame
@@ -72,7 +72,7 @@ impl<O: Observer> PaperRun<O> {
                 let direction = frame.direction(slot);
                 let circle = Circle { centre, normal: frame.n, direction, radius: 2.0 * radius };
                 let theta_rad = form.map_or(0.0, |form| predicted_angle(form, DIRECTIONS[slot], radius));
-                self.propose(child(slot), &circle, theta_rad);
+                self.tell(child(slot), Moment::Proposed(direction, theta_rad, circle.point(theta_rad)));
                 (slot, self.land(child(slot), &circle, theta_rad))
             })
             .collect();
@@ -127,14 +127,8 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn gather(&mut self, particle: u32, reach: f64) -> Vec<Nearby> {
         let mut neighbours = self.buckets.near(&self.particles, self.particles[particle as usize].p(), reach);
         neighbours.retain(|near| near.particle != particle);
-        self.tell(Event::Gathered { particle, reach, neighbours: neighbours.clone() });
+        self.tell(ChildSlot { parent: particle, slot: 0 }, Moment::Gathered(reach, &neighbours));
         neighbours
-    }
-
-    /// Tells the observer in which frame the children of a particle are placed.
-    pub(crate) fn tell_frame(&mut self, particle: u32, frame: &TangentFrame, form: Option<[f64; 3]>) {
-        let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
-        self.tell(Event::Frame { particle, normal, u, w, form });
     }
 
     /// "If an existing particle corresponds": the candidate of the child's sheet that is nearest, in r_i + r_j, if it is within the match
@@ -145,7 +139,6 @@ impl<O: Observer> PaperRun<O> {
         place: &Place,
         candidates: impl IntoIterator<Item = (Place, Option<u32>)>,
     ) -> Option<Option<u32>> {
-        let ChildSlot { parent, slot } = child;
         let tolerance = self.rules.match_tolerance;
         let nearest = candidates
             .into_iter()
@@ -154,13 +147,14 @@ impl<O: Observer> PaperRun<O> {
                 (place.position.distance(other.position), place.radius + other.radius, number)
             })
             .min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
-        let alone = place.radius + self.particles[parent as usize].radius;
+        let alone = place.radius + self.particles[child.parent as usize].radius;
         let limit = tolerance * nearest.map_or(alone, |(_, both, _)| both);
         let distance = nearest.map(|(distance, ..)| distance);
         let against = nearest.and_then(|(.., number)| number);
         let corresponds = distance.is_some_and(|distance| distance <= limit);
-        let position = place.position.to_array();
-        self.tell(Event::Compared { parent, slot, position, against, distance, limit, corresponds });
+        let position = place.position;
+        let comparison = Comparison { position, against, distance, limit, corresponds };
+        self.tell(child, Moment::Compared(comparison));
         corresponds.then_some(against)
     }
 

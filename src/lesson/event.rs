@@ -1,11 +1,9 @@
-//! The events of a run: plain data, in the order in which they happen, and who is told of them. Levels, meetings of fronts, gaps and all
-//! that particle systems do are told by the lesson.
+//! The events of a run: plain data, in the order in which they happen.
 //!
 //! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
 //! field's coordinates, angles in radians.
 
-use super::buckets::Nearby;
-use super::particle::Particle;
+use crate::paper::{Nearby, Particle};
 use crate::particles::SlotFate;
 use serde::Serialize;
 
@@ -329,23 +327,4 @@ impl Event {
             _ => {}
         }
     }
-}
-
-/// A child that is not a particle yet: slot number `slot` of particle number `parent`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ChildSlot {
-    /// The particle that places the child.
-    pub parent: u32,
-    /// Number among the parent's children.
-    pub slot: u32,
-}
-
-/// Observer of a run. `()` ignores all events.
-pub trait Observer {
-    /// An event has happened; `particles` are those that there are then.
-    fn event(&mut self, event: Event, particles: &[Particle]);
-}
-
-impl Observer for () {
-    fn event(&mut self, _: Event, _: &[Particle]) {}
 }
