@@ -8,7 +8,9 @@ use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
 use crate::field::Field;
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, PaperRun, Particle, Place, QueueOrder, step_size};
+use crate::paper::{
+    ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, Place, QueueOrder, step_size,
+};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -244,8 +246,7 @@ impl Course {
     fn relax_next(&mut self) {
         let i = self.run.particles.len() - self.left as usize;
         let moved = self.run.move_particle(i);
-        let (force, target) = (moved.force, moved.target);
-        self.tell_move(i, force, target, moved.is_kept);
+        self.tell_move(i, &moved);
         self.left -= 1;
         if self.left == 0 {
             let energy = self.run.end_step();
@@ -254,10 +255,11 @@ impl Course {
         }
     }
 
-    /// Tells that a particle was moved to where it is now, by a force and towards a target.
-    pub(super) fn tell_move(&mut self, i: usize, force: DVec3, target: DVec3, is_kept: bool) {
+    /// Tells how a particle was moved to where it is now.
+    pub(super) fn tell_move(&mut self, i: usize, moved: &Move) {
         let Particle { position, normal, radius, .. } = self.run.particles[i];
-        let (particle, force, target) = (i as u32, force.to_array(), target.to_array());
+        let (particle, is_kept) = (i as u32, moved.is_kept);
+        let (force, target) = (moved.force.to_array(), moved.target.to_array());
         self.run.seen.push(Event::Moved { particle, force, target, position, normal, radius, is_kept });
     }
 

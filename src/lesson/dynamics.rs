@@ -1,6 +1,5 @@
-//! Dynamics of the two particle systems: the forces on a particle in an iteration, and its move.
+//! Dynamics of the two particle systems: the forces on a particle in an iteration.
 
-use crate::paper::Particle;
 use glam::DVec3;
 
 /// Sums of force and energy over the neighbours of a particle.
@@ -16,13 +15,4 @@ pub(super) struct Dynamics {
     pub(super) is_at_rest: bool,
     /// Distance that the particle has moved, in radii.
     pub(super) moved: f64,
-}
-
-/// Move of a particle in an iteration.
-pub(super) struct Displacement {
-    /// Force on the particle.
-    pub(super) force: DVec3,
-    pub(super) target: DVec3,
-    /// The particle after the move; none if it cannot move: at the border of the box, where the field ends, at a fold.
-    pub(super) arrived: Option<Particle>,
 }

@@ -13,9 +13,9 @@
 //! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 
-use super::dynamics::{Displacement, Dynamics};
+use super::dynamics::Dynamics;
 use super::log::Log;
-use crate::paper::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
+use crate::paper::{MAX_MOVE, Move, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
 
 /// A disc meets those that are not larger within this many radii.
 pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
@@ -51,16 +51,19 @@ pub(super) fn interact(
 }
 
 /// "Update the position": a step of the relaxation, and back onto the surface, with the radius there.
-pub(super) fn step(run: &mut PaperRun<Log>, own: &Particle, dynamics: &Dynamics) -> Displacement {
+pub(super) fn step(run: &mut PaperRun<Log>, i: usize, dynamics: &Dynamics) -> Move {
+    let own = run.particles[i];
     let normal = own.n();
     let force = dynamics.force - normal * normal.dot(dynamics.force);
     let reach = MAX_MOVE * own.radius;
     let target = own.p() + (force * OVERLAP_STEP).clamp_length_max(reach);
-    let arrived = run.come_back(own, target, reach).map(|(position, normal)| {
+    let arrived = run.come_back(&own, target, reach);
+    if let Some((position, normal)) = arrived {
         let radius = run.radius_at(position).unwrap_or(own.radius);
-        Particle { position: position.to_array(), normal: normal.to_array(), radius, ..*own }
-    });
-    Displacement { force, target, arrived }
+        run.particles[i] =
+            Particle { position: position.to_array(), normal: normal.to_array(), radius, ..own };
+    }
+    Move { force, target, is_kept: arrived.is_none() }
 }
 
 /// Whether a particle dies, given a random number in [0, 1).

@@ -20,7 +20,7 @@
 //! * The first particle does not die, so that there always is one.
 
 use super::course::{ChapterKind, Course};
-use super::dynamics::{Displacement, Dynamics};
+use super::dynamics::Dynamics;
 use super::event::Event;
 use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
@@ -132,23 +132,20 @@ impl Course {
         let method = self.setup.settings.method;
         let own = self.run.particles[i];
         let dynamics = &mut self.dynamics[i];
-        let Displacement { force, target, arrived } = match method {
+        let moved = match method {
             LessonMethod::WitkinHeckbert => {
                 let particle = &mut self.run.particles[i];
                 witkin_heckbert::step(&mut self.run.surface, &self.setup, particle, dynamics)
             }
-            LessonMethod::Front | LessonMethod::Forces => forces::step(&mut self.run, &own, dynamics),
+            LessonMethod::Front | LessonMethod::Forces => forces::step(&mut self.run, i, dynamics),
         };
-        let particle = &mut self.run.particles[i];
-        if let Some(arrived) = arrived {
-            *particle = arrived;
-        }
+        let particle = &self.run.particles[i];
         dynamics.moved = particle.p().distance(own.p()) / particle.radius;
         if method == LessonMethod::Forces {
             dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
         }
         self.run.largest_move = self.run.largest_move.max(dynamics.moved);
-        self.tell_move(i, force, target, arrived.is_none());
+        self.tell_move(i, &moved);
     }
 
     /// "Split or kill particles when necessary".

@@ -12,9 +12,8 @@
 //!   is not small, a pair that has just divided could leave the surface, or get negative radii.
 
 use super::course::Setup;
-use super::dynamics::{Displacement, Dynamics};
-use crate::paper::{ImplicitSurface, MAX_MOVE, Particle};
-use glam::DVec3;
+use super::dynamics::Dynamics;
+use crate::paper::{ImplicitSurface, MAX_MOVE, Move, Particle};
 
 /// Energies reach as far as this, in σ.
 pub(super) const RANGE: f64 = 3.0;
@@ -85,7 +84,7 @@ pub(super) fn step(
     setup: &Setup,
     own: &mut Particle,
     dynamics: &mut Dynamics,
-) -> Displacement {
+) -> Move {
     let sigma = own.radius;
     let normal = own.n();
     let force = dynamics.force * (sigma * sigma);
@@ -104,13 +103,10 @@ pub(super) fn step(
     let sample = surface.sample(target);
     let (height, there) = (sample.value / sample.slope, sample.gradient / sample.slope);
     let can_go = height.is_finite() && surface.bounds.holds(target) && there.dot(normal) > 0.0;
-    let arrived = can_go.then(|| Particle {
-        position: target.to_array(),
-        normal: DVec3::to_array(&there),
-        height,
-        ..*own
-    });
-    Displacement { force, target, arrived }
+    if can_go {
+        (own.position, own.normal, own.height) = (target.to_array(), there.to_array(), height);
+    }
+    Move { force, target, is_kept: !can_go }
 }
 
 /// Whether a particle dies: near equilibrium, σ < δσ̂, and a random number above σ/(δσ̂).

@@ -53,7 +53,7 @@ pub(crate) use buckets::Buckets;
 pub(crate) use observer::{Comparison, Moment, Observer};
 pub(crate) use particle::{Place, TangentFrame};
 pub(crate) use projection::Circle;
-pub(crate) use relaxation::{MAX_MOVE, OVERLAP_REACH, OVERLAP_STEP, overlap, step_size};
+pub(crate) use relaxation::{MAX_MOVE, Move, OVERLAP_REACH, OVERLAP_STEP, overlap, step_size};
 pub(crate) use surface::{Landing, Trial};
 pub(crate) use uniform::{DIRECTIONS, REACH, predicted_angle};
 
