@@ -14,8 +14,6 @@ use glam::Vec3;
 
 /// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away.
 const BEYOND: f64 = 3.0;
-/// Edges at the border shorter than this share of the spacing are collapsed. Half of it would leave an edge cut in two.
-const SHORT: f32 = 0.6;
 /// Rounds of that, and of flips afterwards.
 const ROUNDS: u32 = 4;
 /// Twice the area of a triangle that is flat for certain, as a share of the spacing squared.
@@ -179,21 +177,16 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
 /// random surfaces that the box cuts have six neighbours.
 fn tidy(net: &mut Net, spacing: f32) {
     for _ in 0..ROUNDS {
-        let is_at_border = |h: &u32| {
-            let [a, b] = [net.mesh.origin(*h), net.mesh.target(*h)];
-            net.mesh.is_border(a) || net.mesh.is_border(b)
-        };
         let mut short: Vec<u64> = net
             .mesh
             .edges()
-            .filter(is_at_border)
-            .filter(|&h| is_short(net, h, spacing))
+            .filter(|&h| net.is_short_at_border(h, spacing))
             .map(|h| key(net.length(h), h))
             .collect();
         short.sort_unstable();
         let mut has_changed = false;
         for (_, h) in short.into_iter().map(unkey) {
-            if net.mesh.has_half_edge(h) && is_short(net, h, spacing) {
+            if net.mesh.has_half_edge(h) && net.is_short_at_border(h, spacing) {
                 let twin = net.mesh.twin(h);
                 has_changed |= collapse(net, h, spacing) || twin != NONE && collapse(net, twin, spacing);
             }
@@ -203,10 +196,6 @@ fn tidy(net: &mut Net, spacing: f32) {
             break;
         }
     }
-}
-
-fn is_short(net: &Net, h: u32, spacing: f32) -> bool {
-    net.length(h) < SHORT * spacing * net.size_between(net.mesh.origin(h), net.mesh.target(h))
 }
 
 /// Collapses an edge, where that is allowed and makes no flat triangle; whether it did.

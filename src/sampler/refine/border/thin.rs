@@ -5,19 +5,22 @@ use super::super::net::Net;
 use crate::math::{key, sort_by_key};
 
 /// Two particles of which one lies on the border are crowded if they are nearer than this share of the spacing. Without one of the
-/// two an edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be.
+/// two an edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be. Half of it would
+/// leave an edge that a plane of the box cuts in two.
 const CROWDED: f32 = 0.6;
 
 impl Net {
-    /// Whether the edge of `h`, each edge for one of its half-edges, joins two crowded particles.
-    pub(in super::super) fn is_crowded(&self, h: u32, spacing: f32) -> bool {
-        // The twin of none is the largest number.
-        if !self.mesh.has_half_edge(h) || self.mesh.twin(h) < h {
-            return false;
-        }
+    /// Whether an edge with an end on the border is so short that its ends crowd each other.
+    pub(super) fn is_short_at_border(&self, h: u32, spacing: f32) -> bool {
         let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
         (self.mesh.is_border(a) || self.mesh.is_border(b))
             && self.length(h) < CROWDED * spacing * self.size_between(a, b)
+    }
+
+    /// Whether the edge of `h`, each edge for one of its half-edges, joins two crowded particles.
+    pub(in super::super) fn is_crowded(&self, h: u32, spacing: f32) -> bool {
+        // The twin of none is the largest number.
+        self.mesh.has_half_edge(h) && h <= self.mesh.twin(h) && self.is_short_at_border(h, spacing)
     }
 
     /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the
