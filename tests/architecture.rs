@@ -75,7 +75,7 @@ const ROOMS: [Room; 4] = [
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
-            ("web/values", &[]),
+            ("web/values", &["session"]),
             ("web/core", &["field", "particles", "export", "sampler", "session"]),
             ("web/points", &["field", "pointcloud"]),
             ("web/lesson", &["math", "field", "paper", "lesson", "session"]),
