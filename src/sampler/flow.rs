@@ -56,10 +56,13 @@ const LEAST_ENERGY: f32 = 0.9;
 const MOST_ENERGY: f32 = 1.3;
 
 /// The energy, over the usual one, below which a particle gets a child in a wide gap beside it, whatever its neighbours have: where a surface
-/// grows everywhere, extrema are too few. Without this rule spheres that grow keep two thirds of the particles that they have room for.
+/// grows everywhere, extrema are too few. Without this rule spheres that grow keep two thirds of the particles that they have room for. On 16 random
+/// motions the count is off by 1.6 % with 0.6, 1.1 % with 0.8 and 1.8 % with 0.9.
 const SPARSE_ENERGY: f32 = 0.8;
 
 /// Radius of a gap, over the sum of two radii, in which a child has room beside an extremum, and that of a wide one. In a lattice it is 0.577.
+/// From 0.4 to 0.65 of the first the figures of 16 random motions are the same within 1 %. With 0.6 for the second 76.9 % have six neighbours in
+/// place of 77.7 %, and with 0.8 the count is off by 2.5 % in place of 1.1 %.
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
 
@@ -77,7 +80,8 @@ const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 const SLOT_ANGLE: f32 = PI / 3.0;
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 
-/// Distance that a child in an open sector needs from all others, over the sum of the radii.
+/// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16 random motions the count is off by 1.3 %
+/// with 0.7, 1.1 % with 0.8 and with 0.9, and the closest pair is at 0.72, 0.72 and 0.71.
 const CLEAR: f32 = 0.8;
 
 /// Neighbours of a particle that are looked at; the two rings of a lattice have 18.

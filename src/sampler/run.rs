@@ -24,7 +24,8 @@ const SEARCH_SLICE: u32 = 8_192;
 /// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a
 /// factor of ten. In the mean a unit takes 0.04 to 0.2 µs natively, so many 1 to 3 ms.
 const RELAXATION_SLICE: u32 = 16_384;
-/// Distance within which a singular point is a tip, as a share of the one within which it was searched for: far above rounding.
+/// Distance within which a singular point is a tip, as a share of the one within which it was searched for: far above rounding. From
+/// a millionth to 1 the particles of 16 random cones are the same.
 const SAME_TIP: f64 = 1e-3;
 /// Seeds that may be taken back in an attempt, and one more for every particle. Half and double give the same particles on 34
 /// random surfaces.

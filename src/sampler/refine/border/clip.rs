@@ -12,11 +12,11 @@ use crate::math::{Bounds, key, unkey};
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use glam::Vec3;
 
-/// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away.
+/// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away. From 1 to 6 the
+/// figures of 24 random surfaces in random boxes are the same within their scatter; with 0.5 three of them are refused, with none eleven.
 const BEYOND: f64 = 3.0;
-/// Rounds of that, and of flips afterwards.
-const ROUNDS: u32 = 4;
-/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared.
+/// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With half and double of it the figures of 24 random
+/// surfaces in random boxes are the same within their scatter.
 const FLAT: f32 = 0.05;
 /// Where the front cannot grow beyond the box it ends before it, by no more than this share of the spacing.
 const OPEN_END: f32 = 1.3;
@@ -174,9 +174,9 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
 }
 
 /// Collapses the short edges at the border, and flips edges to those of Delaunay. Without it 0.8 points fewer of the particles of 13
-/// random surfaces that the box cuts have six neighbours.
+/// random surfaces that the box cuts have six neighbours. Every round but the last takes a particle away.
 fn tidy(net: &mut Net, spacing: f32) {
-    for _ in 0..ROUNDS {
+    loop {
         let mut short: Vec<u64> = net
             .mesh
             .edges()
