@@ -262,23 +262,17 @@ impl Base {
 const MAX_PRODUCTS: usize = 4;
 
 /// The node of a function with the signs, and so with the zeros, of node `root`, in which products that decide them are choices: ab has the
-/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`. Products stay as they are
-/// if `is_told` says so of their factors.
-pub(super) fn by_signs(
-    graph: &mut Graph,
-    root: Id,
-    choices: &mut Vec<Id>,
-    is_told: fn(&mut Graph, Id, Id) -> bool,
-) -> Id {
+/// signs of max(min(a, b), min(−a, −b)), which is ±a or ±b, whichever is smaller. These are added to `choices`.
+pub(super) fn by_signs(graph: &mut Graph, root: Id, choices: &mut Vec<Id>) -> Id {
     match graph.node(root) {
         Node::Unary(Unary::Neg, u) => {
-            let u = by_signs(graph, u, choices, is_told);
+            let u = by_signs(graph, u, choices);
             graph.neg(u)
         }
         Node::Binary(operation @ (Binary::Min | Binary::Max | Binary::Mul), a, b) => {
-            let [a, b] = [a, b].map(|id| by_signs(graph, id, choices, is_told));
-            let is_product = operation == Binary::Mul && choices.len() < 3 * MAX_PRODUCTS;
-            if !is_product || graph.is_uniform(a) || graph.is_uniform(b) || !is_told(graph, a, b) {
+            let [a, b] = [a, b].map(|id| by_signs(graph, id, choices));
+            let is_told = operation == Binary::Mul && choices.len() < 3 * MAX_PRODUCTS;
+            if !is_told || graph.is_uniform(a) || graph.is_uniform(b) {
                 return graph.binary(operation, a, b);
             }
             let (minus_a, minus_b) = (graph.neg(a), graph.neg(b));
@@ -291,15 +285,12 @@ pub(super) fn by_signs(
     }
 }
 
-/// Whether the zeros of two functions may cross. They do not where both are products of functions each of which differs by a number from
-/// those of the other, as those of concentric spheres do.
-fn may_cross(graph: &mut Graph, a: Id, b: Id) -> bool {
-    let [a, b] = [a, b].map(|id| graph.factors(id));
-    a.iter().any(|&a| {
-        b.iter().any(|&b| {
-            let difference = graph.combination([(a, 1.0), (b, -1.0)]);
-            !graph.is_uniform(difference)
-        })
+/// Whether the zeros of factors of a product may cross. They do not where the factors differ by numbers, as those of concentric spheres do.
+fn may_cross(graph: &mut Graph, root: Id) -> bool {
+    let factors = graph.factors(root);
+    factors.iter().skip(1).any(|&factor| {
+        let difference = graph.combination([(factor, 1.0), (factors[0], -1.0)]);
+        !graph.is_uniform(difference)
     })
 }
 
@@ -333,10 +324,14 @@ impl Branches {
         Self::of(&f.graph, f.root, &[], values)
     }
 
-    /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products.
+    /// The branches of a function whose products are [told by their signs](by_signs); none if it has no products, or is one whose factors
+    /// cannot cross.
     pub(super) fn of_factors(f: &Compiled, values: &[f64]) -> Option<Self> {
         let (mut products, mut graph) = (Vec::new(), f.graph.clone());
-        let root = by_signs(&mut graph, f.root, &mut products, may_cross);
+        if matches!(graph.node(f.root), Node::Binary(Binary::Mul, ..)) && !may_cross(&mut graph, f.root) {
+            return None;
+        }
+        let root = by_signs(&mut graph, f.root, &mut products);
         (!products.is_empty()).then(|| Self::of(&graph, root, &products, values))
     }
 

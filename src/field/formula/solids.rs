@@ -29,7 +29,7 @@ impl Solid {
         let mut solid = root;
         if let Some(thickness) = self.thickness {
             graph.let_zero_annihilate();
-            let apart = by_signs(graph, root, &mut Vec::new(), |_, _, _| true);
+            let apart = by_signs(graph, root, &mut Vec::new());
             solid = thickened(graph, apart, thickness);
         }
         if let Some(bounds) = &self.closed {
