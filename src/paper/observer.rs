@@ -1,4 +1,5 @@
-//! What a run tells while it treats a particle. All else is read off the particles between two steps.
+//! The observer of a run is told the moments of the treatment of a particle that leave no trace in the particles: where a child was tried,
+//! and with what it was compared. All other events, such as seeds and moves, can be read off the particles between two steps.
 
 use super::buckets::Nearby;
 use super::particle::{Particle, TangentFrame};
@@ -31,20 +32,21 @@ pub enum Moment<'a> {
     Compared(Comparison),
     /// The fate of the child is decided. The particle is the one that was added, or the one that was there.
     Decided(SlotFate, Option<u32>),
-    /// A free space begins at these two particles that touch the parent, in these directions (§5.3, Fig. 8a); no particles if all of the
-    /// circle is free.
+    /// A free space is found on the circle, between two particles that touch the parent (§5.3, Fig. 8a): these particles, none if the whole
+    /// circle is free, and their directions as angles.
     Space(Option<[u32; 2]>, [f64; 2]),
-    /// An adaptive child of this position and radius starts (§5.1, Figs 7a and 7c), towards the point I, if there is one.
+    /// An adaptive child starts (§5.1, Figs 7a and 7c): the point I of Fig. 7c, which the first child of a seed has not, its position and its
+    /// radius.
     Started(Option<DVec3>, DVec3, f64),
     /// An adaptive child has been pushed away from its parent (Figs 7b and 7e): its position and radius.
     Pushed(DVec3, f64),
     /// An adaptive child has been pushed along the circle (Fig. 7f): its position, its radius and its largest overlap.
     Turned(DVec3, f64, f64),
-    /// The angles φ, which an adaptive child takes, and τ, which is free, are compared (Figs 7g, 8c and 8e): whether the child fits.
+    /// The angle φ that an adaptive child takes is compared with the free angle τ (Figs 7g, 8c and 8e): φ, τ, and whether the child fits.
     Room(f64, f64, bool),
 }
 
-/// A child beside the nearest particle of its sheet.
+/// Comparison of a child with the nearest particle of its sheet.
 #[derive(Clone, Copy, Debug)]
 pub struct Comparison {
     /// Position at which the child was compared: the predicted one, or that of the landing.

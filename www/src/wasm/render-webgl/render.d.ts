@@ -134,7 +134,7 @@ export class Renderer {
      *
      * # Errors
      *
-     * Throws where the columns disagree in length or there are more pieces than `max_particles()`.
+     * Throws where the columns disagree in length or there are more of them than `max_particles()`.
      */
     write_lines(ends: Float32Array, colours: Uint32Array): void;
 }
