@@ -5,7 +5,7 @@
 
 use super::graph::whole_power;
 use super::operations::{Binary, Unary};
-use super::program::{Instruction, Location, Op, Program};
+use super::program::{Instruction, Op, Program};
 use crate::math::functions;
 use crate::math::{LANES, Lanes};
 use core::cell::Cell;
@@ -45,10 +45,8 @@ pub(super) fn run<const N: usize>(
             execute(instruction, &program.uniforms, &RegisterCells { cells, stride, groups });
         }
         for (group, points) in block.chunks(LANES).enumerate() {
-            let results: [Lanes; N] = core::array::from_fn(|n| match program.outputs[n] {
-                Location::Register(register) => file[register as usize * stride + group],
-                Location::Uniform(uniform) => Lanes::splat(program.uniforms[uniform as usize]),
-            });
+            let results: [Lanes; N] =
+                core::array::from_fn(|n| file[program.outputs[n] as usize * stride + group]);
             (0..points.len()).for_each(|lane| store(first + lane, results.map(|lanes| lanes.0[lane])));
             first += points.len();
         }

@@ -39,13 +39,6 @@ pub(super) struct Instruction {
     pub(super) c: u32,
 }
 
-/// Location of a result after a run.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Location {
-    Register(u32),
-    Uniform(u32),
-}
-
 /// A compiled graph with any number of results.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Program {
@@ -54,7 +47,8 @@ pub(super) struct Program {
     pub(super) instructions: Vec<Instruction>,
     /// Register of each coordinate that is used.
     pub(super) coordinates: [Option<u32>; 3],
-    pub(super) outputs: Vec<Location>,
+    /// Register of each result after a run.
+    pub(super) outputs: Vec<u32>,
     /// Number of registers.
     pub(super) registers: usize,
     /// Current values of the uniforms.
@@ -196,11 +190,8 @@ impl<'a> Compiler<'a> {
             }
         }
         for &output in self.outputs {
-            let location = match self.register[output as usize] {
-                Some(register) => Location::Register(register),
-                None => Location::Uniform(self.uniform[output as usize]),
-            };
-            self.program.outputs.push(location);
+            let register = self.operand(output);
+            self.program.outputs.push(register);
         }
         self.allocate();
         self.program
@@ -218,7 +209,7 @@ impl<'a> Compiler<'a> {
         index(self.values - 1)
     }
 
-    /// Virtual register of an operand. A uniform operand is broadcast into a register.
+    /// Virtual register of an operand or a result. A uniform one is broadcast into a register.
     fn operand(&mut self, id: Id) -> u32 {
         if self.graph.is_uniform(id) {
             self.push(Op::Splat, [self.uniform[id as usize], 0, 0])
@@ -297,10 +288,8 @@ impl<'a> Compiler<'a> {
         for (at, instruction) in self.code.iter().enumerate() {
             registers(instruction).for_each(|value| last_use[value as usize] = Some(at));
         }
-        for output in &self.program.outputs {
-            if let Location::Register(value) = output {
-                last_use[*value as usize] = Some(NEVER);
-            }
+        for &output in &self.program.outputs {
+            last_use[output as usize] = Some(NEVER);
         }
         let (mut real, mut is_free) = (vec![0; self.values], Vec::new());
         for (axis, coordinate) in self.program.coordinates.iter_mut().enumerate() {
@@ -321,9 +310,7 @@ impl<'a> Compiler<'a> {
             self.program.instructions.push(mapped);
         }
         for output in &mut self.program.outputs {
-            if let Location::Register(register) = output {
-                *register = real[*register as usize];
-            }
+            *output = real[*output as usize];
         }
         self.program.registers = is_free.len();
     }
