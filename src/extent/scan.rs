@@ -34,7 +34,7 @@ const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
-/// Cells in a batch, after which the scan may be left: as many as a field bounds at once.
+/// Cells in a batch, after which the scan may be left: of the longest formula a batch takes some milliseconds.
 const BATCH: usize = 32;
 
 /// The result of a scan.

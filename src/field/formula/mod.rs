@@ -19,7 +19,7 @@
 //! # Evaluation
 //!
 //! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment form. The graph is
-//! evaluated as a second-order jet in double precision, in interval arithmetic over many boxes at a time and, compiled
+//! evaluated as a second-order jet in double precision, in interval arithmetic over a few boxes at a time and, compiled
 //! to a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
 //! from that of f. Where f takes one of two operands, as a maximum does, each of its smooth branches is a graph as well.
 

@@ -9,7 +9,7 @@ use crate::sampler::discovery::octree::Region;
 use crate::sampler::projection::MAX_NEWTON_STEPS;
 use glam::DVec3;
 
-/// Segments that are tested in one call: a segment needs three boxes, and a chunk of the field holds 32.
+/// Largest number of segments that are tested in one call, and so of the nearest points to which a connection is tried.
 pub(crate) const TOGETHER: usize = 10;
 
 /// A point of the surface in double precision, and the unit normal there.

@@ -1,4 +1,4 @@
-//! Interval arithmetic over the graph: bounds of f and ∇f over boxes, many boxes at a time.
+//! Interval arithmetic over the graph: bounds of f and ∇f over boxes, a few boxes at a time.
 //!
 //! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by
 //! at least one unit in the last place where IEEE arithmetic rounds correctly, by several where the value comes from a
@@ -16,12 +16,12 @@ use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use crate::field::Enclosure;
 use crate::math::{Bounds, Interval, Sym3};
-use core::borrow::Borrow;
 pub(super) use range::Range;
 pub(super) use rows::Row;
 
-/// Number of boxes whose bounds are computed together: enough to hide the cost of finding out which operation comes next.
-const BOXES: usize = 32;
+/// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8 runs on a gyroid, on linked rings and
+/// on a torus take 6, 4 and 1 % more instructions, with a single one 7 and 13 %, and a scan for a box up to 30 %.
+const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
 #[derive(Clone, Debug, Default)]
@@ -46,8 +46,7 @@ impl BoxProgram {
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         for (id, &node) in (0..).zip(self.graph.nodes()).filter(|&(id, _)| self.graph.is_uniform(id)) {
             let none = |_| unreachable!("a coordinate varies");
-            let of = |id: Id| Row::<1>::fill(self.rows[id as usize].at(0));
-            self.rows[id as usize] = Row::fill(row_of(node, 1, parameters, none, of).at(0));
+            self.rows[id as usize] = row_of(node, BOXES, parameters, none, |id| &self.rows[id as usize]);
         }
     }
 
@@ -100,12 +99,12 @@ impl BoxProgram {
 }
 
 /// Bounds of a node over the first `n` boxes of a row, from those of the coordinates and of its operands.
-fn row_of<const N: usize, R: Borrow<Row<N>>>(
+fn row_of<'a, const N: usize>(
     node: Node,
     n: usize,
     parameters: &[f64],
     coordinate: impl Fn(u8) -> Row<N>,
-    known: impl Fn(Id) -> R,
+    known: impl Fn(Id) -> &'a Row<N>,
 ) -> Row<N> {
     match node {
         Node::Constant(bits) => Row::fill(Range::exactly(f64::from_bits(bits))),
@@ -113,7 +112,6 @@ fn row_of<const N: usize, R: Borrow<Row<N>>>(
         Node::Coordinate(axis) => coordinate(axis),
         Node::Unary(operation, a) => {
             let a = known(a);
-            let a = a.borrow();
             match operation {
                 Unary::Neg => a.neg(),
                 Unary::Abs => a.abs(),
@@ -124,14 +122,13 @@ fn row_of<const N: usize, R: Borrow<Row<N>>>(
                 _ => Row::each(n, |k| a.at(k).unary(operation)),
             }
         }
-        Node::Power(a, 2) => known(a).borrow().square(),
+        Node::Power(a, 2) => known(a).square(),
         Node::Power(a, exponent) => {
             let a = known(a);
-            Row::each(n, |k| a.borrow().at(k).power(exponent))
+            Row::each(n, |k| a.at(k).power(exponent))
         }
         Node::Binary(operation, a, b) => {
             let (a, b) = (known(a), known(b));
-            let (a, b) = (a.borrow(), b.borrow());
             match operation {
                 Binary::Add => a.add(b),
                 Binary::Sub => a.sub(b),
@@ -145,13 +142,11 @@ fn row_of<const N: usize, R: Borrow<Row<N>>>(
         }
         Node::Smin(a, b, width) => {
             let [a, b, width] = [a, b, width].map(known);
-            let at = |row: &R, k: usize| row.borrow().at(k);
-            Row::each(n, |k| Range::smooth_minimum(at(&a, k), at(&b, k), at(&width, k)))
+            Row::each(n, |k| Range::smooth_minimum(a.at(k), b.at(k), width.at(k)))
         }
         Node::If(at_most, a, b, value) => {
             let [a, b, value] = [a, b, value].map(known);
-            let at = |row: &R, k: usize| row.borrow().at(k);
-            Row::each(n, |k| Range::choice(at(&a, k), at(&b, k), at(&value, k), at_most))
+            Row::each(n, |k| Range::choice(a.at(k), b.at(k), value.at(k), at_most))
         }
     }
 }

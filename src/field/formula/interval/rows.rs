@@ -1,4 +1,4 @@
-//! Interval arithmetic over many boxes at once, in arrays that the compiler vectorises, or over a single one.
+//! Interval arithmetic over a few boxes at once, in arrays that the compiler vectorises, or over a single one.
 //!
 //! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
 
