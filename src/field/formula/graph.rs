@@ -164,12 +164,34 @@ impl Graph {
         sum
     }
 
-    /// The functions of which a node is the product; the node alone if it is none.
-    pub(super) fn factors(&self, id: Id) -> Vec<Id> {
-        match self.node(id) {
-            Node::Binary(Binary::Mul, a, b) => [self.factors(a), self.factors(b)].concat(),
-            _ => vec![id],
+    /// The functions whose zeros together are those of `root`, each once; none if it depends on no coordinate.
+    ///
+    /// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its argument.
+    pub(super) fn factors(&self, root: Id) -> Vec<Id> {
+        let mut factors = Vec::new();
+        let mut open = vec![root];
+        while let Some(id) = open.pop() {
+            match self.node(id) {
+                _ if self.is_uniform(id) => {}
+                Node::Binary(Binary::Mul, a, b) => open.extend([b, a]),
+                Node::Binary(Binary::Div, a, _) => open.push(a),
+                Node::Power(a, n) if n > 0 => open.push(a),
+                Node::Power(_, _) => {}
+                Node::Unary(
+                    Unary::Neg
+                    | Unary::Sqrt
+                    | Unary::Cbrt
+                    | Unary::Abs
+                    | Unary::Atan
+                    | Unary::Sinh
+                    | Unary::Tanh,
+                    a,
+                ) => open.push(a),
+                _ if factors.contains(&id) => {}
+                _ => factors.push(id),
+            }
         }
+        factors
     }
 
     /// The nodes that `outputs` need, in the order of the graph.

@@ -212,28 +212,10 @@ const MAX_SECOND_OPERATIONS: usize = 2 * MAX_OPERATIONS;
 /// Maximum number of factors. A product of more is taken as one function.
 const MAX_FACTORS: usize = 16;
 
-/// The functions whose zeros together are those of `root`.
-///
-/// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its
-/// argument. A factor is simpler than the product, and it has a gradient where two factors vanish together.
+/// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler than the product, and it has a gradient
+/// where two factors vanish together.
 pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<FactorProgram> {
-    let mut factors = Vec::new();
-    let mut open = vec![root];
-    while let Some(id) = open.pop() {
-        match graph.node(id) {
-            _ if graph.is_uniform(id) => {}
-            Node::Binary(Binary::Mul, a, b) => open.extend([b, a]),
-            Node::Binary(Binary::Div, a, _) => open.push(a),
-            Node::Power(a, n) if n > 0 => open.push(a),
-            Node::Power(_, _) => {}
-            Node::Unary(
-                Unary::Neg | Unary::Sqrt | Unary::Cbrt | Unary::Abs | Unary::Atan | Unary::Sinh | Unary::Tanh,
-                a,
-            ) => open.push(a),
-            _ if factors.contains(&id) => {}
-            _ => factors.push(id),
-        }
-    }
+    let mut factors = graph.factors(root);
     if factors.is_empty() || factors.len() > MAX_FACTORS {
         factors = vec![root];
     }
