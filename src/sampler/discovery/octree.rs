@@ -78,7 +78,7 @@ const SINGULAR_EVERY: u8 = 2;
 /// Largest number of cells of a factor in which they are searched. There are more where they form a curve, of which half as many cells
 /// name half as many points.
 const MOST_TRIED: usize = 512;
-/// Number of cells in a batch: as many as a field bounds at once. The way in which a budget cuts the work does not change the result.
+/// Number of cells in a batch. The way in which a budget cuts the work does not change the result.
 const BATCH: usize = 32;
 /// Units of work that a cell counts for: on long formulas it takes as long as several particles.
 const UNITS: u32 = 8;
