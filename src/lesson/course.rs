@@ -6,11 +6,9 @@
 use super::dynamics::Dynamics;
 use super::event::Event;
 use super::log::Log;
-use super::settings::{LessonMethod, LessonSettings, Placing, Seeding};
+use super::settings::{LessonMethod, LessonSettings, Placing, QueueOrder, Seeding};
 use crate::field::Field;
-use crate::paper::{
-    ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, Place, QueueOrder, step_size,
-};
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, Place, RepulsionSums};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -21,6 +19,13 @@ use std::rc::Rc;
 
 /// With a stack there are no rings: a chapter is this many particles, as many as a ring of a run of some thousand has.
 const STACK_CHAPTER: u32 = 100;
+
+/// A candidate for a seed is covered by a particle of its sheet within this many radii: a closed cover has no hole wider than 1.85.
+const COVERED: f64 = 2.0;
+
+/// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual, where f beside a pole has a tenth of its
+/// size and f beside a zero ten times as much.
+const POLE_PROBE: f64 = 1e-3;
 
 /// Kind of a chapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -78,6 +83,16 @@ pub(super) struct Predicted {
 pub(super) struct Course {
     pub(super) setup: Rc<Setup>,
     pub(super) run: PaperRun<Log>,
+    /// The particles that are not done, in the order in which they came.
+    pub(super) waiting: VecDeque<u32>,
+    /// Relaxation steps or iterations done.
+    pub(super) steps: u32,
+    /// Pushes of one particle by another that were summed for a move so far.
+    pub(super) interactions: u64,
+    /// Force on each particle in the relaxation step under way, in the tangent plane.
+    forces: Vec<DVec3>,
+    /// Longest move in the step or iteration under way, in radii.
+    pub(super) largest_move: f64,
     /// The next candidate for a seed.
     candidate: usize,
     /// Number of fronts so far.
@@ -114,6 +129,11 @@ impl Course {
         Self {
             setup: Rc::new(setup),
             run,
+            waiting: VecDeque::new(),
+            steps: 0,
+            interactions: 0,
+            forces: Vec::new(),
+            largest_move: 0.0,
             candidate: 0,
             fronts: 0,
             part: 0,
@@ -130,7 +150,7 @@ impl Course {
 
     /// Goes on from particles of one front, of which those from number `first` on wait to be treated.
     pub(super) fn go_on(&mut self, particles: Vec<Particle>, first: u32) {
-        self.run.waiting = (first..particles.len() as u32).collect();
+        self.waiting = (first..particles.len() as u32).collect();
         for particle in particles {
             self.run.enter(particle);
         }
@@ -144,8 +164,9 @@ impl Course {
         surface.evaluations = self.run.surface.evaluations;
         let run = PaperRun::new(surface, self.run.rules.clone(), Log::new(&self.setup.settings));
         let before = core::mem::replace(&mut self.run, run);
-        self.run.is_capped = before.is_capped;
+        self.run.seen.is_capped = before.seen.is_capped;
         (self.kind, self.left, self.quiet) = (None, 0, 0);
+        (self.steps, self.interactions) = (0, 0);
         for own in &before.particles {
             if let Some((position, normal)) = self.run.come_back(own, own.p(), own.radius) {
                 let (position, normal) = (position.to_array(), normal.to_array());
@@ -176,22 +197,25 @@ impl Course {
     }
 
     fn begin_part_of_front(&mut self) -> Option<ChapterKind> {
-        if self.run.waiting.is_empty() && !self.run.is_capped {
+        if self.waiting.is_empty() && !self.run.seen.is_capped {
             self.add_seeds();
         }
-        if !self.run.waiting.is_empty() {
+        if !self.waiting.is_empty() {
             Some(self.begin_level())
         } else if self.setup.settings.gaps == GapPolicy::Fill
             && !self.is_filled
             && !self.run.seen.seams.is_empty()
-            && !self.run.is_capped
+            && !self.run.seen.is_capped
         {
             self.left = self.run.seen.seams.len() as u32;
             Some(ChapterKind::Filling)
-        } else if self.run.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
+        } else if self.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
-            let energy = self.run.begin_step();
-            let (step, size) = (self.run.steps + 1, step_size(&self.run.rules));
+            let RepulsionSums { forces, energy, pushes } = self.run.repulsion();
+            self.forces = forces;
+            self.interactions += pushes;
+            self.largest_move = 0.0;
+            let (step, size) = (self.steps + 1, self.run.rules.step_size);
             self.run.seen.push(Event::StepBegins { step, size, energy });
             Some(ChapterKind::Relaxation { step })
         } else {
@@ -200,8 +224,8 @@ impl Course {
     }
 
     fn begin_level(&mut self) -> ChapterKind {
-        let level = self.run.particles[self.run.waiting[0] as usize].level;
-        let waiting = self.run.waiting.len() as u32;
+        let level = self.run.particles[self.waiting[0] as usize].level;
+        let waiting = self.waiting.len() as u32;
         let part = self.part;
         self.part += 1;
         let front = self.fronts - 1;
@@ -245,21 +269,25 @@ impl Course {
     /// Does one unit of a relaxation step.
     fn relax_next(&mut self) {
         let i = self.run.particles.len() - self.left as usize;
-        let moved = self.run.move_particle(i);
-        self.tell_move(i, &moved);
+        let own = self.run.particles[i];
+        let force = self.forces[i];
+        let moved = self.run.move_particle(i, force * self.run.rules.step_size);
+        self.largest_move = self.largest_move.max(self.run.particles[i].p().distance(own.p()) / own.radius);
+        self.tell_move(i, force, &moved);
         self.left -= 1;
         if self.left == 0 {
-            let energy = self.run.end_step();
-            let (step, largest_move) = (self.run.steps, self.run.largest_move);
+            self.steps += 1;
+            let energy = self.run.repulsion().energy;
+            let (step, largest_move) = (self.steps, self.largest_move);
             self.run.seen.push(Event::StepEnds { step, energy, largest_move });
         }
     }
 
-    /// Tells how a particle was moved to where it is now.
-    pub(super) fn tell_move(&mut self, i: usize, moved: &Move) {
+    /// Tells how a force has moved a particle to where it is now.
+    pub(super) fn tell_move(&mut self, i: usize, force: DVec3, moved: &Move) {
         let Particle { position, normal, radius, .. } = self.run.particles[i];
         let (particle, is_kept) = (i as u32, moved.is_kept);
-        let (force, target) = (moved.force.to_array(), moved.target.to_array());
+        let (force, target) = (force.to_array(), moved.target.to_array());
         self.run.seen.push(Event::Moved { particle, force, target, position, normal, radius, is_kept });
     }
 
@@ -271,10 +299,15 @@ impl Course {
 
     /// Does one unit of a generation level.
     fn place(&mut self) {
-        let placing = self.setup.settings.placing;
+        let LessonSettings { placing, order, .. } = self.setup.settings;
+        let before = self.run.particles.len() as u32;
+        let next = |waiting: &mut VecDeque<u32>| match order {
+            QueueOrder::Queue => waiting.pop_front(),
+            QueueOrder::Stack => waiting.pop_back(),
+        };
         if placing == Placing::LevelByLevel && self.left == 0 {
             self.settle_next();
-        } else if let Some(particle) = self.run.next() {
+        } else if let Some(particle) = next(&mut self.waiting) {
             self.run.seen.push(Event::Taken { particle });
             match placing {
                 Placing::OneByOne => self.run.treat(particle),
@@ -282,13 +315,14 @@ impl Course {
             }
             self.finish(particle);
         }
+        self.waiting.extend(before..self.run.particles.len() as u32);
         self.left = self.left.saturating_sub(1);
-        if self.run.is_capped {
-            self.run.waiting.clear();
+        if self.run.seen.is_capped {
+            self.waiting.clear();
             self.predicted.clear();
         }
         // A stack may be empty before the end of its chapter.
-        if self.run.waiting.is_empty() {
+        if self.waiting.is_empty() {
             self.left = 0;
         }
     }
@@ -300,12 +334,14 @@ impl Course {
         while let Some(&candidate) = setup.candidates.get(self.candidate) {
             self.candidate += 1;
             if self.run.particles.len() >= setup.settings.max_particles as usize {
-                self.run.is_capped = true;
+                self.run.seen.is_capped = true;
                 return;
             }
-            if self.run.begin_at(candidate, self.fronts) {
-                let particle = self.run.particles.len() as u32 - 1;
-                self.run.seen.push(Event::Seed { particle, data: self.run.particles[particle as usize] });
+            let seed = self.run.seed_at(candidate, self.fronts);
+            if let Some(seed) = seed.filter(|seed| !self.is_covered(seed) && self.is_zero(seed)) {
+                let particle = self.run.enter(seed);
+                self.waiting.push_back(particle);
+                self.run.seen.push(Event::Seed { particle, data: seed });
                 self.fronts += 1;
                 if setup.settings.seeding == Seeding::OneByOne {
                     break;
@@ -315,5 +351,19 @@ impl Course {
         if self.fronts > first {
             self.part = 0;
         }
+    }
+
+    /// Whether a particle of its sheet is so near to a seed that its front has come by.
+    fn is_covered(&self, seed: &Particle) -> bool {
+        let near = self.run.buckets.near(&self.run.particles, seed.p(), COVERED * seed.radius);
+        near.iter().any(|near| self.run.particles[near.particle as usize].n().dot(seed.n()) > 0.0)
+    }
+
+    /// Whether f comes to zero at a seed, and not to a pole: |f| grows away from a zero.
+    fn is_zero(&mut self, seed: &Particle) -> bool {
+        let step = POLE_PROBE * seed.radius;
+        let [here, above, below] =
+            [0.0, step, -step].map(|step| self.run.surface.sample(seed.p() + seed.n() * step).value.abs());
+        above > here || below > here
     }
 }

@@ -15,7 +15,8 @@
 
 use super::dynamics::Dynamics;
 use super::log::Log;
-use crate::paper::{MAX_MOVE, Move, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
+use crate::paper::{Move, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
+use glam::DVec3;
 
 /// A disc meets those that are not larger within this many radii.
 pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
@@ -50,20 +51,11 @@ pub(super) fn interact(
     dynamics[j].energy += energy;
 }
 
-/// "Update the position": a step of the relaxation, and back onto the surface, with the radius there.
-pub(super) fn step(run: &mut PaperRun<Log>, i: usize, dynamics: &Dynamics) -> Move {
-    let own = run.particles[i];
-    let normal = own.n();
+/// "Update the position": a step of the relaxation. Returns the force in the tangent plane, and the move.
+pub(super) fn step(run: &mut PaperRun<Log>, i: usize, dynamics: &Dynamics) -> (DVec3, Move) {
+    let normal = run.particles[i].n();
     let force = dynamics.force - normal * normal.dot(dynamics.force);
-    let reach = MAX_MOVE * own.radius;
-    let target = own.p() + (force * OVERLAP_STEP).clamp_length_max(reach);
-    let arrived = run.come_back(&own, target, reach);
-    if let Some((position, normal)) = arrived {
-        let radius = run.radius_at(position).unwrap_or(own.radius);
-        run.particles[i] =
-            Particle { position: position.to_array(), normal: normal.to_array(), radius, ..own };
-    }
-    Move { force, target, is_kept: arrived.is_none() }
+    (force, run.move_particle(i, force * OVERLAP_STEP))
 }
 
 /// Whether a particle dies, given a random number in [0, 1).

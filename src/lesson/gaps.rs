@@ -3,7 +3,7 @@
 use super::course::Course;
 use super::event::Event;
 use crate::math::frame_of;
-use crate::paper::{ChildSlot, Circle, Landing, Place};
+use crate::paper::{ChildSlot, Circle, Place};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
@@ -46,7 +46,7 @@ impl Course {
         }
         let direction = (u * centre.x + w * centre.y) / centre.length();
         let circle = Circle { centre: p, normal: n, direction, radius: centre.length() * 2.0 * r };
-        let Landing::On { position, normal } =
+        let Ok((position, normal)) =
             run.surface.land_on_circle(&circle, 0.0, run.rules.residual * r, &mut |_| {})
         else {
             return;

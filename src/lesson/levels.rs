@@ -47,13 +47,15 @@ impl Course {
             let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
             let normal = (frame.n + turn * (2.0 * radius * libm::cos(theta_rad))).normalize_or(frame.n);
             let place = Place { position, normal, radius };
-            let predicted = self.predicted.iter().map(|child| (child.place, None));
+            // The children that are to be projected have the numbers behind those of the particles.
+            let particles = self.run.particles.len() as u32;
+            let predicted = (particles..).zip(self.predicted.iter().map(|child| child.place));
             if let Some(other) =
                 self.run.corresponding(child, &place, candidates.iter().copied().chain(predicted))
             {
-                self.run.decide(child, SlotFate::Matched, other);
+                let particle = Some(other).filter(|&other| other < particles);
+                self.run.decide(child, SlotFate::Matched, particle);
             } else if self.run.particles.len() + self.predicted.len() >= self.run.rules.max_particles {
-                self.run.is_capped = true;
                 self.run.decide(child, SlotFate::Capped, None);
             } else {
                 self.predicted.push_back(Predicted { child, circle, theta_rad, place });
@@ -70,10 +72,10 @@ impl Course {
         let reach = 2.0 * place.radius * self.run.rules.match_tolerance;
         let neighbours = self.run.buckets.near(&self.run.particles, position, reach);
         match self.run.corresponding(child, &place, self.run.candidates(&neighbours)) {
-            Some(other) => self.run.decide(child, SlotFate::Matched, other),
+            Some(other) => self.run.decide(child, SlotFate::Matched, Some(other)),
             None => {
                 // There is room: the children that were predicted have been counted.
-                self.run.add_waiting(child, &place);
+                self.run.add_child(child, &place);
             }
         }
     }

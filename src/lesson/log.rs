@@ -18,6 +18,8 @@ pub(super) struct Log {
     seam: f64,
     /// Particles with a child on a seam, in the order in which they were treated.
     pub(super) seams: Vec<u32>,
+    /// Whether the limit on particles was reached.
+    pub(super) is_capped: bool,
 }
 
 impl Log {
@@ -26,7 +28,7 @@ impl Log {
             Sampling::Uniform => SEAM * 2.0 * settings.radius,
             Sampling::Adaptive => f64::INFINITY,
         };
-        Self { events: Vec::new(), seam, seams: Vec::new() }
+        Self { events: Vec::new(), seam, seams: Vec::new(), is_capped: false }
     }
 
     pub(super) fn push(&mut self, event: Event) {
@@ -37,6 +39,7 @@ impl Log {
 impl Observer for Log {
     fn see(&mut self, child: ChildSlot, moment: Moment<'_>, particles: &[Particle]) {
         let ChildSlot { parent, slot } = child;
+        self.is_capped |= matches!(moment, Moment::Decided(SlotFate::Capped, _));
         if let Moment::Decided(SlotFate::Added, Some(particle)) = moment {
             self.push(Event::Added { particle, data: particles[particle as usize] });
         }
@@ -62,6 +65,8 @@ impl Observer for Log {
             }
             Moment::Compared(Comparison { position, against, distance, limit, corresponds }) => {
                 let position = position.to_array();
+                // A child that still has to be projected is none of the particles.
+                let against = against.filter(|&other| (other as usize) < particles.len());
                 Event::Compared { parent, slot, position, against, distance, limit, corresponds }
             }
             Moment::Decided(fate, particle) => Event::Fate { parent, slot, fate, particle },
@@ -92,8 +97,10 @@ impl Observer for Log {
         if self.seams.last() != Some(&parent) {
             self.seams.push(parent);
         }
-        if let Some(particle) = against {
-            let is_other = particles[parent as usize].front != particles[particle as usize].front;
+        if let Some(particle) = against
+            && let Some(other) = particles.get(particle as usize)
+        {
+            let is_other = particles[parent as usize].front != other.front;
             self.push(Event::FrontsMeet { parent, slot, particle, is_other });
         }
     }

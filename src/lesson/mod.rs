@@ -49,7 +49,9 @@ mod witkin_heckbert;
 pub use course::ChapterKind;
 pub use event::{Event, Vector};
 pub use section::Iterate;
-pub use settings::{LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, Seeding};
+pub use settings::{
+    LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, QueueOrder, Seeding,
+};
 
 use crate::field::Field;
 use crate::math::{Bounds, HEXAGONAL_CELL};
@@ -258,10 +260,10 @@ impl Lesson {
             events: self.events_so_far(),
             particles: self.course.run.particles.len() as u32,
             evaluations: self.course.run.surface.evaluations,
-            interactions: self.course.run.interactions,
-            steps: self.course.run.steps,
+            interactions: self.course.interactions,
+            steps: self.course.steps,
             is_settled: self.course.quiet >= QUIET,
-            is_capped: self.course.run.is_capped,
+            is_capped: self.course.run.seen.is_capped,
             is_done: self.is_done,
         }
     }
@@ -333,7 +335,10 @@ impl Lesson {
             return Vec::new();
         }
         let PaperRun { surface, rules, .. } = &self.course.run;
-        let run = PaperRun::with_particles(surface.clone(), rules.clone(), self.shown.clone(), ());
+        let mut run = PaperRun::new(surface.clone(), rules.clone(), ());
+        for &shown in &self.shown {
+            run.enter(shown);
+        }
         run.pushes(particle).collect()
     }
 

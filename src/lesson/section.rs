@@ -66,7 +66,8 @@ impl Lesson {
                 slope: trial.sample.slope,
             });
         };
-        self.course.run.surface.clone().land_by_newton(start.into(), reach, residual, &mut note);
+        // The last step says where the method has come to.
+        let _ = self.course.run.surface.clone().land_by_newton(start.into(), reach, residual, &mut note);
         steps
     }
 }

@@ -3,7 +3,7 @@
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
 use crate::math::Bounds;
-use crate::paper::{Matched, Projection, QueueOrder, RadiusRule, Rules, SearchStart, sum_of_curvatures};
+use crate::paper::{Matched, Projection, RadiusRule, Rules, SearchStart, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -37,6 +37,17 @@ pub enum LessonMethod {
     WitkinHeckbert,
     /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces between discs.
     Forces,
+}
+
+/// The order in which the particles that are not done are treated (paper §4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
+#[serde(rename_all = "snake_case")]
+pub enum QueueOrder {
+    /// The particle that has waited longest is next: this gives the rings of Fig. 11.
+    Queue,
+    /// The particle that came last is next, as the word "stack" in the text says.
+    Stack,
 }
 
 /// Order of the projection of children and their comparison with the particles that exist.
@@ -171,16 +182,16 @@ impl LessonSettings {
                 most: self.radius_max,
             },
         };
+        let usual = Rules::with_sizes(sizes);
         Rules {
             sizes,
             projection: self.projection,
             start: self.start,
-            order: self.order,
             matched: self.matched,
             match_tolerance: self.match_tolerance,
             fit: self.fit,
             residual: self.residual,
-            step_size: self.step_size,
+            step_size: self.step_size.unwrap_or(usual.step_size),
             max_particles: self.max_particles as usize,
         }
     }

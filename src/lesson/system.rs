@@ -57,16 +57,16 @@ fn tangent(normal: [f64; 3], random: &mut Pcg32) -> DVec3 {
 impl Course {
     fn is_over(&self) -> bool {
         self.run.particles.is_empty()
-            || self.run.is_capped
+            || self.run.seen.is_capped
             || self.quiet >= QUIET
-            || self.run.steps >= self.setup.settings.max_iterations
+            || self.steps >= self.setup.settings.max_iterations
     }
 
     /// Begins the next iteration; `None` at the end of the run.
     pub(super) fn begin_iteration(&mut self) -> Option<ChapterKind> {
         if self.run.particles.is_empty() {
             self.add_seeds();
-            self.run.waiting.clear();
+            self.waiting.clear();
         }
         if self.is_over() {
             return None;
@@ -74,14 +74,14 @@ impl Course {
         let sum: f64 = self.run.particles.iter().map(|particle| particle.radius).sum();
         let mean = sum / self.run.particles.len() as f64;
         self.interact(mean);
-        let iteration = self.run.steps + 1;
+        let iteration = self.steps + 1;
         let particles = self.run.particles.len() as u32;
         let energy = self.dynamics.iter().map(|own| own.energy).sum::<f64>() / f64::from(particles);
         self.run.seen.push(Event::IterationBegins { iteration, particles, energy });
         // Every particle moves, then every particle is decided on.
         self.left = 2 * particles;
         self.dying.clear();
-        self.run.largest_move = 0.0;
+        self.largest_move = 0.0;
         Some(ChapterKind::Iteration { iteration })
     }
 
@@ -106,7 +106,7 @@ impl Course {
                 } else {
                     forces::interact(&mut self.dynamics, (i, own), (j, other));
                 }
-                self.run.interactions += 1;
+                self.interactions += 1;
             }
         }
     }
@@ -132,7 +132,7 @@ impl Course {
         let method = self.setup.settings.method;
         let own = self.run.particles[i];
         let dynamics = &mut self.dynamics[i];
-        let moved = match method {
+        let (force, moved) = match method {
             LessonMethod::WitkinHeckbert => {
                 let particle = &mut self.run.particles[i];
                 witkin_heckbert::step(&mut self.run.surface, &self.setup, particle, dynamics)
@@ -144,8 +144,8 @@ impl Course {
         if method == LessonMethod::Forces {
             dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
         }
-        self.run.largest_move = self.run.largest_move.max(dynamics.moved);
-        self.tell_move(i, &moved);
+        self.largest_move = self.largest_move.max(dynamics.moved);
+        self.tell_move(i, force, &moved);
     }
 
     /// "Split or kill particles when necessary".
@@ -172,7 +172,7 @@ impl Course {
             self.run.particles.push(data[1]);
             let (data, energy) = (Box::new(data), dynamics.energy);
             self.run.seen.push(Event::Divided { particle: i as u32, child, data, energy });
-            self.run.is_capped = self.run.particles.len() >= most;
+            self.run.seen.is_capped = self.run.particles.len() >= most;
         }
     }
 
@@ -205,11 +205,11 @@ impl Course {
         let mean_move = self.dynamics.iter().map(|own| own.moved).sum::<f64>() / self.dynamics.len() as f64;
         let is_quiet = !has_changed && mean_move <= REST;
         self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
-        self.run.steps += 1;
+        self.steps += 1;
         self.run.seen.push(Event::IterationEnds {
-            iteration: self.run.steps,
+            iteration: self.steps,
             particles: self.run.particles.len() as u32,
-            largest_move: self.run.largest_move,
+            largest_move: self.largest_move,
             mean_move,
         });
     }

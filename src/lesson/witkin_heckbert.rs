@@ -14,6 +14,7 @@
 use super::course::Setup;
 use super::dynamics::Dynamics;
 use crate::paper::{ImplicitSurface, MAX_MOVE, Move, Particle};
+use glam::DVec3;
 
 /// Energies reach as far as this, in σ.
 pub(super) const RANGE: f64 = 3.0;
@@ -78,13 +79,13 @@ pub(super) fn interact(
 /// "Compute the repulsion radius", "update the position": one time step.
 ///
 /// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface, less φ f ∇f/|∇f|², which leads
-/// back to the surface.
+/// back to the surface. Returns P, and the move.
 pub(super) fn step(
     surface: &mut ImplicitSurface,
     setup: &Setup,
     own: &mut Particle,
     dynamics: &mut Dynamics,
-) -> Move {
+) -> (DVec3, Move) {
     let sigma = own.radius;
     let normal = own.n();
     let force = dynamics.force * (sigma * sigma);
@@ -106,7 +107,7 @@ pub(super) fn step(
     if can_go {
         (own.position, own.normal, own.height) = (target.to_array(), there.to_array(), height);
     }
-    Move { force, target, is_kept: !can_go }
+    (force, Move { target, is_kept: !can_go })
 }
 
 /// Whether a particle dies: near equilibrium, σ < δσ̂, and a random number above σ/(δσ̂).

@@ -8,12 +8,10 @@
 //!   allows is not added.
 
 use super::PaperRun;
-use super::buckets::Nearby;
 use super::observer::{ChildSlot, Moment, Observer};
 use super::particle::{Place, TangentFrame};
 use super::projection::Circle;
-use super::surface::Landing;
-use crate::particles::SlotFate;
+use crate::particles::{SlotFate, Slots};
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
@@ -32,9 +30,6 @@ const TURN_RAD: f64 = 1.0 / 32.0;
 /// Largest number of pushes in each direction: as many turns go around the circle once.
 const MAX_PUSHES: u32 = 200;
 
-/// Slots of a particle, at most: as many as [`Slots`](crate::particles::Slots) has room for.
-const MAX_SLOTS: u32 = 10;
-
 /// A particle as a disc in the tangent plane, at its true distance from the parent.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
@@ -50,22 +45,14 @@ impl Disc {
     }
 }
 
-/// A particle of the sheet around a parent.
-#[derive(Clone, Copy, Debug)]
-struct SheetNeighbour {
-    particle: u32,
-    disc: Disc,
-    touches: bool,
-}
-
-/// The parent whose children are placed, with the particles around it.
+/// The parent whose children are placed, with the particles of its sheet around it.
 struct Circumference {
     /// The next child.
     child: ChildSlot,
     p: DVec3,
     radius: f64,
     frame: TangentFrame,
-    around: Vec<SheetNeighbour>,
+    around: Vec<Disc>,
 }
 
 impl Circumference {
@@ -84,7 +71,7 @@ impl Circumference {
         let shares = self
             .around
             .iter()
-            .map(|other| 1.0 - other.disc.centre.distance(child.centre) / (child.radius + other.disc.radius));
+            .map(|other| 1.0 - other.centre.distance(child.centre) / (child.radius + other.radius));
         shares.fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -118,45 +105,38 @@ impl<O: Observer> PaperRun<O> {
         let child = ChildSlot { parent: particle, slot: 0 };
         self.tell(child, Moment::Frame(&frame, None));
         let mut ring = Circumference { child, p: own.p(), radius: own.radius, frame, around: Vec::new() };
-        ring.around = neighbours.iter().filter_map(|near| self.around(&ring, near)).collect();
+        let mut touching = Vec::new();
+        for near in neighbours {
+            let other = &self.particles[near.particle as usize];
+            if self.rules.is_same_sheet(&own.place(), &other.place()) {
+                let disc = ring.disc(other.p(), other.radius);
+                ring.around.push(disc);
+                if near.distance <= TOUCHING * (own.radius + other.radius) {
+                    touching.push((near.particle, disc));
+                }
+            }
+        }
         if let Some(parent) = own.parent {
             self.decide(child, SlotFate::Parent, Some(parent));
             ring.child.slot = 1;
         }
         // "If we have n existing particles we have n free available spaces."
-        let mut touching: Vec<SheetNeighbour> =
-            ring.around.iter().filter(|other| other.touches).copied().collect();
-        touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
+        touching.sort_by(|(_, a), (_, b)| a.angle().total_cmp(&b.angle()));
         if touching.is_empty() {
-            self.tell(child, Moment::Space(None, [0.0, TAU]));
             self.fill_space(&mut ring, None);
         }
         for (k, &before) in touching.iter().enumerate() {
-            let behind = touching[(k + 1) % touching.len()];
-            let ends = [before.disc, behind.disc];
-            let particles = [before.particle, behind.particle];
-            self.tell(child, Moment::Space(Some(particles), ends.map(|end| end.angle())));
-            self.fill_space(&mut ring, Some(ends));
+            self.fill_space(&mut ring, Some([before, touching[(k + 1) % touching.len()]]));
         }
     }
 
-    /// A neighbour of the parent's sheet as a disc.
-    fn around(&self, ring: &Circumference, near: &Nearby) -> Option<SheetNeighbour> {
-        let other = &self.particles[near.particle as usize];
-        let both = ring.radius + other.radius;
-        let own = self.particles[ring.child.parent as usize].place();
-        self.rules.is_same_sheet(&own, &other.place()).then(|| SheetNeighbour {
-            particle: near.particle,
-            disc: ring.disc(other.p(), other.radius),
-            touches: near.distance <= TOUCHING * both,
-        })
-    }
-
     /// Places children in a free space, from its beginning on, until the next one has no room (Fig. 8).
-    fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[Disc; 2]>) {
-        let mut last = ends.map(|[before, _]| before);
-        let mut behind = ends.map(|[_, behind]| behind);
-        while ring.child.slot < MAX_SLOTS && !self.is_capped {
+    fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[(u32, Disc); 2]>) {
+        let angles_rad = ends.map_or([0.0, TAU], |ends| ends.map(|(_, end)| end.angle()));
+        self.tell(ring.child, Moment::Space(ends.map(|ends| ends.map(|(particle, _)| particle)), angles_rad));
+        let mut last = ends.map(|[(_, before), _]| before);
+        let mut behind = ends.map(|[_, (_, behind)]| behind);
+        while (ring.child.slot as usize) < Slots::COUNT {
             let child = self.pushed(ring, last);
             // "The projection of its diameter", φ, and "the actual free circumference", τ (Fig. 7g).
             let phi_rad = ring.taken(child);
@@ -231,20 +211,20 @@ impl<O: Observer> PaperRun<O> {
         let distance = child.centre.length();
         let direction = direction / distance;
         let circle = Circle { centre: ring.p, normal: ring.frame.n, direction, radius: distance };
-        let landing = match self.land(of, &circle, 0.0) {
-            Landing::On { position, .. } if self.radius_at(position).is_none() => Landing::Undefined,
-            landing => landing,
-        };
+        let landing = self.land(of, &circle, 0.0);
+        let landing = landing.and_then(|at| self.radius_at(at.0).map(|_| at).ok_or(SlotFate::Undefined));
         let Some((position, normal)) = self.usable(of, landing) else { return };
         let Some(radius) = self.radius_at(position) else { return };
         let place = Place { position, normal, radius };
         let reach = self.rules.match_tolerance * (radius + self.rules.sizes.largest());
         let near = self.buckets.near(&self.particles, position, reach);
         if let Some(other) = self.corresponding(of, &place, self.candidates(&near)) {
-            self.decide(of, SlotFate::Matched, other);
-        } else if let Some(particle) = self.add_waiting(of, &place) {
-            let disc = ring.disc(position, radius);
-            ring.around.push(SheetNeighbour { particle, disc, touches: true });
+            self.decide(of, SlotFate::Matched, Some(other));
+        } else if self.add_child(of, &place).is_some() {
+            ring.around.push(ring.disc(position, radius));
+        } else {
+            // There are as many particles as there may be: no other child is tried.
+            ring.child.slot = Slots::COUNT as u32;
         }
     }
 }

@@ -66,18 +66,18 @@ impl ImplicitSurface {
             let sample = self.sample(position);
             note(Trial { step, theta_rad: Some(theta_rad), position, sample });
             if sample.is_zero(residual) {
-                return Landing::On { position, normal: sample.gradient / sample.slope };
+                return Ok((position, sample.gradient / sample.slope));
             }
             let derivative = sample.gradient.dot(circle.tangent(theta_rad));
             theta_rad += 2.0 * libm::atan((-0.5 * sample.value / derivative).clamp(-MAX_TURN, MAX_TURN));
             if !theta_rad.is_finite() {
-                return Landing::Undefined;
+                return Err(SlotFate::Undefined);
             }
             if theta_rad.abs() >= MAX_THETA_RAD {
-                return Landing::NotConverged;
+                break;
             }
         }
-        Landing::NotConverged
+        Err(SlotFate::NotConverged)
     }
 }
 
@@ -94,7 +94,7 @@ impl<O: Observer> PaperRun<O> {
                 self.surface.land_by_newton(start, circle.radius, residual, &mut note)
             }
         };
-        if let Landing::On { position, normal } = landing {
+        if let Ok((position, normal)) = landing {
             self.tell(child, Moment::Landed(position, normal, position.distance(circle.centre)));
         }
         landing
@@ -103,14 +103,13 @@ impl<O: Observer> PaperRun<O> {
     /// The position and normal of a child that has landed, if it may be a particle there; otherwise its fate is decided.
     pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
         let fate = match landing {
-            Landing::NotConverged => SlotFate::NotConverged,
-            Landing::Undefined => SlotFate::Undefined,
+            Err(fate) => fate,
             // The circle may meet the far side of a rim or of a thin sheet.
-            Landing::On { normal, .. } if normal.dot(self.particles[child.parent as usize].n()) <= 0.0 => {
+            Ok((_, normal)) if normal.dot(self.particles[child.parent as usize].n()) <= 0.0 => {
                 SlotFate::NotConverged
             }
-            Landing::On { position, .. } if !self.surface.bounds.holds(position) => SlotFate::Outside,
-            Landing::On { position, normal } => return Some((position, normal)),
+            Ok((position, _)) if !self.surface.bounds.holds(position) => SlotFate::Outside,
+            Ok(place) => return Some(place),
         };
         self.decide(child, fate, None);
         None
@@ -120,13 +119,7 @@ impl<O: Observer> PaperRun<O> {
     /// where the field ends, or around a fold.
     pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
         let residual = self.rules.residual * own.radius;
-        match self.surface.land_by_newton(target, reach, residual, &mut |_| {}) {
-            Landing::On { position, normal }
-                if self.surface.bounds.holds(position) && normal.dot(own.n()) > 0.0 =>
-            {
-                Some((position, normal))
-            }
-            _ => None,
-        }
+        let landing = self.surface.land_by_newton(target, reach, residual, &mut |_| {}).ok();
+        landing.filter(|&(position, normal)| self.surface.bounds.holds(position) && normal.dot(own.n()) > 0.0)
     }
 }

@@ -4,7 +4,8 @@
 use super::PaperRun;
 use super::buckets::{Buckets, Nearby};
 use super::observer::Observer;
-use super::rules::{RadiusRule, Rules};
+use super::particle::Particle;
+use super::rules::RadiusRule;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -21,10 +22,18 @@ pub struct Push {
     pub energy: f64,
 }
 
+/// The repulsion on all particles where they are.
+pub(crate) struct RepulsionSums {
+    /// Force on each particle, in the tangent plane.
+    pub(crate) forces: Vec<DVec3>,
+    /// Energy per particle.
+    pub(crate) energy: f64,
+    /// Number of pushes of one particle by another.
+    pub(crate) pushes: u64,
+}
+
 /// How a particle was moved, beside where it is now.
 pub(crate) struct Move {
-    /// Sum of the repulsion, in the tangent plane.
-    pub(crate) force: DVec3,
     /// Target of the move.
     pub(crate) target: DVec3,
     /// Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold.
@@ -39,7 +48,7 @@ pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
 /// Size of a relaxation step in uniform sampling, in σ². The stiffest mode of the hexagonal lattice at the spacing 2σ has the eigenvalue
 /// 2.2 / σ², so steps below 0.9 are stable, and below 0.7 where rows are squeezed to 1.7 σ; with 0.2 ten steps leave seams.
-const STEP: f64 = 0.6;
+pub(super) const STEP: f64 = 0.6;
 
 /// Size of a relaxation step in non-uniform sampling. The stiffest mode of the hexagonal lattice has an eigenvalue below 6, so steps below
 /// a third are stable.
@@ -70,42 +79,23 @@ pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
     (if distance > 0.0 { overlap / distance } else { 0.0 }, share * share)
 }
 
-/// The size of a step: the share of the force by which a particle moves.
-pub(crate) fn step_size(rules: &Rules) -> f64 {
-    rules.step_size.unwrap_or(match rules.sizes {
-        RadiusRule::Same(_) => STEP,
-        RadiusRule::ByCurvature { .. } => OVERLAP_STEP,
-    })
-}
-
 impl<O: Observer> PaperRun<O> {
     /// A relaxation step: all forces, then all moves.
     pub fn relax(&mut self) {
-        self.begin_step();
-        for particle in 0..self.particles.len() {
-            self.move_particle(particle);
+        for (particle, force) in self.repulsion().forces.into_iter().enumerate() {
+            self.move_particle(particle, force * self.rules.step_size);
         }
-        self.end_step();
     }
 
-    /// Begins a step: sums the repulsion on every particle where it is, and returns the energy per particle.
-    pub(crate) fn begin_step(&mut self) -> f64 {
-        let (energy, pushes) = self.sum_repulsion();
-        self.interactions += pushes;
-        self.largest_move = 0.0;
-        energy
-    }
-
-    /// Fills the forces and returns the energy per particle, and the number of pushes.
+    /// Sums the repulsion on every particle by its neighbours.
     ///
     /// # Differs from the paper
     ///
     /// Pairs on two sheets do not count.
-    fn sum_repulsion(&mut self) -> (f64, u64) {
+    pub(crate) fn repulsion(&mut self) -> RepulsionSums {
+        // The particles may have moved.
         self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
-        let (mut energy, mut pushes) = (0.0, 0);
-        let mut forces = core::mem::take(&mut self.forces);
-        forces.clear();
+        let (mut forces, mut energy, mut pushes) = (Vec::new(), 0.0, 0);
         for i in 0..self.particles.len() as u32 {
             let mut force = DVec3::ZERO;
             for push in self.pushes(i) {
@@ -117,8 +107,7 @@ impl<O: Observer> PaperRun<O> {
             let normal = self.particles[i as usize].n();
             forces.push(force - normal * normal.dot(force));
         }
-        self.forces = forces;
-        (energy / self.particles.len() as f64, pushes)
+        RepulsionSums { forces, energy: energy / self.particles.len() as f64, pushes }
     }
 
     /// Returns the repulsion of a particle by each of its neighbours at their present positions.
@@ -142,24 +131,17 @@ impl<O: Observer> PaperRun<O> {
         })
     }
 
-    /// Moves a particle by its force and brings it back onto the surface.
-    pub(crate) fn move_particle(&mut self, particle: usize) -> Move {
+    /// Moves a particle in its tangent plane and brings it back onto the surface.
+    pub(crate) fn move_particle(&mut self, particle: usize, way: DVec3) -> Move {
         let own = self.particles[particle];
-        let force = self.forces[particle];
         let reach = MAX_MOVE * own.radius;
-        let target = own.p() + (force * step_size(&self.rules)).clamp_length_max(reach);
+        let target = own.p() + way.clamp_length_max(reach);
         let landed = self.come_back(&own, target, reach);
-        let (position, normal) = landed.unwrap_or((own.p(), own.n()));
-        self.largest_move = self.largest_move.max(position.distance(own.p()) / own.radius);
-        let radius = self.radius_at(position).unwrap_or(own.radius);
-        let moved = &mut self.particles[particle];
-        (moved.position, moved.normal, moved.radius) = (position.to_array(), normal.to_array(), radius);
-        Move { force, target, is_kept: landed.is_none() }
-    }
-
-    /// Ends a step, and returns the energy per particle where the particles are now.
-    pub(crate) fn end_step(&mut self) -> f64 {
-        self.steps += 1;
-        self.sum_repulsion().0
+        if let Some((position, normal)) = landed {
+            let radius = self.radius_at(position).unwrap_or(own.radius);
+            let (position, normal) = (position.to_array(), normal.to_array());
+            self.particles[particle] = Particle { position, normal, radius, ..own };
+        }
+        Move { target, is_kept: landed.is_none() }
     }
 }

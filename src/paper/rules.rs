@@ -1,6 +1,7 @@
 //! The choices that the paper discusses or leaves open.
 
 use super::particle::Place;
+use super::relaxation::{OVERLAP_STEP, STEP};
 use super::surface::ImplicitSurface;
 use crate::differential::Curvature;
 use glam::DVec3;
@@ -26,17 +27,6 @@ pub enum SearchStart {
     Tangent,
     /// The search starts at the angle at which the parent's normal curvature predicts the surface, sin θ₀ = −κ_V r.
     Curvature,
-}
-
-/// The order in which the particles that are not done are treated (§4.4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
-#[serde(rename_all = "snake_case")]
-pub enum QueueOrder {
-    /// The particle that has waited longest is next: this gives the rings of Fig. 11.
-    Queue,
-    /// The particle that came last is next, as the word "stack" in the text says.
-    Stack,
 }
 
 /// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
@@ -112,8 +102,6 @@ pub struct Rules {
     pub projection: Projection,
     /// The start of the search on the circle.
     pub start: SearchStart,
-    /// The order in which waiting particles are treated.
-    pub order: QueueOrder,
     /// Whether matched particles leave the neighbours.
     pub matched: Matched,
     /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value; 0.7 gives the most particles
@@ -123,9 +111,9 @@ pub struct Rules {
     pub fit: f64,
     /// A point is on the surface if |f|/|∇f| is at most this, in r. The paper names no value.
     pub residual: f64,
-    /// Size of a relaxation step; the usual one if it is not given.
-    pub step_size: Option<f64>,
-    /// The run stops at this many particles.
+    /// Size of a relaxation step: the share of the force by which a particle moves.
+    pub step_size: f64,
+    /// No child is added where there are this many particles.
     pub max_particles: usize,
 }
 
@@ -137,13 +125,14 @@ impl Rules {
             sizes,
             projection: Projection::Circle,
             start: SearchStart::Tangent,
-            // The text says stack, but the rings of Fig. 11 are those of a queue.
-            order: QueueOrder::Queue,
             matched: Matched::Leave,
             match_tolerance: 0.7,
             fit: 0.5,
             residual: 1e-4,
-            step_size: None,
+            step_size: match sizes {
+                RadiusRule::Same(_) => STEP,
+                RadiusRule::ByCurvature { .. } => OVERLAP_STEP,
+            },
             max_particles: usize::MAX,
         }
     }

@@ -3,6 +3,7 @@
 use crate::differential::{Curvature, exact_curvature};
 use crate::field::Field;
 use crate::math::Bounds;
+use crate::particles::SlotFate;
 use glam::DVec3;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -48,21 +49,8 @@ pub struct Trial {
     pub(crate) sample: FieldSample,
 }
 
-/// Result of a search for the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Landing {
-    /// The search has met the surface.
-    On {
-        /// Point of the surface.
-        position: DVec3,
-        /// Unit normal there.
-        normal: DVec3,
-    },
-    /// The search has met no point of the surface.
-    NotConverged,
-    /// The search has come to a place where the field has no value.
-    Undefined,
-}
+/// Result of a search for the surface: a point of it with the unit normal there, or the fate of a child that finds none.
+pub(crate) type Landing = Result<(DVec3, DVec3), SlotFate>;
 
 impl ImplicitSurface {
     /// The zeros of `field` in a box.
@@ -104,23 +92,16 @@ impl ImplicitSurface {
             let sample = self.sample(position);
             note(Trial { step, theta_rad: None, position, sample });
             if sample.is_zero(residual) {
-                return Landing::On { position, normal: sample.gradient / sample.slope };
+                return Ok((position, sample.gradient / sample.slope));
             }
             position -= sample.gradient * (sample.value / (sample.slope * sample.slope));
             if !position.is_finite() {
-                return Landing::Undefined;
+                return Err(SlotFate::Undefined);
             }
             if position.distance(start) > reach {
-                return Landing::NotConverged;
+                break;
             }
         }
-        Landing::NotConverged
-    }
-
-    /// Whether f comes to zero at a point of the surface, and not to a pole: |f| grows away from a zero.
-    pub(crate) fn is_zero(&mut self, position: DVec3, normal: DVec3, step: f64) -> bool {
-        let [here, above, below] =
-            [0.0, step, -step].map(|step| self.sample(position + normal * step).value.abs());
-        above > here || below > here
+        Err(SlotFate::NotConverged)
     }
 }

@@ -93,11 +93,11 @@ impl<O: Observer> PaperRun<O> {
             let place = Place { position, normal, radius };
             if let Some(other) = self.corresponding(child(slot), &place, self.candidates(&neighbours)) {
                 // The child is that particle, which leaves the neighbouring particles.
-                self.decide(child(slot), SlotFate::Matched, other);
+                self.decide(child(slot), SlotFate::Matched, Some(other));
                 if self.rules.matched == Matched::Leave {
-                    neighbours.retain(|near| Some(near.particle) != other);
+                    neighbours.retain(|near| near.particle != other);
                 }
-            } else if let Some(added) = self.add_waiting(child(slot), &place)
+            } else if let Some(added) = self.add_child(child(slot), &place)
                 && self.rules.matched == Matched::Stay
             {
                 neighbours.push(Nearby { particle: added, distance: position.distance(centre) });
@@ -131,36 +131,36 @@ impl<O: Observer> PaperRun<O> {
         neighbours
     }
 
-    /// "If an existing particle corresponds": the candidate of the child's sheet that is nearest, in r_i + r_j, if it is within the match
-    /// tolerance. The number of a candidate is none where it is a child itself.
+    /// "If an existing particle corresponds": the number of the candidate of the child's sheet that is nearest, in r_i + r_j, if it is
+    /// within the match tolerance.
     pub(crate) fn corresponding(
         &mut self,
         child: ChildSlot,
         place: &Place,
-        candidates: impl IntoIterator<Item = (Place, Option<u32>)>,
-    ) -> Option<Option<u32>> {
+        candidates: impl IntoIterator<Item = (u32, Place)>,
+    ) -> Option<u32> {
         let tolerance = self.rules.match_tolerance;
         let nearest = candidates
             .into_iter()
-            .filter(|(other, _)| self.rules.is_same_sheet(place, other))
-            .map(|(other, number)| {
+            .filter(|(_, other)| self.rules.is_same_sheet(place, other))
+            .map(|(number, other)| {
                 (place.position.distance(other.position), place.radius + other.radius, number)
             })
             .min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
         let alone = place.radius + self.particles[child.parent as usize].radius;
         let limit = tolerance * nearest.map_or(alone, |(_, both, _)| both);
         let distance = nearest.map(|(distance, ..)| distance);
-        let against = nearest.and_then(|(.., number)| number);
+        let against = nearest.map(|(.., number)| number);
         let corresponds = distance.is_some_and(|distance| distance <= limit);
         let position = place.position;
         let comparison = Comparison { position, against, distance, limit, corresponds };
         self.tell(child, Moment::Compared(comparison));
-        corresponds.then_some(against)
+        against.filter(|_| corresponds)
     }
 
     /// The particles around a child, with which it is compared.
-    pub(crate) fn candidates(&self, neighbours: &[Nearby]) -> Vec<(Place, Option<u32>)> {
-        let of = |particle: u32| (self.particles[particle as usize].place(), Some(particle));
+    pub(crate) fn candidates(&self, neighbours: &[Nearby]) -> Vec<(u32, Place)> {
+        let of = |particle: u32| (particle, self.particles[particle as usize].place());
         neighbours.iter().map(|near| of(near.particle)).collect()
     }
 }

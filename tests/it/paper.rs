@@ -8,12 +8,11 @@ use glam::DVec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
-    ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonSettings, Placing, Seeding,
-    digest,
+    ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonSettings, Placing, QueueOrder,
+    Seeding, digest,
 };
 use marching_particles::paper::{
-    ImplicitSurface, Matched, PaperRun, Particle, Projection, QueueOrder, RadiusRule, Rules,
-    sum_of_curvatures,
+    ImplicitSurface, Matched, PaperRun, Particle, Projection, RadiusRule, Rules, sum_of_curvatures,
 };
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
@@ -110,7 +109,7 @@ fn the_paper_by_itself_gives_the_particles_of_the_lesson() {
         let settings = LessonSettings { seeds: vec![[0.0, 0.0, 0.5]], ..settings };
         let zeros = ImplicitSurface::new(Box::new(surface.field()), &surface.bounds);
         let mut alone = PaperRun::new(zeros, Rules::with_sizes(sizes), ());
-        assert!(alone.begin_at(DVec3::from(settings.seeds[0]), 0));
+        assert!(alone.begin_at(DVec3::from(settings.seeds[0])));
         alone.sample(settings.relax_steps);
         let lesson = run("ellipsoid", &settings);
         assert_eq!(digest(alone.particles()), digest(lesson.particles()), "{settings:?}");
