@@ -8,7 +8,7 @@ use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonSettings, Placing, QueueOrder, Seeding};
 use crate::field::Field;
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, Place, RepulsionSums};
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, RepulsionSums};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -75,7 +75,8 @@ pub(super) struct Predicted {
     pub(super) child: ChildSlot,
     pub(super) circle: Circle,
     pub(super) theta_rad: f64,
-    pub(super) place: Place,
+    /// The particle that the child would be where it is predicted.
+    pub(super) placed: Particle,
 }
 
 /// A run on its way through the chapters. A clone goes on to the same end.

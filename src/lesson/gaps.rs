@@ -3,7 +3,7 @@
 use super::course::Course;
 use super::event::Event;
 use crate::math::frame_of;
-use crate::paper::{ChildSlot, Circle, Place};
+use crate::paper::{ChildSlot, Circle};
 use crate::particles::SlotFate;
 use glam::{DVec2, DVec3};
 
@@ -60,8 +60,9 @@ impl Course {
             return;
         }
         // It has neighbours all around and places no children.
-        let parent = run.add(beside, &Place { position, normal, radius: r });
-        run.seen.push(Event::Added { particle: parent, data: run.particles[parent as usize] });
+        let placed = run.child(beside, (position, normal), r);
+        let parent = run.enter(placed);
+        run.seen.push(Event::Added { particle: parent, data: placed });
         run.decide(ChildSlot { parent, slot: 0 }, SlotFate::Parent, Some(beside));
         for slot in 1..6 {
             run.decide(ChildSlot { parent, slot }, SlotFate::Matched, None);

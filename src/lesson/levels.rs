@@ -5,9 +5,7 @@
 //! in the order of the queue.
 
 use super::course::{Course, Predicted};
-use crate::paper::{
-    ChildSlot, Circle, DIRECTIONS, Moment, Nearby, Place, REACH, TangentFrame, predicted_angle,
-};
+use crate::paper::{ChildSlot, Circle, DIRECTIONS, Moment, Nearby, REACH, TangentFrame, predicted_angle};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
@@ -30,7 +28,8 @@ impl Course {
         } else {
             self.fitted_form(radius, particle, &frame, &neighbours)
         };
-        self.run.tell(ChildSlot { parent: particle, slot: 0 }, Moment::Frame(&frame, Some(form)));
+        self.run
+            .tell(ChildSlot { parent: particle, slot: 0 }, Moment::Frame { frame: &frame, form: Some(form) });
         let candidates = self.run.candidates(&neighbours);
         if let Some(parent) = self.run.particles[particle as usize].parent {
             self.run.decide(ChildSlot { parent: particle, slot: 0 }, SlotFate::Parent, Some(parent));
@@ -41,24 +40,24 @@ impl Course {
                 Circle { centre: p, normal: frame.n, direction: frame.direction(slot), radius: 2.0 * radius };
             let theta_rad = predicted_angle(form, DIRECTIONS[slot], radius);
             let position = circle.point(theta_rad);
-            self.run.tell(child, Moment::Proposed(circle.direction, theta_rad, position));
+            self.run.tell(child, Moment::Proposed { direction: circle.direction, theta_rad, position });
             // The normal turns with the offset.
             let [cos, sin] = DIRECTIONS[slot];
             let turn = frame.u * (form[0] * cos + form[1] * sin) + frame.w * (form[1] * cos + form[2] * sin);
             let normal = (frame.n + turn * (2.0 * radius * libm::cos(theta_rad))).normalize_or(frame.n);
-            let place = Place { position, normal, radius };
+            let placed = self.run.child(particle, (position, normal), radius);
             // The children that are to be projected have the numbers behind those of the particles.
             let particles = self.run.particles.len() as u32;
-            let predicted = (particles..).zip(self.predicted.iter().map(|child| child.place));
+            let predicted = (particles..).zip(self.predicted.iter().map(|child| child.placed));
             if let Some(other) =
-                self.run.corresponding(child, &place, candidates.iter().copied().chain(predicted))
+                self.run.corresponding(child, &placed, candidates.iter().copied().chain(predicted))
             {
                 let particle = Some(other).filter(|&other| other < particles);
                 self.run.decide(child, SlotFate::Matched, particle);
             } else if self.run.particles.len() + self.predicted.len() >= self.run.rules.max_particles {
                 self.run.decide(child, SlotFate::Capped, None);
             } else {
-                self.predicted.push_back(Predicted { child, circle, theta_rad, place });
+                self.predicted.push_back(Predicted { child, circle, theta_rad, placed });
             }
         }
     }
@@ -67,15 +66,15 @@ impl Course {
     pub(super) fn settle_next(&mut self) {
         let Some(Predicted { child, circle, theta_rad, .. }) = self.predicted.pop_front() else { return };
         let landing = self.run.land(child, &circle, theta_rad);
-        let Some((position, normal)) = self.run.usable(child, landing) else { return };
-        let place = Place { position, normal, radius: self.setup.settings.radius };
-        let reach = 2.0 * place.radius * self.run.rules.match_tolerance;
-        let neighbours = self.run.buckets.near(&self.run.particles, position, reach);
-        match self.run.corresponding(child, &place, self.run.candidates(&neighbours)) {
+        let Some(place) = self.run.usable(child, landing) else { return };
+        let placed = self.run.child(child.parent, place, self.setup.settings.radius);
+        let reach = 2.0 * placed.radius * self.run.rules.match_tolerance;
+        let neighbours = self.run.buckets.near(&self.run.particles, placed.p(), reach);
+        match self.run.corresponding(child, &placed, self.run.candidates(&neighbours)) {
             Some(other) => self.run.decide(child, SlotFate::Matched, Some(other)),
             None => {
                 // There is room: the children that were predicted have been counted.
-                self.run.add_child(child, &place);
+                self.run.add_child(child, placed);
             }
         }
     }

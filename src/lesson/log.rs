@@ -2,7 +2,7 @@
 
 use super::event::Event;
 use super::settings::LessonSettings;
-use crate::paper::{ChildSlot, Comparison, Moment, Observer, Particle, Trial};
+use crate::paper::{ChildSlot, Moment, Observer, Particle, Trial};
 use crate::particles::SlotFate;
 use crate::sampler::Sampling;
 
@@ -39,56 +39,54 @@ impl Log {
 impl Observer for Log {
     fn see(&mut self, child: ChildSlot, moment: Moment<'_>, particles: &[Particle]) {
         let ChildSlot { parent, slot } = child;
-        self.is_capped |= matches!(moment, Moment::Decided(SlotFate::Capped, _));
-        if let Moment::Decided(SlotFate::Added, Some(particle)) = moment {
+        self.is_capped |= matches!(moment, Moment::Decided { fate: SlotFate::Capped, .. });
+        if let Moment::Decided { fate: SlotFate::Added, particle: Some(particle) } = moment {
             self.push(Event::Added { particle, data: particles[particle as usize] });
         }
         self.push(match moment {
-            Moment::Frame(frame, form) => {
+            Moment::Frame { frame, form } => {
                 let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
                 Event::Frame { particle: parent, normal, u, w, form }
             }
-            Moment::Proposed(direction, theta_rad, place) => {
-                let (direction, place) = (direction.to_array(), place.to_array());
+            Moment::Proposed { direction, theta_rad, position } => {
+                let (direction, place) = (direction.to_array(), position.to_array());
                 Event::Slot { parent, slot, direction, theta_rad, place }
             }
             Moment::Tried(Trial { step, theta_rad, position, sample }) => {
                 let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
                 Event::Iterate { parent, slot, step, theta_rad, position, value, slope }
             }
-            Moment::Landed(position, normal, distance) => {
+            Moment::Landed { position, normal, distance } => {
                 let (position, normal) = (position.to_array(), normal.to_array());
                 Event::Landed { parent, slot, position, normal, distance }
             }
-            Moment::Gathered(reach, neighbours) => {
+            Moment::Gathered { reach, neighbours } => {
                 Event::Gathered { particle: parent, reach, neighbours: neighbours.to_vec() }
             }
-            Moment::Compared(Comparison { position, against, distance, limit, corresponds }) => {
+            Moment::Compared { position, against, distance, limit, corresponds } => {
                 let position = position.to_array();
                 // A child that still has to be projected is none of the particles.
                 let against = against.filter(|&other| (other as usize) < particles.len());
                 Event::Compared { parent, slot, position, against, distance, limit, corresponds }
             }
-            Moment::Decided(fate, particle) => Event::Fate { parent, slot, fate, particle },
-            Moment::Space(particles, angles_rad) => {
-                let [before, behind] = particles.map_or([None; 2], |both| both.map(Some));
+            Moment::Decided { fate, particle } => Event::Fate { parent, slot, fate, particle },
+            Moment::Space { ends, angles_rad } => {
+                let [before, behind] = ends.map_or([None; 2], |both| both.map(Some));
                 Event::Arc { parent, before, behind, angles_rad }
             }
-            Moment::Started(tangent, position, radius) => {
+            Moment::Started { tangent, position, radius } => {
                 let (tangent, position) = (tangent.map(|tangent| tangent.to_array()), position.to_array());
                 Event::Start { parent, slot, tangent, position, radius }
             }
-            Moment::Pushed(position, radius) => {
+            Moment::Pushed { position, radius } => {
                 Event::Push { parent, slot, position: position.to_array(), radius }
             }
-            Moment::Turned(position, radius, overlap) => {
+            Moment::Turned { position, radius, overlap } => {
                 Event::PushOnCircle { parent, slot, position: position.to_array(), radius, overlap }
             }
-            Moment::Room(phi_rad, tau_rad, fits) => Event::Room { parent, slot, phi_rad, tau_rad, fits },
+            Moment::Room { phi_rad, tau_rad, fits } => Event::Room { parent, slot, phi_rad, tau_rad, fits },
         });
-        let Moment::Compared(Comparison { against, distance: Some(distance), corresponds: true, .. }) =
-            moment
-        else {
+        let Moment::Compared { against, distance: Some(distance), corresponds: true, .. } = moment else {
             return;
         };
         if distance <= self.seam {

@@ -9,7 +9,7 @@
 
 use super::PaperRun;
 use super::observer::{ChildSlot, Moment, Observer};
-use super::particle::{Place, TangentFrame};
+use super::particle::TangentFrame;
 use super::projection::Circle;
 use crate::particles::{SlotFate, Slots};
 use core::f64::consts::TAU;
@@ -103,12 +103,12 @@ impl<O: Observer> PaperRun<O> {
         let neighbours = self.gather(particle, REACH * own.radius);
         let frame = self.tangent_frame(particle);
         let child = ChildSlot { parent: particle, slot: 0 };
-        self.tell(child, Moment::Frame(&frame, None));
+        self.tell(child, Moment::Frame { frame: &frame, form: None });
         let mut ring = Circumference { child, p: own.p(), radius: own.radius, frame, around: Vec::new() };
         let mut touching = Vec::new();
         for near in neighbours {
             let other = &self.particles[near.particle as usize];
-            if self.rules.is_same_sheet(&own.place(), &other.place()) {
+            if self.rules.is_same_sheet(&own, other) {
                 let disc = ring.disc(other.p(), other.radius);
                 ring.around.push(disc);
                 if near.distance <= TOUCHING * (own.radius + other.radius) {
@@ -133,7 +133,8 @@ impl<O: Observer> PaperRun<O> {
     /// Places children in a free space, from its beginning on, until the next one has no room (Fig. 8).
     fn fill_space(&mut self, ring: &mut Circumference, ends: Option<[(u32, Disc); 2]>) {
         let angles_rad = ends.map_or([0.0, TAU], |ends| ends.map(|(_, end)| end.angle()));
-        self.tell(ring.child, Moment::Space(ends.map(|ends| ends.map(|(particle, _)| particle)), angles_rad));
+        let particles = ends.map(|ends| ends.map(|(particle, _)| particle));
+        self.tell(ring.child, Moment::Space { ends: particles, angles_rad });
         let mut last = ends.map(|[(_, before), _]| before);
         let mut behind = ends.map(|[_, (_, behind)]| behind);
         while (ring.child.slot as usize) < Slots::COUNT {
@@ -145,7 +146,7 @@ impl<O: Observer> PaperRun<O> {
                 _ => TAU,
             };
             let fits = tau_rad >= self.rules.fit * phi_rad;
-            self.tell(ring.child, Moment::Room(phi_rad, tau_rad, fits));
+            self.tell(ring.child, Moment::Room { phi_rad, tau_rad, fits });
             if fits {
                 self.settle(ring, child);
             } else {
@@ -167,14 +168,16 @@ impl<O: Observer> PaperRun<O> {
         let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
         let mut child = self.sized(ring, way * ring.radius);
         let tangent = tangent.map(|tangent| ring.place(tangent));
-        self.tell(ring.child, Moment::Started(tangent, ring.place(child.centre), child.radius));
+        let Disc { centre, radius } = child;
+        self.tell(ring.child, Moment::Started { tangent, position: ring.place(centre), radius });
         // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
         for _ in 0..MAX_PUSHES {
             if child.centre.length() >= ring.radius + child.radius {
                 break;
             }
             child = self.sized(ring, child.centre + way * (PUSH * ring.radius));
-            self.tell(ring.child, Moment::Pushed(ring.place(child.centre), child.radius));
+            let Disc { centre, radius } = child;
+            self.tell(ring.child, Moment::Pushed { position: ring.place(centre), radius });
         }
         // Along the circle until it overlaps least (Fig. 7f).
         let mut overlap = ring.overlap(child);
@@ -192,7 +195,7 @@ impl<O: Observer> PaperRun<O> {
                 break;
             }
             (child, overlap) = (next, next_overlap);
-            self.tell(ring.child, Moment::Turned(ring.place(child.centre), radius, overlap));
+            self.tell(ring.child, Moment::Turned { position: ring.place(child.centre), radius, overlap });
         }
         child
     }
@@ -215,12 +218,12 @@ impl<O: Observer> PaperRun<O> {
         let landing = landing.and_then(|at| self.radius_at(at.0).map(|_| at).ok_or(SlotFate::Undefined));
         let Some((position, normal)) = self.usable(of, landing) else { return };
         let Some(radius) = self.radius_at(position) else { return };
-        let place = Place { position, normal, radius };
+        let placed = self.child(of.parent, (position, normal), radius);
         let reach = self.rules.match_tolerance * (radius + self.rules.sizes.largest());
         let near = self.buckets.near(&self.particles, position, reach);
-        if let Some(other) = self.corresponding(of, &place, self.candidates(&near)) {
+        if let Some(other) = self.corresponding(of, &placed, self.candidates(&near)) {
             self.decide(of, SlotFate::Matched, Some(other));
-        } else if self.add_child(of, &place).is_some() {
+        } else if self.add_child(of, placed).is_some() {
             ring.around.push(ring.disc(position, radius));
         } else {
             // There are as many particles as there may be: no other child is tried.

@@ -50,8 +50,8 @@ pub use rules::{Matched, Projection, RadiusRule, Rules, SearchStart, sum_of_curv
 pub use surface::ImplicitSurface;
 
 pub(crate) use buckets::Buckets;
-pub(crate) use observer::{Comparison, Moment, Observer};
-pub(crate) use particle::{Place, TangentFrame};
+pub(crate) use observer::{Moment, Observer};
+pub(crate) use particle::TangentFrame;
 pub(crate) use projection::Circle;
 pub(crate) use relaxation::{MAX_MOVE, Move, OVERLAP_REACH, OVERLAP_STEP, RepulsionSums, overlap};
 pub(crate) use surface::Trial;
@@ -138,20 +138,19 @@ impl<O: Observer> PaperRun<O> {
         number
     }
 
-    /// Adds a particle beside another one.
-    pub(crate) fn add(&mut self, parent: u32, place: &Place) -> u32 {
+    /// A child as the particle that it would be.
+    pub(crate) fn child(&self, parent: u32, (position, normal): (DVec3, DVec3), radius: f64) -> Particle {
         let Particle { level, front, .. } = self.particles[parent as usize];
-        let Place { position, normal, radius } = *place;
-        self.enter(Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) })
+        Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) }
     }
 
     /// "Add the child (marked as not done) to the particle set", unless there are as many particles as there may be.
-    pub(crate) fn add_child(&mut self, child: ChildSlot, place: &Place) -> Option<u32> {
+    pub(crate) fn add_child(&mut self, child: ChildSlot, placed: Particle) -> Option<u32> {
         if self.particles.len() >= self.rules.max_particles {
             self.decide(child, SlotFate::Capped, None);
             return None;
         }
-        let particle = self.add(child.parent, place);
+        let particle = self.enter(placed);
         self.decide(child, SlotFate::Added, Some(particle));
         Some(particle)
     }
@@ -159,7 +158,7 @@ impl<O: Observer> PaperRun<O> {
     /// Decides the fate of a child. `particle` is the one that was added, or the one that was there.
     pub(crate) fn decide(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
         self.particles[child.parent as usize].slots.set(child.slot as usize, fate);
-        self.tell(child, Moment::Decided(fate, particle));
+        self.tell(child, Moment::Decided { fate, particle });
     }
 
     /// Tells the observer what has happened.

@@ -19,46 +19,31 @@ pub struct ChildSlot {
 /// A moment in the treatment of a particle, or of one of its children. Lengths are in the field's coordinates, angles in radians.
 pub enum Moment<'a> {
     /// The tangent frame is laid (§4.2, Fig. 3); with the second form [a, b, c] in it, where it was asked for.
-    Frame(&'a TangentFrame, Option<[f64; 3]>),
-    /// The child is proposed in this direction V̂, at an angle on its circle and the position there ("place its six children").
-    Proposed(DVec3, f64, DVec3),
+    Frame { frame: &'a TangentFrame, form: Option<[f64; 3]> },
+    /// The child is proposed in the direction V̂, at an angle on its circle ("place its six children").
+    Proposed { direction: DVec3, theta_rad: f64, position: DVec3 },
     /// The field is evaluated on the child's way to the surface (§4.3).
     Tried(Trial),
-    /// The child has come to the surface: its position, its normal, and its distance to the parent.
-    Landed(DVec3, DVec3, f64),
-    /// The particles within this distance are gathered.
-    Gathered(f64, &'a [Nearby]),
-    /// The child is compared with the nearest particle of its sheet ("if an existing particle correspond").
-    Compared(Comparison),
+    /// The child has come to the surface, at a distance from its parent.
+    Landed { position: DVec3, normal: DVec3, distance: f64 },
+    /// The particles within `reach` are gathered.
+    Gathered { reach: f64, neighbours: &'a [Nearby] },
+    /// The child is compared with the nearest particle of its sheet, if there is one ("if an existing particle correspond"): it corresponds
+    /// within the distance `limit`.
+    Compared { position: DVec3, against: Option<u32>, distance: Option<f64>, limit: f64, corresponds: bool },
     /// The fate of the child is decided. The particle is the one that was added, or the one that was there.
-    Decided(SlotFate, Option<u32>),
-    /// A free space is found on the circle, between two particles that touch the parent (§5.3, Fig. 8a): these particles, none if the whole
-    /// circle is free, and their directions as angles.
-    Space(Option<[u32; 2]>, [f64; 2]),
-    /// An adaptive child starts (§5.1, Figs 7a and 7c): the point I of Fig. 7c, which the first child of a seed has not, its position and its
-    /// radius.
-    Started(Option<DVec3>, DVec3, f64),
-    /// An adaptive child has been pushed away from its parent (Figs 7b and 7e): its position and radius.
-    Pushed(DVec3, f64),
-    /// An adaptive child has been pushed along the circle (Fig. 7f): its position, its radius and its largest overlap.
-    Turned(DVec3, f64, f64),
-    /// The angle φ that an adaptive child takes is compared with the free angle τ (Figs 7g, 8c and 8e): φ, τ, and whether the child fits.
-    Room(f64, f64, bool),
-}
-
-/// Comparison of a child with the nearest particle of its sheet.
-#[derive(Clone, Copy, Debug)]
-pub struct Comparison {
-    /// Position at which the child was compared: the predicted one, or that of the landing.
-    pub(crate) position: DVec3,
-    /// The nearest particle; none if none is near, or if it is a child that still has to be projected.
-    pub(crate) against: Option<u32>,
-    /// Distance to the nearest; none if nothing is near.
-    pub(crate) distance: Option<f64>,
-    /// Match radius.
-    pub(crate) limit: f64,
-    /// Whether the distance is within the match radius.
-    pub(crate) corresponds: bool,
+    Decided { fate: SlotFate, particle: Option<u32> },
+    /// A free space is found on the circle, between two particles that touch the parent (§5.3, Fig. 8a). There are none if the whole
+    /// circle is free.
+    Space { ends: Option<[u32; 2]>, angles_rad: [f64; 2] },
+    /// An adaptive child starts (§5.1, Figs 7a and 7c). `tangent` is the point I of Fig. 7c, which the first child of a seed has not.
+    Started { tangent: Option<DVec3>, position: DVec3, radius: f64 },
+    /// An adaptive child has been pushed away from its parent (Figs 7b and 7e).
+    Pushed { position: DVec3, radius: f64 },
+    /// An adaptive child has been pushed along the circle (Fig. 7f), to where `overlap` is its largest with another particle.
+    Turned { position: DVec3, radius: f64, overlap: f64 },
+    /// The angle φ that an adaptive child takes is compared with the free angle τ (Figs 7g, 8c and 8e).
+    Room { phi_rad: f64, tau_rad: f64, fits: bool },
 }
 
 /// Observer of a run. `()` looks at nothing.

@@ -53,11 +53,6 @@ impl Particle {
         }
     }
 
-    /// Place of the particle.
-    pub(crate) fn place(&self) -> Place {
-        Place { position: self.p(), normal: self.n(), radius: self.radius }
-    }
-
     /// Position as a vector.
     #[must_use]
     pub fn p(&self) -> DVec3 {
@@ -69,16 +64,6 @@ impl Particle {
     pub fn n(&self) -> DVec3 {
         self.normal.into()
     }
-}
-
-/// A place on the surface for a particle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub(crate) position: DVec3,
-    /// Unit outward normal.
-    pub(crate) normal: DVec3,
-    /// Repulsion radius there.
-    pub(crate) radius: f64,
 }
 
 /// The tangent frame of a particle (Fig. 3).

@@ -95,7 +95,8 @@ impl<O: Observer> PaperRun<O> {
             }
         };
         if let Ok((position, normal)) = landing {
-            self.tell(child, Moment::Landed(position, normal, position.distance(circle.centre)));
+            let distance = position.distance(circle.centre);
+            self.tell(child, Moment::Landed { position, normal, distance });
         }
         landing
     }

@@ -1,6 +1,6 @@
 //! The choices that the paper discusses or leaves open.
 
-use super::particle::Place;
+use super::particle::Particle;
 use super::relaxation::{OVERLAP_STEP, STEP};
 use super::surface::ImplicitSurface;
 use crate::differential::Curvature;
@@ -137,12 +137,12 @@ impl Rules {
         }
     }
 
-    /// Whether a particle is of the sheet of a place: it faces the same way, and rises by no more than 45° from the tangent plane.
+    /// Whether another particle is of the sheet of one: it faces the same way, and rises by no more than 45° from the tangent plane.
     /// Nearer than half of the distance at which the two correspond, the direction between them tells nothing.
-    pub(crate) fn is_same_sheet(&self, place: &Place, other: &Place) -> bool {
-        let offset = other.position - place.position;
-        let rise = offset.dot(place.normal);
-        let slack = 0.5 * self.match_tolerance * (place.radius + other.radius);
-        place.normal.dot(other.normal) > 0.0 && rise * rise <= 0.5 * (offset.length_squared() + slack * slack)
+    pub(crate) fn is_same_sheet(&self, one: &Particle, other: &Particle) -> bool {
+        let offset = other.p() - one.p();
+        let rise = offset.dot(one.n());
+        let slack = 0.5 * self.match_tolerance * (one.radius + other.radius);
+        one.n().dot(other.n()) > 0.0 && rise * rise <= 0.5 * (offset.length_squared() + slack * slack)
     }
 }

@@ -11,8 +11,8 @@
 
 use super::PaperRun;
 use super::buckets::Nearby;
-use super::observer::{ChildSlot, Comparison, Moment, Observer};
-use super::particle::{Place, TangentFrame};
+use super::observer::{ChildSlot, Moment, Observer};
+use super::particle::{Particle, TangentFrame};
 use super::projection::Circle;
 use super::rules::{Matched, SearchStart};
 use super::surface::Landing;
@@ -63,7 +63,7 @@ impl<O: Observer> PaperRun<O> {
             SearchStart::Tangent => None,
             SearchStart::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
         };
-        self.tell(child(0), Moment::Frame(&frame, form));
+        self.tell(child(0), Moment::Frame { frame: &frame, form });
 
         // "Place its six children on the surface."
         let landings: Vec<(usize, Landing)> = frame
@@ -72,7 +72,8 @@ impl<O: Observer> PaperRun<O> {
                 let direction = frame.direction(slot);
                 let circle = Circle { centre, normal: frame.n, direction, radius: 2.0 * radius };
                 let theta_rad = form.map_or(0.0, |form| predicted_angle(form, DIRECTIONS[slot], radius));
-                self.tell(child(slot), Moment::Proposed(direction, theta_rad, circle.point(theta_rad)));
+                let position = circle.point(theta_rad);
+                self.tell(child(slot), Moment::Proposed { direction, theta_rad, position });
                 (slot, self.land(child(slot), &circle, theta_rad))
             })
             .collect();
@@ -89,18 +90,18 @@ impl<O: Observer> PaperRun<O> {
 
         // "For all of its six children."
         for (slot, landing) in landings {
-            let Some((position, normal)) = self.usable(child(slot), landing) else { continue };
-            let place = Place { position, normal, radius };
-            if let Some(other) = self.corresponding(child(slot), &place, self.candidates(&neighbours)) {
+            let Some(place) = self.usable(child(slot), landing) else { continue };
+            let placed = self.child(particle, place, radius);
+            if let Some(other) = self.corresponding(child(slot), &placed, self.candidates(&neighbours)) {
                 // The child is that particle, which leaves the neighbouring particles.
                 self.decide(child(slot), SlotFate::Matched, Some(other));
                 if self.rules.matched == Matched::Leave {
                     neighbours.retain(|near| near.particle != other);
                 }
-            } else if let Some(added) = self.add_child(child(slot), &place)
+            } else if let Some(added) = self.add_child(child(slot), placed)
                 && self.rules.matched == Matched::Stay
             {
-                neighbours.push(Nearby { particle: added, distance: position.distance(centre) });
+                neighbours.push(Nearby { particle: added, distance: placed.p().distance(centre) });
             }
         }
     }
@@ -127,7 +128,10 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn gather(&mut self, particle: u32, reach: f64) -> Vec<Nearby> {
         let mut neighbours = self.buckets.near(&self.particles, self.particles[particle as usize].p(), reach);
         neighbours.retain(|near| near.particle != particle);
-        self.tell(ChildSlot { parent: particle, slot: 0 }, Moment::Gathered(reach, &neighbours));
+        self.tell(
+            ChildSlot { parent: particle, slot: 0 },
+            Moment::Gathered { reach, neighbours: &neighbours },
+        );
         neighbours
     }
 
@@ -136,31 +140,27 @@ impl<O: Observer> PaperRun<O> {
     pub(crate) fn corresponding(
         &mut self,
         child: ChildSlot,
-        place: &Place,
-        candidates: impl IntoIterator<Item = (u32, Place)>,
+        placed: &Particle,
+        candidates: impl IntoIterator<Item = (u32, Particle)>,
     ) -> Option<u32> {
         let tolerance = self.rules.match_tolerance;
         let nearest = candidates
             .into_iter()
-            .filter(|(_, other)| self.rules.is_same_sheet(place, other))
-            .map(|(number, other)| {
-                (place.position.distance(other.position), place.radius + other.radius, number)
-            })
+            .filter(|(_, other)| self.rules.is_same_sheet(placed, other))
+            .map(|(number, other)| (placed.p().distance(other.p()), placed.radius + other.radius, number))
             .min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
-        let alone = place.radius + self.particles[child.parent as usize].radius;
+        let alone = placed.radius + self.particles[child.parent as usize].radius;
         let limit = tolerance * nearest.map_or(alone, |(_, both, _)| both);
         let distance = nearest.map(|(distance, ..)| distance);
         let against = nearest.map(|(.., number)| number);
         let corresponds = distance.is_some_and(|distance| distance <= limit);
-        let position = place.position;
-        let comparison = Comparison { position, against, distance, limit, corresponds };
-        self.tell(child, Moment::Compared(comparison));
+        let position = placed.p();
+        self.tell(child, Moment::Compared { position, against, distance, limit, corresponds });
         against.filter(|_| corresponds)
     }
 
     /// The particles around a child, with which it is compared.
-    pub(crate) fn candidates(&self, neighbours: &[Nearby]) -> Vec<(u32, Place)> {
-        let of = |particle: u32| (particle, self.particles[particle as usize].place());
-        neighbours.iter().map(|near| of(near.particle)).collect()
+    pub(crate) fn candidates(&self, neighbours: &[Nearby]) -> Vec<(u32, Particle)> {
+        neighbours.iter().map(|near| (near.particle, self.particles[near.particle as usize])).collect()
     }
 }
