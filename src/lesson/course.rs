@@ -3,7 +3,7 @@
 //! A chapter is what a snapshot is taken before: a generation level, the filling of gaps, a relaxation step, or an iteration of a
 //! particle system.
 
-use super::dynamics::Dynamics;
+use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonSettings, Placing, QueueOrder, Seeding};
@@ -90,10 +90,6 @@ pub(super) struct Course {
     pub(super) steps: u32,
     /// Pushes of one particle by another that were summed for a move so far.
     pub(super) interactions: u64,
-    /// Force on each particle in the relaxation step under way, in the tangent plane.
-    forces: Vec<DVec3>,
-    /// Longest move in the step or iteration under way, in radii.
-    pub(super) largest_move: f64,
     /// The next candidate for a seed.
     candidate: usize,
     /// Number of fronts so far.
@@ -112,10 +108,8 @@ pub(super) struct Course {
     pub(super) left: u32,
     /// Children of the level that are predicted and not projected, the next one first.
     pub(super) predicted: VecDeque<Predicted>,
-    /// Force and energy of each particle in an iteration of a particle system.
+    /// Force on each particle, and what comes of it, in the relaxation step or iteration under way.
     pub(super) dynamics: Vec<Dynamics>,
-    /// Particles that die at the end of the iteration, by index.
-    pub(super) dying: Vec<u32>,
 }
 
 impl Course {
@@ -133,8 +127,6 @@ impl Course {
             waiting: VecDeque::new(),
             steps: 0,
             interactions: 0,
-            forces: Vec::new(),
-            largest_move: 0.0,
             candidate: 0,
             fronts: 0,
             part: 0,
@@ -145,7 +137,6 @@ impl Course {
             left: 0,
             predicted: VecDeque::new(),
             dynamics: Vec::new(),
-            dying: Vec::new(),
         }
     }
 
@@ -213,9 +204,9 @@ impl Course {
         } else if self.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
             let RepulsionSums { forces, energy, pushes } = self.run.repulsion();
-            self.forces = forces;
+            self.dynamics =
+                forces.into_iter().map(|force| Dynamics { force, ..Dynamics::default() }).collect();
             self.interactions += pushes;
-            self.largest_move = 0.0;
             let (step, size) = (self.steps + 1, self.run.rules.step_size);
             self.run.seen.push(Event::StepBegins { step, size, energy });
             Some(ChapterKind::Relaxation { step })
@@ -271,15 +262,15 @@ impl Course {
     fn relax_next(&mut self) {
         let i = self.run.particles.len() - self.left as usize;
         let own = self.run.particles[i];
-        let force = self.forces[i];
+        let force = self.dynamics[i].force;
         let moved = self.run.move_particle(i, force * self.run.rules.step_size);
-        self.largest_move = self.largest_move.max(self.run.particles[i].p().distance(own.p()) / own.radius);
+        self.dynamics[i].moved = self.run.particles[i].p().distance(own.p()) / own.radius;
         self.tell_move(i, force, &moved);
         self.left -= 1;
         if self.left == 0 {
             self.steps += 1;
             let energy = self.run.repulsion().energy;
-            let (step, largest_move) = (self.steps, self.largest_move);
+            let (step, largest_move) = (self.steps, largest_move(&self.dynamics));
             self.run.seen.push(Event::StepEnds { step, energy, largest_move });
         }
     }

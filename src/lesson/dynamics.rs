@@ -1,4 +1,4 @@
-//! Dynamics of the two particle systems: the forces on a particle in an iteration.
+//! Dynamics of a particle in a relaxation step, or in an iteration of a particle system.
 
 use glam::DVec3;
 
@@ -15,4 +15,11 @@ pub(super) struct Dynamics {
     pub(super) is_at_rest: bool,
     /// Distance that the particle has moved, in radii.
     pub(super) moved: f64,
+    /// Whether the particle dies at the end of the iteration.
+    pub(super) dies: bool,
+}
+
+/// Longest move of the particles, in radii.
+pub(super) fn largest_move(dynamics: &[Dynamics]) -> f64 {
+    dynamics.iter().fold(0.0, |most, own| own.moved.max(most))
 }

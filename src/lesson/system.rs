@@ -20,7 +20,7 @@
 //! * The first particle does not die, so that there always is one.
 
 use super::course::{ChapterKind, Course};
-use super::dynamics::Dynamics;
+use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
 use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
@@ -80,8 +80,6 @@ impl Course {
         self.run.seen.push(Event::IterationBegins { iteration, particles, energy });
         // Every particle moves, then every particle is decided on.
         self.left = 2 * particles;
-        self.dying.clear();
-        self.largest_move = 0.0;
         Some(ChapterKind::Iteration { iteration })
     }
 
@@ -144,7 +142,6 @@ impl Course {
         if method == LessonMethod::Forces {
             dynamics.is_at_rest = dynamics.moved < forces::AT_REST;
         }
-        self.largest_move = self.largest_move.max(dynamics.moved);
         self.tell_move(i, force, &moved);
     }
 
@@ -163,7 +160,7 @@ impl Course {
         };
         let most = self.run.rules.max_particles;
         if dies && i > 0 {
-            self.dying.push(i as u32);
+            self.dynamics[i].dies = true;
         } else if divides && self.run.particles.len() < most {
             let direction = tangent(own.normal, &mut self.random);
             let Some(data) = self.children(&own, direction) else { return };
@@ -196,11 +193,11 @@ impl Course {
     }
 
     fn end_iteration(&mut self) {
-        let has_changed = !self.dying.is_empty() || self.run.particles.len() > self.dynamics.len();
-        for &particle in self.dying.iter().rev() {
-            self.run.particles.remove(particle as usize);
-            let energy = self.dynamics[particle as usize].energy;
-            self.run.seen.push(Event::Died { particle, energy });
+        let mut has_changed = self.run.particles.len() > self.dynamics.len();
+        for (i, own) in self.dynamics.iter().enumerate().rev().filter(|(_, own)| own.dies) {
+            self.run.particles.remove(i);
+            self.run.seen.push(Event::Died { particle: i as u32, energy: own.energy });
+            has_changed = true;
         }
         let mean_move = self.dynamics.iter().map(|own| own.moved).sum::<f64>() / self.dynamics.len() as f64;
         let is_quiet = !has_changed && mean_move <= REST;
@@ -209,7 +206,7 @@ impl Course {
         self.run.seen.push(Event::IterationEnds {
             iteration: self.steps,
             particles: self.run.particles.len() as u32,
-            largest_move: self.largest_move,
+            largest_move: largest_move(&self.dynamics),
             mean_move,
         });
     }
