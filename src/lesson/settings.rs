@@ -39,7 +39,7 @@ pub enum LessonMethod {
     Forces,
 }
 
-/// The order in which the particles that are not done are treated (paper §4.4).
+/// The order in which the particles that are not done are treated (§4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
 #[serde(rename_all = "snake_case")]
