@@ -1,7 +1,7 @@
 //! Refined surfaces whose creases run to the box: on random ones the mesh ends at the box alone, its edges follow the creases, and it is a
 //! surface of the Euler number that a fine grid of tetrahedra finds.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use marching_particles::Sampling::{Adaptive, Uniform};
 use marching_particles::{Bounds, Field, Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
@@ -42,15 +42,16 @@ fn roof(random: &mut Pcg32) -> [String; 2] {
 
 /// Euler number of the surface f = 0 in a box, by the tetrahedra of a grid of so many cells along each axis: it crosses each of their edges in a
 /// point, each of their triangles in a line and each of themselves in a face, or not at all.
-fn euler_on_grid(text: &str, bounds: &Bounds, cells: usize) -> i64 {
-    let mut field = Formula::parse(text).expect("a formula");
+pub(crate) fn euler_on_grid(mut field: Formula, bounds: &Bounds, cells: usize) -> i64 {
     let side = cells + 1;
-    let mut is_inside = Vec::with_capacity(side * side * side);
-    for k in 0..side * side * side {
+    let node = |k: usize| {
         let share = DVec3::new((k % side) as f64, (k / side % side) as f64, (k / side / side) as f64);
-        let p = bounds.lo() + bounds.size() * share / cells as f64;
-        is_inside.push(field.value_and_gradient(p).0 < 0.0);
-    }
+        (bounds.lo() + bounds.size() * share / cells as f64).as_vec3()
+    };
+    let nodes: Vec<Vec3> = (0..side * side * side).map(node).collect();
+    let mut values = vec![0.0; nodes.len()];
+    field.values(&nodes, &mut values);
+    let is_inside: Vec<bool> = values.iter().map(|&value| value < 0.0).collect();
     // Kuhn's triangulation: its simplices at a corner are the chains of growing sets of axes.
     let offset = |axes: usize| (axes & 1) + (axes >> 1 & 1) * side + (axes >> 2 & 1) * side * side;
     let fits = |k: usize, axes: usize| {
@@ -62,6 +63,10 @@ fn euler_on_grid(text: &str, bounds: &Bounds, cells: usize) -> i64 {
     let mut euler = 0;
     for k in 0..is_inside.len() {
         let differs = |axes: usize| is_inside[k] != is_inside[k + offset(axes)];
+        // Most nodes are far from the surface.
+        if fits(k, 7) && !(1..8).any(differs) {
+            continue;
+        }
         for a in (1..8).filter(|&a| fits(k, a)) {
             euler += i64::from(differs(a));
             for b in (1..8).filter(|&b| grows(a, b) && fits(k, b)) {
@@ -125,7 +130,8 @@ fn random_roofs_are_refined_up_to_the_box() {
         let [text, rounded] = roof(&mut Pcg32::seed_from_u64(seed));
         let field = Formula::parse(&text).expect("a formula");
         // Where the sheets leave a gap that is thinner than the cells, they are of no use.
-        let [euler, other] = [40, 56].map(|cells| euler_on_grid(&rounded, &bounds, cells));
+        let rounded = Formula::parse(&rounded).expect("a formula");
+        let [euler, other] = [40, 56].map(|cells| euler_on_grid(rounded.clone(), &bounds, cells));
         let euler = (euler == other).then_some(euler);
         told += usize::from(euler.is_some());
         for (count, sampling) in [(2_000, Uniform), (8_000, Uniform), (8_000, Adaptive)] {

@@ -9,7 +9,7 @@ use marching_particles::lesson::{self, Event, Lesson};
 use marching_particles::paper::Particle;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::Figures;
-use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode};
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
 /// particles. The aim is 0.93 and 55.5° everywhere. The torus misses the angle, and the tanglecube misses both. Where
@@ -258,20 +258,6 @@ fn fates_of_slots_agree_with_the_counts() {
         let mut slots =
             particles.slots[particles.twins.len()..].iter().flat_map(|s| (0..6).map(|k| s.get(k)));
         assert!(slots.all(|fate| fate != SlotFate::Open), "{surface}");
-    }
-}
-
-#[test]
-fn every_gallery_surface_is_sampled_with_finite_normals() {
-    for surface in gallery::SURFACES.iter() {
-        let sampler = of_gallery(surface.id, &settings!(radius_share: 0.012; ..Settings::default()));
-        assert_eq!(sampler.progress().stop_reason, Some(StopReason::Complete), "{}", surface.id);
-        let particles = sampler.particles();
-        assert!(particles.len() > 500, "{}: {} particles", surface.id, particles.len());
-        for (p, n) in particles.position.iter().zip(&particles.normal) {
-            assert!(surface.bounds.contains(*p), "{}: {p} outside the box", surface.id);
-            assert!((n.length() - 1.0).abs() < 1e-5, "{}: normal {n}", surface.id);
-        }
     }
 }
 

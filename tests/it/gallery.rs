@@ -1,5 +1,6 @@
 //! Tests of every surface of the gallery.
 
+use crate::crease_box::euler_on_grid;
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
@@ -203,38 +204,11 @@ fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_paramete
                 field.set_parameter(p.name, value).unwrap();
             }
             for p in faces(surface, 40) {
-                let value = field.jet(p).value;
+                let (value, _) = field.value_and_gradient(p);
                 assert!(value > 0.0, "{} with {:?}: {value} at {p}", surface.id, field.parameters());
             }
         }
     }
-}
-
-/// Euler number, vertices − edges + faces, of the surface's mesh on a grid of `n` cells a side.
-fn euler_number(surface: &Surface, n: u32) -> i64 {
-    use fast_surface_nets::ndshape::{RuntimeShape, Shape};
-    let shape = RuntimeShape::<u32, 3>::new([n + 1; 3]);
-    let mut field = surface.field();
-    let (lo, hi) = (surface.bounds.lo(), surface.bounds.hi());
-    let points: Vec<Vec3> = (0..shape.size())
-        .map(|index| {
-            let [i, j, k] = shape.delinearize(index).map(f64::from);
-            (lo + (hi - lo) * DVec3::new(i, j, k) / f64::from(n)).as_vec3()
-        })
-        .collect();
-    let mut values = vec![0.0; points.len()];
-    field.values(&points, &mut values);
-    let mut mesh = fast_surface_nets::SurfaceNetsBuffer::default();
-    fast_surface_nets::surface_nets(&values, &shape, [0; 3], [n; 3], &mut mesh);
-    let mut edges = BTreeSet::new();
-    for triangle in mesh.indices.chunks(3) {
-        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-            let (a, b) = (triangle[a], triangle[b]);
-            edges.insert((a.min(b), a.max(b)));
-        }
-    }
-    let count = |n: usize| i64::try_from(n).expect("meshes are small");
-    count(mesh.positions.len()) - count(edges.len()) + count(mesh.indices.len() / 3)
 }
 
 #[test]
@@ -242,7 +216,7 @@ fn closed_surfaces_have_the_genus_they_claim() {
     for surface in SURFACES.iter() {
         let Some(genus) = surface.genus else { continue };
         assert!(surface.closed, "{}", surface.id);
-        let euler = euler_number(surface, 96);
+        let euler = euler_on_grid(surface.field(), &surface.bounds, 96);
         assert_eq!(euler, 2 - 2 * i64::from(genus), "{}", surface.id);
     }
 }
@@ -253,7 +227,7 @@ fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
         let mut field = surface.field();
         let (mut inside, mut outside) = (0, 0);
         for p in points(surface, 20_000) {
-            let value = field.jet(p).value;
+            let (value, _) = field.value_and_gradient(p);
             inside += usize::from(value < 0.0);
             outside += usize::from(value > 0.0);
         }
@@ -265,8 +239,8 @@ fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
 /// Point of the surface that Newton's method along the gradient finds from `p`.
 fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
     for _ in 0..30 {
-        let jet = field.jet(p);
-        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        let (value, gradient) = field.value_and_gradient(p);
+        let step = gradient * (value / gradient.length_squared());
         if !step.is_finite() {
             return None;
         }
@@ -286,7 +260,7 @@ fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
         for p in points(surface, 4000) {
             let Some(p) = on_surface(&mut field, p) else { continue };
             if surface.bounds.contains(p.as_vec3()) {
-                slopes.push(field.jet(p).gradient.length());
+                slopes.push(field.value_and_gradient(p).1.length());
             }
         }
         let least = slopes.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,7 +1,7 @@
 //! Holds the figure of the largest hole to a search by brute force, on surfaces that the box cuts.
 
 use crate::runs::{finished, run};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
@@ -24,11 +24,16 @@ fn unit(random: &mut Pcg32) -> f64 {
 /// The point of the surface that Newton's method finds, if it lies in the box.
 fn landed(field: &mut Formula, mut p: DVec3) -> Option<DVec3> {
     for _ in 0..20 {
-        let jet = field.jet(p);
-        p -= jet.gradient * (jet.value / jet.gradient.length_squared());
+        let (value, gradient) = field.value_and_gradient(p);
+        let next = p - gradient * (value / gradient.length_squared());
+        // Every further step stays there too.
+        if next == p {
+            break;
+        }
+        p = next;
     }
-    let jet = field.jet(p);
-    let is_on = jet.value.abs() <= 1e-9 * jet.gradient.length();
+    let (value, gradient) = field.value_and_gradient(p);
+    let is_on = value.abs() <= 1e-9 * gradient.length();
     (is_on && p.abs().max_element() <= HALF).then_some(p)
 }
 
@@ -67,7 +72,7 @@ fn agrees(formula: &str, share: f64, seed: u64) -> bool {
     for _ in 0..POINTS {
         let start = DVec3::from_array([(); 3].map(|()| HALF * (2.0 * unit(&mut random) - 1.0)));
         let Some(p) = landed(&mut field, start) else { continue };
-        let near = |q: &glam::Vec3| (q.as_dvec3() - p).length_squared();
+        let near = |q: &Vec3| (q.as_dvec3() - p).length_squared();
         let hole =
             session.run.particles().position.iter().map(near).fold(f64::INFINITY, f64::min).sqrt() / ideal;
         largest = largest.max(hole);

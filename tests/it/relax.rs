@@ -6,7 +6,7 @@ use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode};
+use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason};
 
 /// The particles after the front and after the relaxation.
 fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler) {
@@ -159,16 +159,20 @@ fn holes_and_crowded_pairs_shrink() {
 }
 
 #[test]
-fn relaxed_particles_stay_on_the_surface_and_in_the_box() {
+fn every_gallery_surface_is_sampled_with_particles_on_it_and_in_its_box() {
     for surface in gallery::SURFACES.iter() {
-        let settings = settings!(radius_share: 0.012; ..Settings::default());
-        let (_, sampler) = before_and_after(surface, &settings);
         let mut field = surface.field();
+        let settings = settings!(radius_share: 0.012; ..Settings::default());
+        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        assert_eq!(sampler.progress().stop_reason, Some(StopReason::Complete), "{}", surface.id);
+        let particles = sampler.particles();
+        assert!(particles.len() > 500, "{}: {} particles", surface.id, particles.len());
         let mut residual = Vec::new();
-        for p in &sampler.particles().position {
-            assert!(surface.bounds.contains(*p), "{}: {p}", surface.id);
-            let jet = field.jet(p.as_dvec3());
-            residual.push(jet.value.abs() / jet.gradient.length() / sampler.radius());
+        for (p, n) in particles.position.iter().zip(&particles.normal) {
+            assert!(surface.bounds.contains(*p), "{}: {p} outside the box", surface.id);
+            assert!((n.length() - 1.0).abs() < 1e-5, "{}: normal {n}", surface.id);
+            let (value, gradient) = field.value_and_gradient(p.as_dvec3());
+            residual.push(value.abs() / gradient.length() / sampler.radius());
         }
         residual.sort_by(f64::total_cmp);
         // Near a singular point the first-order distance is meaningless. One particle in a hundred may be there.

@@ -4,12 +4,9 @@ use crate::solid_table::{SOLIDS, Solid};
 use glam::DVec3;
 use marching_particles::{Formula, Method, Sample, Sampling, Settings, sample};
 
-#[test]
-fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_defects() {
-    let [few, many] = [1_500, 6_000].map(Settings::with_count);
-    for (Solid { name, formula, euler, volume: exact, creases }, settings) in
-        SOLIDS.into_iter().flat_map(|solid| [few, many, many.adaptive()].map(|settings| (solid, settings)))
-    {
+/// Checks that the mesh of every solid is closed and keeps its edges, and that it has fewer defects once it is refined.
+fn check(settings: Settings) {
+    for Solid { name, formula, euler, volume: exact, creases } in SOLIDS {
         let runs = [settings, settings.refined()].map(|settings| {
             let field = Formula::parse(formula).expect("a formula");
             sample(field, &settings).expect("a sample")
@@ -42,6 +39,21 @@ fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_de
             }
         }
     }
+}
+
+#[test]
+fn the_mesh_of_a_solid_of_few_particles_is_closed_and_keeps_its_edges() {
+    check(Settings::with_count(1_500));
+}
+
+#[test]
+fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_defects() {
+    check(Settings::with_count(6_000));
+}
+
+#[test]
+fn the_mesh_of_a_solid_whose_sizes_differ_is_closed_and_keeps_its_edges_once_it_is_refined() {
+    check(Settings::with_count(6_000).adaptive());
 }
 
 #[test]
