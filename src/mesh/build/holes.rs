@@ -44,14 +44,14 @@ impl Borders<'_> {
             && !self.rim.is_along(hole)
     }
 
-    /// Whether a loop is a border for certain: it is long and not beside the rim, or most of it lies at the box.
+    /// Whether a loop is a border for certain: it is not beside the rim, and it is long or most of it lies at the box.
     fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
         let at_box = |v: &u32| {
             let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
             self.bounds.is_some_and(|bounds| (p - bounds.lo()).min(bounds.hi() - p).min_element() <= reach)
         };
-        hole.len() > LARGEST && !self.rim.is_along(hole)
-            || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len()
+        !self.rim.is_along(hole)
+            && (hole.len() > LARGEST || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len())
     }
 }
 

@@ -67,9 +67,11 @@ impl Rim {
         self.ways(v).len().max(1)
     }
 
-    /// Whether a loop around a hole, which lies on the left, has an edge of the rim.
+    /// Whether a loop around a hole, which lies on the left, has an edge of the rim and none of its ends: it is no border of the surface then,
+    /// since the rim ends where it comes to one.
     pub(super) fn is_along(&self, hole: &[u32]) -> bool {
-        (0..hole.len()).any(|k| self.has(hole[k], hole[(k + 1) % hole.len()]))
+        let is_end = |&v: &u32| self.ways(v).iter().any(|way| way[1..].contains(&NONE));
+        (0..hole.len()).any(|k| self.has(hole[k], hole[(k + 1) % hole.len()])) && !hole.iter().any(is_end)
     }
 
     /// Clears the way for the edges of the rim, and removes the triangles beyond it.
