@@ -93,7 +93,7 @@ const ROOMS: [Room; 4] = [
             ("neighbours", &["probe"]),
             ("sheet", &["probe", "projection", "neighbours"]),
             ("discovery", &["probe", "projection", "sheet"]),
-            ("sizing", &["settings", "probe", "discovery"]),
+            ("sizing", &["settings", "probe", "discovery", "constraint"]),
             // Knows no front: it is where fronts begin.
             ("constraint", &["probe"]),
             (

@@ -326,7 +326,8 @@ impl Sampler {
         self.look_over(field, creases);
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
             let field = &mut Scaled::new(field, self.survey.scale);
-            Sizing::new(&mut Probe::new(field, &mut self.tools.memory), bounds, settings, &self.survey)
+            let probe = &mut Probe::new(field, &mut self.tools.memory);
+            Sizing::new(probe, bounds, settings, &self.survey, &self.creases)
         });
         self.counts.seeding_evaluations = self.tools.memory.evaluations;
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
@@ -532,7 +533,7 @@ impl Sampler {
             return;
         }
         let sizing = (self.settings.sampling == Sampling::Adaptive)
-            .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey));
+            .then(|| Sizing::new(probe, bounds, &self.settings, &self.survey, &self.creases));
         let (area, growth) = (self.survey.area, self.tools.flow.growth());
         self.attempt.follow(&self.settings, area, bounds.diagonal(), sizing, growth);
         self.components.begin(field, bounds, &[]);

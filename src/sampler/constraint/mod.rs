@@ -183,6 +183,16 @@ impl Creases {
         index
     }
 
+    /// Points along all curves and at all corners, each with the patches that meet there.
+    pub(super) fn points(&self) -> impl Iterator<Item = (Vec3, &[u32])> {
+        let on_curves = self
+            .curves
+            .iter()
+            .flat_map(|curve| curve.points.iter().map(|point| (point.as_vec3(), &curve.patches[..])));
+        let corners = self.corners.iter().map(|corner| (corner.position.as_vec3(), &corner.patches[..]));
+        on_curves.chain(corners)
+    }
+
     /// Whether patches of the surface meet, along a crease or in a point.
     pub(super) fn are_there(&self) -> bool {
         !(self.curves.is_empty() && self.corners.is_empty())

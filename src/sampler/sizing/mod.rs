@@ -1,8 +1,9 @@
 //! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope is limited.
 //!
-//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the survey's points y of law(κ(y)) + L |x − y|:
-//! the largest function of slope L that is not above the law at these points. So the radius grows no faster than this
-//! away from a bend. The envelope is stored on the nodes of a grid near the surface and interpolated between them.
+//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the points y of the survey and of the creases of law(κ(y)) +
+//! L |x − y|: the largest function of slope L that is not above the law at these points. So the radius grows no faster than this
+//! away from a bend, also away from a crease beside a patch so small that no point of the survey lies on it. The envelope is stored on the
+//! nodes of a grid near the surface and interpolated between them.
 
 mod envelope;
 mod laws;
@@ -10,6 +11,7 @@ mod laws;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::{Bounds, HEXAGONAL_CELL};
+use crate::sampler::constraint::Creases;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::probe::Probe;
 use crate::sampler::settings::Settings;
@@ -30,7 +32,7 @@ pub(crate) struct Sizing {
     law: SizingLaw,
     /// Largest slope L.
     slope: f32,
-    /// The survey's points.
+    /// The points of the survey, and those of the creases.
     samples: Vec<SurfaceSample>,
     envelope: Envelope,
     predicted: f64,
@@ -43,29 +45,45 @@ pub(crate) struct Sizing {
 struct SurfaceSample {
     position: Vec3,
     curvature: Curvature,
-    /// Area of the surface that the point represents.
+    /// Area of the surface that the point represents; none on a crease.
     weight: f32,
 }
 
 impl Sizing {
-    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of the survey.
-    pub(crate) fn new(probe: &mut Probe, bounds: &Bounds, settings: &Settings, survey: &Survey) -> Self {
-        let n = survey.position.len();
-        let mut curvature = vec![Curvature::default(); n];
-        curvatures(probe.field, &survey.position, &mut curvature);
-        probe.count(n as u64);
-        let samples = (0..n)
-            .map(|i| SurfaceSample {
-                position: survey.position[i],
-                curvature: curvature[i],
-                weight: survey.weight[i],
-            })
-            .collect();
+    /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of the survey, and on every patch at each
+    /// of the `creases`.
+    pub(crate) fn new(
+        probe: &mut Probe,
+        bounds: &Bounds,
+        settings: &Settings,
+        survey: &Survey,
+        creases: &Creases,
+    ) -> Self {
+        let mut samples = Vec::new();
+        let mut add = |probe: &mut Probe, position: &[Vec3], weight: &[f32]| {
+            let mut curvature = vec![Curvature::default(); position.len()];
+            curvatures(probe.field, position, &mut curvature);
+            probe.count(position.len() as u64);
+            let rows = position.iter().zip(curvature).zip(weight);
+            samples.extend(rows.map(|((&position, curvature), &weight)| SurfaceSample {
+                position,
+                curvature,
+                weight,
+            }));
+        };
+        add(probe, &survey.position, &survey.weight);
+        for (position, patches) in creases.points() {
+            for &patch in patches {
+                probe.select(Some(patch));
+                add(probe, &[position], &[0.0]);
+            }
+        }
+        probe.select(None);
         let mut sizing = Self {
             law: SizingLaw::new(settings, bounds.diagonal()),
             slope: settings.grading as f32,
+            envelope: Envelope::new(bounds, samples.iter().map(|sample| sample.position)),
             samples,
-            envelope: Envelope::new(bounds, survey.position.iter().copied()),
             predicted: 0.0,
             smallest: 0.0,
             largest: 0.0,

@@ -11,7 +11,7 @@ fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
     let mut memory = ProbeMemory::default();
     let probe = &mut Probe::new(&mut field, &mut memory);
     let found = survey(probe, &surface.bounds, false);
-    Sizing::new(probe, &surface.bounds, settings, &found)
+    Sizing::new(probe, &surface.bounds, settings, &found, &Creases::default())
 }
 
 fn smooth() -> impl Iterator<Item = &'static Surface> {
