@@ -227,6 +227,20 @@ impl Particles {
         (0..twins.len() as u32).filter(|&i| is_tip[twins[i as usize] as usize]).collect()
     }
 
+    /// Gives all rows of a particle on a crease the least radius of them. Returns whether some had another one.
+    pub(crate) fn share_radii(&mut self) -> bool {
+        let Self { radius, twins, .. } = self;
+        let mut has_lowered = false;
+        for (row, &first) in twins.iter().enumerate() {
+            has_lowered |= (radius[row] - radius[first as usize]).abs() > 0.0;
+            radius[first as usize] = radius[first as usize].min(radius[row]);
+        }
+        for (row, &first) in twins.iter().enumerate() {
+            radius[row] = radius[first as usize];
+        }
+        has_lowered
+    }
+
     /// Takes pairs of opposite faces, of which the upper ones are images of the lower ones.
     pub(crate) fn repeat(&mut self, opposite: Vec<OppositeFaces>) {
         let mut periodic: Vec<u32> = (0..self.len()).map(|i| self.first_row(i) as u32).collect();

@@ -25,13 +25,13 @@ pub(super) fn grade_near(
     has_lowered
 }
 
-/// Grades the far pairs. Returns whether a radius was lowered.
+/// Grades the far pairs, and gives all rows of a particle the least radius of them. Returns whether a radius was lowered.
 pub(super) fn grade_far(slope: f32, pairs: &PackedNeighbours, particles: &mut Particles) -> bool {
     let mut has_lowered = false;
     for &[i, j] in pairs.far() {
         has_lowered |= grade(slope, particles, i as usize, j as usize);
     }
-    has_lowered
+    particles.share_radii() || has_lowered
 }
 
 /// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles are on one sheet
