@@ -189,7 +189,8 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
 /// planes of symmetry, which often touch the surface: creases are plain curves then.
 #[must_use]
 pub fn unit_cell(field: &mut dyn Field, periods: [Option<f64>; 3], bounds: &Bounds) -> Bounds {
-    /// Places of the corner along each axis.
+    /// Places of the corner along each axis. On six random surfaces |f| at the corner is 97 % of the largest in the cell, with half as many
+    /// places 84 %, with twice as many 98 %.
     const SIDE: u32 = 8;
     /// Share of the way between two places at which the first one is, by the golden ratio: planes of symmetry are at simple fractions.
     const ASIDE: f64 = 0.382;

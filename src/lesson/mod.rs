@@ -1,8 +1,9 @@
 //! The lesson's engine: runs of the paper's algorithms, and of those that it compares them with, with a log of every event.
 //!
-//! The engine stands on [`paper`](crate::paper) and adds to it: the same front level by level (`levels`), the filling of the gaps that
-//! fronts leave (`gaps`), and the two particle systems of the paper's Table 1: the general scheme of §3 in `system`, what each makes
-//! of it in `witkin_heckbert` and `forces`. [`LessonSettings`] chooses among them.
+//! The engine drives the parts of [`paper`](crate::paper), and adds to them what seeds have to be and the order of treatment (`course`),
+//! the same front level by level (`levels`), the filling of the gaps that fronts leave (`gaps`), and the two particle systems of the
+//! paper's Table 1: the general scheme of §3 in `system`, what each makes of it in `witkin_heckbert` and `forces`. [`LessonSettings`]
+//! chooses among them.
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
 //! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
