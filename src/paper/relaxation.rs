@@ -47,14 +47,6 @@ const RANGE: f64 = 3.0;
 /// surfaces half and twice the excess over 1 leave holes 6 % wider after ten steps.
 pub(crate) const OVERLAP_REACH: f64 = 1.15;
 
-/// Size of a relaxation step in uniform sampling, in σ². The stiffest mode of the hexagonal lattice at the spacing 2σ has the eigenvalue
-/// 2.2 / σ², so steps below 0.9 are stable, and below 0.7 where rows are squeezed to 1.7 σ; with 0.2 ten steps leave seams.
-pub(super) const STEP: f64 = 0.6;
-
-/// Size of a relaxation step in non-uniform sampling. The stiffest mode of the hexagonal lattice has an eigenvalue below 6, so steps below
-/// a third are stable.
-pub(crate) const OVERLAP_STEP: f64 = 0.33;
-
 /// A particle moves by no more than this in a step, in radii: it stays far from the next one, at 2. On 16 random surfaces half and twice
 /// of it change no figure after ten steps by more than 0.5 %.
 pub(crate) const MAX_MOVE: f64 = 0.35;
