@@ -38,6 +38,8 @@ const CELL: f64 = 1.0 / 128.0;
 /// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. Half and double
 /// give the same particles on 24 random solids.
 const ONE_CORNER: f64 = 1e-3;
+/// Distance from a corner, in steps, at which the creases that end there are looked for: ten times the width of the smallest one.
+const BESIDE: f64 = 10.0 * ONE_CORNER;
 /// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
 /// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before.
 const ONE_END: f64 = 0.1;
@@ -124,8 +126,6 @@ impl Creases {
 
     /// Follows the creases between patches that meet at a corner: one shorter than a cell is not always found from a cell.
     async fn follow_from_corners(&mut self, probe: &mut Probe<'_>, bounds: &Bounds, step: f64) {
-        /// Distance from the corner, in steps, at which the crease is looked for.
-        const ASIDE: f64 = 10.0 * ONE_CORNER;
         let mut next = 0;
         while let Some(Corner { position, patches, .. }) = self.corners.get(next).cloned() {
             next += 1;
@@ -135,9 +135,9 @@ impl Creases {
                     let near = |probe: &mut Probe, place, reach: f64| {
                         Meeting::of_branches(probe, [b, a], place, reach * step, SHARP)
                     };
-                    let Some(at_corner) = near(probe, position, ASIDE) else { continue };
+                    let Some(at_corner) = near(probe, position, BESIDE) else { continue };
                     for way in [at_corner.tangent, -at_corner.tangent] {
-                        let meeting = near(probe, position + way * (ASIDE * step), ASIDE)
+                        let meeting = near(probe, position + way * (BESIDE * step), BESIDE)
                             .filter(|meeting| {
                                 bounds.holds(meeting.position) && !self.has_point(meeting, step)
                             })

@@ -1,7 +1,7 @@
 //! Follows a crease from one of its points to both ends.
 
 use super::meeting::{FADED, Meeting, Third, common_point, touching_point};
-use super::{Crease, Creases, ONE_CORNER, ONE_END};
+use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END};
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
@@ -180,6 +180,16 @@ impl Walk<'_, '_> {
                 && (corner - here).dot(way) > 0.0
                 && corner.distance(here) <= 1.01 * way.length()
             {
+                // Another corner may come before it, of a branch that gives f at neither end of the step.
+                let share = (corner.distance(here) - BESIDE * self.step) / way.length();
+                if share > 0.0
+                    && share < 1.0 - BESIDE
+                    && let Some(before) =
+                        Meeting::of_branches(self.probe, branches, here + way * share, self.step, FADED)
+                    && !self.is_same_crease(&before, self.step)
+                {
+                    return self.end_before(creases, here, &before, points);
+                }
                 if !self.bounds.holds(corner) {
                     return self.end_at_box(here, corner, points);
                 }
