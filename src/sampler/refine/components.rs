@@ -20,10 +20,6 @@ use crate::sampler::sizing::Sizing;
 use core::mem;
 use glam::Vec3;
 
-/// Particles copied in one slice of work, and those that count for one unit of work.
-const SLICE: usize = 1_024;
-const COPIES_PER_UNIT: usize = 16;
-
 /// A component with a front that is good enough.
 #[derive(Clone, Debug)]
 struct AcceptedComponent {
@@ -304,18 +300,7 @@ fn gather(particles: &Particles, part_of: impl Iterator<Item = usize>) -> Parts 
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     components: Vec<AcceptedComponent>,
-    /// Number of levels after the one under way.
-    to_come: u32,
-    /// The finished level of all components, while it is put together.
-    joint: Option<Joint>,
-}
-
-/// The particles of all components in one set of columns, as far as they are there: first those on creases of all patches, then the
-/// others.
-#[derive(Clone, Debug, Default)]
-struct Joint {
-    particles: Particles,
-    /// Levels after the one that is put together.
+    /// Number of levels after the one that is handed on next.
     to_come: u32,
 }
 
@@ -331,12 +316,12 @@ impl Components {
         }
         let to_come =
             components.iter().map(|component| component.refinement.level.to_come).max().unwrap_or(0);
-        Self { components, to_come, joint: None }
+        Self { components, to_come }
     }
 
     /// Whether there is nothing left to do.
     pub(crate) fn is_done(&self) -> bool {
-        self.joint.is_none() && self.components.iter().all(|component| component.refinement.is_done())
+        self.components.iter().all(|component| component.refinement.is_done())
     }
 
     /// Halvings of the component that is refined least.
@@ -398,32 +383,16 @@ impl Components {
         }
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
-            if let Some(joint) = &mut self.joint {
-                if joint.step(&self.components) {
-                    if let Some(ladder) = surface.ladder {
-                        joint.join_creases(ladder);
-                    }
-                    // At once, so that a run that is cancelled has a whole level.
-                    mem::swap(particles, &mut joint.particles);
-                    self.joint = None;
-                    has_changed = true;
-                }
-                done += (SLICE / COPIES_PER_UNIT) as u32;
-                continue;
-            }
             // Those that are coarser catch up first.
             let pending = |component: &&mut AcceptedComponent| component.refinement.pending();
             let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
             let Some(component) = next.max_by_key(pending) else { break };
-            if component.refinement.pending() < self.to_come {
-                self.joint = Some(Joint { to_come: self.to_come, ..Joint::default() });
-                self.to_come -= 1;
-                continue;
-            }
             let (units, _) = component.refinement.step(probe, surface, &mut component.particles, 1)?;
             done += units;
-            if self.components.iter().all(|component| component.refinement.is_done()) {
-                self.joint = Some(Joint::default());
+            if self.components.iter().all(|component| component.refinement.has_shown(self.to_come)) {
+                *particles = joined(&self.components, self.to_come, surface.ladder);
+                has_changed = true;
+                self.to_come = self.to_come.saturating_sub(1);
             }
         }
         Ok((done, has_changed))
@@ -455,61 +424,52 @@ impl RowPlaces {
     fn row(self, own: u32) -> u32 {
         if own < self.on_creases { self.crease + own } else { self.inner + own - self.on_creases }
     }
-
-    /// The component to which a row of all belongs, and the row there.
-    fn own(places: &[Self], row: u32) -> (usize, usize) {
-        let is_on_crease = row < places[0].inner;
-        let first = |place: &Self| if is_on_crease { place.crease } else { place.inner };
-        // Of those that begin at the same row all but the last have none.
-        let component = places.partition_point(|place| first(place) <= row) - 1;
-        let before = if is_on_crease { 0 } else { places[component].on_creases };
-        (component, (before + row - first(&places[component])) as usize)
-    }
 }
 
-impl Joint {
-    /// Goes on for a slice. Returns whether all particles are there.
-    fn step(&mut self, components: &[AcceptedComponent]) -> bool {
-        let places = RowPlaces::of(components);
-        let all = components.iter().map(|component| component.particles.len()).sum();
-        if self.particles.is_empty() {
-            self.particles.reserve(all);
-        }
-        let first = self.particles.len();
-        for row in first..all.min(first + SLICE) {
-            let (component, i) = RowPlaces::own(&places, row as u32);
-            let AcceptedComponent { refinement, particles: own, .. } = &components[component];
-            let (position, normal, radius) = (own.position[i], own.normal[i], own.radius[i]);
-            match own.parent[i] {
-                Particles::NO_PARENT => self.particles.push_seed(position, normal, radius, refinement.patch),
-                parent => {
-                    let parent = places[component].row(parent);
-                    self.particles.push(position, normal, radius, parent, own.level[i], own.slots[i]);
-                }
+/// The particles of all components in one set of columns, for a level with so many to come: first those on creases of all patches, then
+/// the others.
+fn joined(components: &[AcceptedComponent], to_come: u32, ladder: Option<&CreaseLadder>) -> Particles {
+    let places = RowPlaces::of(components);
+    let (mut joint, mut patches) = (Particles::default(), Vec::new());
+    joint.reserve(components.iter().map(|component| component.particles.len()).sum());
+    for is_on_crease in [true, false] {
+        for (AcceptedComponent { refinement, particles: own, .. }, place) in components.iter().zip(&places) {
+            let on_creases = own.twins.len();
+            for i in if is_on_crease { 0..on_creases } else { on_creases..own.len() } {
+                let (position, normal, radius) = (own.position[i], own.normal[i], own.radius[i]);
+                let parent = match own.parent[i] {
+                    Particles::NO_PARENT => Particles::NO_PARENT,
+                    parent => place.row(parent),
+                };
+                joint.push(position, normal, radius, parent, own.level[i], own.slots[i]);
+                patches.extend(refinement.patch);
+                joint.twins.extend(own.twins.get(i));
             }
-            self.particles.slots[row] = own.slots[i];
-            self.particles.twins.extend(own.twins.get(i));
         }
-        self.particles.len() == all
     }
+    joint.patch = patches;
+    if let Some(ladder) = ladder {
+        join_creases(&mut joint, to_come, ladder);
+    }
+    joint
+}
 
-    /// Names the first row of every particle on a crease in place of its number, and the pairs of rows that follow each other.
-    fn join_creases(&mut self, ladder: &CreaseLadder) {
-        let mut first = vec![NONE; ladder.len()];
-        for (row, twin) in (0..).zip(&mut self.particles.twins) {
-            let first = &mut first[*twin as usize];
-            *first = row.min(*first);
-            *twin = *first;
-            let least = self.particles.radius[row as usize].min(self.particles.radius[*first as usize]);
-            self.particles.radius[*first as usize] = least;
-        }
-        for (row, &twin) in self.particles.twins.iter().enumerate() {
-            self.particles.radius[row] = self.particles.radius[twin as usize];
-        }
-        for (pair, sides) in ladder.pairs(self.to_come) {
-            self.particles.segments.push(pair.map(|number| first[number as usize]));
-            self.particles.sides.push(sides.to_vec());
-        }
+/// Names the first row of every particle on a crease in place of its number, and the pairs of rows that follow each other at this level.
+fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) {
+    let mut first = vec![NONE; ladder.len()];
+    for (row, twin) in (0..).zip(&mut particles.twins) {
+        let first = &mut first[*twin as usize];
+        *first = row.min(*first);
+        *twin = *first;
+        let least = particles.radius[row as usize].min(particles.radius[*first as usize]);
+        particles.radius[*first as usize] = least;
+    }
+    for (row, &twin) in particles.twins.iter().enumerate() {
+        particles.radius[row] = particles.radius[twin as usize];
+    }
+    for (pair, sides) in ladder.pairs(to_come) {
+        particles.segments.push(pair.map(|number| first[number as usize]));
+        particles.sides.push(sides.to_vec());
     }
 }
 

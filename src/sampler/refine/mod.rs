@@ -154,7 +154,7 @@ enum Task {
     /// A pass of the recipe over the particles, half-edges or faces below `end`. The next one is `next`.
     Pass { pass: usize, next: u32, end: u32 },
     /// The finished level is handed on.
-    Show(Rings),
+    Show,
     /// Every face is divided into four.
     Divide(Subdivision),
     /// The particles of the finer level are put onto the surface and into the columns of the net, in the order of `ends`. `defects`
@@ -257,8 +257,13 @@ impl Refinement {
     fn pending(&self) -> u32 {
         match self.task {
             Task::Divide(_) | Task::Lift { .. } => self.level.to_come - 1,
-            Task::Pass { .. } | Task::Show(_) | Task::Done => self.level.to_come,
+            Task::Pass { .. } | Task::Show | Task::Done => self.level.to_come,
         }
+    }
+
+    /// Whether the level with so many to come is handed on, or none that is as coarse is made.
+    fn has_shown(&self, to_come: u32) -> bool {
+        self.is_done() || self.pending() < to_come
     }
 
     /// Whether there is nothing left to do.
@@ -298,15 +303,14 @@ impl Refinement {
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let task = core::mem::replace(&mut self.task, Task::Done);
-            let was_whole = matches!(task, Task::Show(_));
+            has_changed |= matches!(task, Task::Show);
             let (next, units) = match task {
                 Task::Pass { pass, next, end } => self.pass(probe, surface, pass, next, end)?,
-                Task::Show(rings) => self.show(rings, particles),
+                Task::Show => self.show(particles),
                 Task::Divide(subdivision) => self.divide(subdivision),
                 Task::Lift { coarse, ends, defects } => self.lift(probe, surface, coarse, ends, defects)?,
                 Task::Done => (Task::Done, 0),
             };
-            has_changed |= was_whole && !matches!(next, Task::Show(_));
             self.task = next;
             done += units;
         }
@@ -370,7 +374,7 @@ impl Refinement {
             }
             // Before the columns of the finished level take their place.
             self.memory = Memory { block: core::mem::take(&mut self.memory.block), ..Memory::default() };
-            return Task::Show(Rings::new(&self.net));
+            return Task::Show;
         };
         let mesh = &self.net.mesh;
         let end = match kind {
@@ -525,22 +529,20 @@ impl Refinement {
         Ok(())
     }
 
-    fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Task, u32) {
-        let radius = self.target.radius * (1_u32 << self.level.to_come) as f32;
-        let task = if !rings.step(&self.net, radius) {
-            Task::Show(rings)
-        } else if self.level.to_come > 0 {
-            rings.hand_on(particles);
+    /// Hands the finished level on, whole, so that a run that is cancelled has all of its particles.
+    fn show(&mut self, particles: &mut Particles) -> (Task, u32) {
+        let rings = Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32);
+        let task = if self.level.to_come > 0 {
             Task::Divide(Subdivision::new(&self.net.mesh))
         } else {
             // Of the net nothing else is needed any more. Surgery, which removes faces, may have been at work on a last level that is the
-            // first one too. To name the corners takes a nanosecond or two for each.
+            // first one too.
             let corners = core::mem::take(&mut self.net).mesh.into_corners();
             self.corners = corners.into_iter().filter_map(|v| rings.place(v)).collect();
-            rings.hand_on(particles);
             Task::Done
         };
-        (task, BLOCK as u32)
+        *particles = rings.into_particles();
+        (task, particles.len() as u32)
     }
 
     fn divide(&mut self, mut subdivision: Subdivision) -> (Task, u32) {
