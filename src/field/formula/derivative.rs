@@ -255,13 +255,8 @@ fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, adjoint: I
 /// are ½ − w in a, ½ + w in b and u²/2 − |u|³/3 − 1/6 in k. The form needs no branch and is smooth at a = b.
 fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     let (of_a, of_b, of_k) = (!graph.is_uniform(a), !graph.is_uniform(b), !graph.is_uniform(k));
-    let least = graph.constant(MIN_BLEND_WIDTH);
-    let width = graph.binary(Binary::Max, k, least);
-    let difference = graph.sub(a, b);
-    let ratio = graph.div(difference, width);
-    let (one, minus_one, half) = (graph.constant(1.0), graph.constant(-1.0), graph.constant(0.5));
-    let below = graph.binary(Binary::Min, ratio, one);
-    let u = graph.binary(Binary::Max, below, minus_one);
+    let (_, u) = graph.blend(a, b, k);
+    let half = graph.constant(0.5);
     let magnitude = graph.unary(Unary::Abs, u);
     let square = graph.mul(u, magnitude);
     let correction = graph.mul(square, half);
@@ -282,6 +277,7 @@ fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)
         let slope = graph.sub(rise, sixth);
         // The minimum does not depend on widths below the smallest one.
         let slope = graph.mul(adjoint, slope);
+        let least = graph.constant(MIN_BLEND_WIDTH);
         (k, graph.when(true, least, k, slope))
     });
     [to_a, to_b, to_k]

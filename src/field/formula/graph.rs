@@ -548,6 +548,18 @@ impl Graph {
         self.folded(Node::Smin(a, b, k))
     }
 
+    /// The width of the blend of a smooth minimum, which is no smaller than [`MIN_BLEND_WIDTH`], and the difference of its operands over
+    /// that width, clamped to −1 … 1.
+    pub(super) fn blend(&mut self, a: Id, b: Id, k: Id) -> (Id, Id) {
+        let least = self.constant(MIN_BLEND_WIDTH);
+        let width = self.binary(Binary::Max, k, least);
+        let difference = self.sub(a, b);
+        let ratio = self.div(difference, width);
+        let (one, minus_one) = (self.constant(1.0), self.constant(-1.0));
+        let below = self.binary(Binary::Min, ratio, one);
+        (width, self.binary(Binary::Max, below, minus_one))
+    }
+
     /// The node of `value` where a ≤ b, or, unless `at_most`, where it is not; and of 0 elsewhere.
     pub(super) fn when(&mut self, at_most: bool, a: Id, b: Id, value: Id) -> Id {
         if self.is(value, 0.0) { value } else { self.folded(Node::If(at_most, a, b, value)) }

@@ -5,7 +5,7 @@
 //! products, smooth minima their polynomial. A register is reused as soon as its value is dead, so that a block of points
 //! stays in the first-level cache.
 
-use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
+use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 
 /// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
@@ -112,14 +112,9 @@ pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
 
 /// The smooth minimum as min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1.
 fn smooth_minimum(low: &mut Graph, a: Id, b: Id, k: Id) -> Id {
-    let (one, minus_one) = (low.constant(1.0), low.constant(-1.0));
-    let least = low.constant(MIN_BLEND_WIDTH);
-    let width = low.binary(Binary::Max, k, least);
-    let difference = low.sub(a, b);
-    let ratio = low.div(difference, width);
-    let below = low.binary(Binary::Min, ratio, one);
-    let u = low.binary(Binary::Max, below, minus_one);
+    let (width, u) = low.blend(a, b, k);
     let magnitude = low.unary(Unary::Abs, u);
+    let one = low.constant(1.0);
     let gap = low.sub(one, magnitude);
     let cube = integer_power(low, gap, 3);
     let sixth = low.constant(1.0 / 6.0);
