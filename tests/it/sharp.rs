@@ -50,7 +50,7 @@ fn the_mesh_of_a_solid_is_closed_and_keeps_its_edges_and_refined_it_has_fewer_de
 }
 
 #[test]
-fn the_mesh_of_a_solid_whose_sizes_differ_is_closed_and_keeps_its_edges_once_it_is_refined() {
+fn the_mesh_of_a_solid_whose_sizes_differ_is_closed_and_keeps_its_edges() {
     check(Settings::with_count(6_000).adaptive());
 }
 
