@@ -16,7 +16,8 @@ use glam::Vec3;
 /// figures of 24 random surfaces in random boxes are the same within their scatter; with 0.5 three of them are refused, with none eleven.
 const BEYOND: f64 = 3.0;
 /// Twice the area of a triangle that is flat for certain, as a share of the spacing squared. With half and double of it the figures of 24 random
-/// surfaces in random boxes are the same within their scatter.
+/// surfaces in random boxes are the same within their scatter. With 0, seven of 180 runs on 60 of them are refined fewer times, one of these
+/// not at all, and one is refined more often.
 const FLAT: f32 = 0.05;
 /// Where the front cannot grow beyond the box it ends before it, by no more than this share of the spacing.
 const OPEN_END: f32 = 1.3;
