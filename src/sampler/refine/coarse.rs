@@ -67,14 +67,8 @@ pub(super) struct FrontPart<'a> {
     pub(super) patch: Option<u32>,
 }
 
-/// The surface between the particles of a part of a front, clipped by the box. Particles in no triangle are left out. The front is to be
-/// refined so many times.
-pub(super) fn join(
-    ground: &mut Ground,
-    part: &FrontPart,
-    surface: &SurfaceFacts,
-    halvings: u32,
-) -> Result<Net, Refusal> {
+/// The surface between the particles of a part of a front, clipped by the box. Particles in no triangle are left out.
+pub(super) fn join(ground: &mut Ground, part: &FrontPart, surface: &SurfaceFacts) -> Result<Net, Refusal> {
     let &FrontPart { particles, triangles, .. } = part;
     let &SurfaceFacts { ref bounds, ladder, .. } = surface;
     let spacing = 2.0 * particles.radius.first().copied().unwrap_or(0.0);
@@ -89,12 +83,9 @@ pub(super) fn join(
         walls: Walls::new(bounds, &particles.position, spacing),
         ..Net::default()
     };
-    match ladder {
-        None => judge_size(&net.mesh, particles, bounds, halvings)?,
-        Some(ladder) => {
-            let number = |&row: &u32| particles.twins.get(row as usize).copied().unwrap_or(NONE);
-            net.hold_creases(ladder, rows.iter().map(number).collect());
-        }
+    if let Some(ladder) = ladder {
+        let number = |&row: &u32| particles.twins.get(row as usize).copied().unwrap_or(NONE);
+        net.hold_creases(ladder, rows.iter().map(number).collect());
     }
     border::clip(&mut net, ground, spacing)?;
     if let Some(ladder) = ladder {
@@ -169,35 +160,6 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
 
 pub(super) fn doubtful(particles: &Particles, v: u32) -> Refusal {
     Refusal::Doubtful { at: particles.position.get(v as usize).copied().unwrap_or_default().into() }
-}
-
-/// Judges the number of particles of each component that reaches into the box.
-fn judge_size(
-    mesh: &HalfEdges,
-    particles: &Particles,
-    bounds: &Bounds,
-    halvings: u32,
-) -> Result<(), Refusal> {
-    // At full resolution there are no more to be had.
-    if halvings == 0 {
-        return Ok(());
-    }
-    let mut components = Forest::new(particles.len());
-    for [a, b, c] in mesh.triangles() {
-        components.join(a, b);
-        components.join(b, c);
-    }
-    // Of each component, at its first particle: the number of particles, and whether one is in the box.
-    let mut sizes = vec![(0, false); particles.len()];
-    for v in (0..particles.len() as u32).filter(|&v| mesh.has_vertex(v)) {
-        let (count, is_inside) = &mut sizes[components.find(v) as usize];
-        *count += 1;
-        *is_inside |= bounds.contains(particles.position[v as usize]);
-    }
-    match sizes.iter().position(|&(count, is_inside)| is_inside && count < LEAST_PARTICLES) {
-        Some(root) => Err(Refusal::Small { at: particles.position[root].into() }),
-        None => Ok(()),
-    }
 }
 
 #[cfg(test)]

@@ -514,8 +514,8 @@ mod tests {
         while let Some(candidate) = fronts.candidates.pop() {
             tried.push(candidate.halvings);
             assert!(tried.len() < 9, "{tried:?}");
-            // Too few particles, and then enough.
-            let particles = sphere(if candidate.halvings > 2 { 20 } else { 1_000 });
+            // Too few particles for a triangle, and then enough.
+            let particles = sphere(if candidate.halvings > 2 { 2 } else { 1_000 });
             fronts.take_coarser(&mut probe, &surface, &particles, target(candidate.halvings), candidate);
         }
         assert_eq!(tried, [4, 3, 2]);
@@ -523,7 +523,7 @@ mod tests {
         assert_eq!(fronts.components[0].particles.len(), 1_000);
         // None is tried that is no coarser than what there is.
         let candidate = Candidate { component: 0, halvings: 3 };
-        fronts.take_coarser(&mut probe, &surface, &sphere(20), target(3), candidate);
+        fronts.take_coarser(&mut probe, &surface, &sphere(2), target(3), candidate);
         assert!(fronts.candidates.is_empty());
         assert_eq!(fronts.components[0].particles.len(), 1_000);
     }

@@ -60,7 +60,7 @@ const HALF_EDGES_PER_UNIT: u32 = 12;
 /// Faces measured for a unit.
 const FACES_PER_UNIT: u32 = 4;
 
-/// Fewest particles of a component of the coarse front, by which its shape can be told.
+/// Fewest particles of a coarse front.
 const LEAST_PARTICLES: u32 = 180;
 
 /// The number of levels, the radius and the count that a refinement is to reach.
@@ -200,7 +200,7 @@ impl Refinement {
     ) -> Result<Self, Refusal> {
         let mut block = MovedBlock::default();
         probe.select(part.patch);
-        let net = coarse::join(&mut Ground { probe, block: &mut block }, part, surface, target.halvings)?;
+        let net = coarse::join(&mut Ground { probe, block: &mut block }, part, surface)?;
         Ok(Self::of_layer(net, block, target, part.patch))
     }
 

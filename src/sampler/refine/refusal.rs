@@ -55,14 +55,6 @@ pub enum Refusal {
         /// Position of such a place.
         at: Spot,
     },
-    /// A component has too few particles.
-    #[error(
-        "The front stands, and is not refined: the part of the surface near {at} has fewer than {LEAST_PARTICLES} particles."
-    )]
-    Small {
-        /// Position of a point of the component.
-        at: Spot,
-    },
     /// The particles could not be joined to a closed surface beyond doubt.
     #[error(
         "The front stands, and is not refined: near {at} its particles could not be joined to a closed surface beyond doubt. With \
@@ -123,7 +115,6 @@ impl Refusal {
             | Self::Singular { at }
             | Self::Border { at }
             | Self::Cut { at }
-            | Self::Small { at }
             | Self::Doubtful { at }
             | Self::Tip { at }
             | Self::Folded { at } => Some(at),
@@ -132,9 +123,6 @@ impl Refusal {
 
     /// Whether a finer front may do.
     pub(crate) fn is_coarse(self) -> bool {
-        !matches!(
-            self,
-            Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. }
-        )
+        !matches!(self, Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. })
     }
 }
