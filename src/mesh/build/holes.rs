@@ -5,10 +5,10 @@ use super::rim::Rim;
 use crate::math::{Bounds, sort_few};
 use crate::slices::pause;
 
-/// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their mean
-/// where there is no other way: that of 78°. Half of it changes 3 of 46 unrelaxed random runs, twice as much 4, by a few
-/// triangles.
-const AGREEMENT: f64 = 0.2;
+/// Least cosine of the angle between the normal of a triangle and that of a point on it: that of 78°. The points are those that are set into
+/// the triangle, and the corners of one that fills a hole, or their mean where there is no other way. Half of it changes the holes of 3 of 46
+/// unrelaxed random runs, twice as much of 4, by a few triangles.
+pub(super) const AGREEMENT: f64 = 0.2;
 /// A vertex is at the box if it is nearer to one of the faces than this many spacings. With twice as much 5 of 46 unrelaxed
 /// random runs have borders that were holes; half of it changes one.
 const AT_BOX: f64 = 1.5;

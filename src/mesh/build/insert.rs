@@ -1,7 +1,7 @@
 //! Points in no triangle go into the triangle below them.
 
 use super::ball::MAX_LIFT;
-use super::holes::faces_as_corners;
+use super::holes::{AGREEMENT, faces_as_corners};
 use super::patch::Patch;
 use crate::math::unkey;
 use crate::spatial::tree::Tree;
@@ -12,9 +12,6 @@ const NEAR: usize = 32;
 /// Largest distance of a point outside a triangle that still counts as inside, as a share of the triangle's height. Half and
 /// double give the same meshes of 46 unrelaxed random runs.
 const OUTSIDE: f64 = 0.25;
-/// Least cosine of the angle between the normals of a point and of the triangle below it: that of 78°. Half and double give the
-/// same meshes of 46 unrelaxed random runs.
-const FACING: f64 = 0.2;
 /// Largest number of triangles that a point may replace. It then has 18 neighbours, three times as many as in a lattice.
 const MOST: usize = 16;
 
@@ -44,7 +41,7 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     let facing = patch.normal[v as usize].as_dvec3().dot(area);
     // The area is about that of a square over the triangle's longest side.
     let is_above = rise * rise <= f64::from(MAX_LIFT * MAX_LIFT) * area_sq * area_sq.sqrt();
-    if !(is_above && facing > 0.0 && facing * facing >= FACING * FACING * area_sq) {
+    if !(is_above && facing > 0.0 && facing * facing >= AGREEMENT * AGREEMENT * area_sq) {
         return f64::NEG_INFINITY;
     }
     let share = |a: u32, b: u32| patch.area_vector([a, b, v]).dot(area) / area_sq;

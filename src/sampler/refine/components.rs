@@ -461,12 +461,8 @@ fn join_creases(particles: &mut Particles, to_come: u32, ladder: &CreaseLadder) 
         let first = &mut first[*twin as usize];
         *first = row.min(*first);
         *twin = *first;
-        let least = particles.radius[row as usize].min(particles.radius[*first as usize]);
-        particles.radius[*first as usize] = least;
     }
-    for (row, &twin) in particles.twins.iter().enumerate() {
-        particles.radius[row] = particles.radius[twin as usize];
-    }
+    particles.share_radii();
     for (pair, sides) in ladder.pairs(to_come) {
         particles.segments.push(pair.map(|number| first[number as usize]));
         particles.sides.push(sides.to_vec());
