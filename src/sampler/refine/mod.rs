@@ -157,7 +157,7 @@ enum Task {
     /// The finished level is handed on.
     Show,
     /// Every face is divided into four.
-    Divide(Subdivision),
+    Divide(Box<Subdivision>),
     /// The particles of the finer level are put onto the surface and into the columns of the net, in the order of `ends`. `defects`
     /// counts the particles so far that have a defect.
     Lift { coarse: Box<Net>, ends: Vec<[u32; 2]>, defects: u32 },
@@ -534,7 +534,7 @@ impl Refinement {
     fn show(&mut self, particles: &mut Particles) -> (Task, u32) {
         let rings = Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32);
         let task = if self.level.to_come > 0 {
-            Task::Divide(Subdivision::new(&self.net.mesh))
+            Task::Divide(Box::new(Subdivision::new(&self.net.mesh)))
         } else {
             // Of the net nothing else is needed any more. Surgery, which removes faces, may have been at work on a last level that is the
             // first one too.
@@ -546,7 +546,7 @@ impl Refinement {
         (task, particles.len() as u32)
     }
 
-    fn divide(&mut self, mut subdivision: Subdivision) -> (Task, u32) {
+    fn divide(&mut self, mut subdivision: Box<Subdivision>) -> (Task, u32) {
         if !subdivision.step(&self.net.mesh, BLOCK as u32) {
             return (Task::Divide(subdivision), BLOCK as u32);
         }
