@@ -495,6 +495,8 @@ impl Sampler {
         // A front that was stopped has not covered the surface.
         let is_still = match self.phase {
             PhaseState::Done(reason) => reason == StopReason::Complete || !particles.identity.is_empty(),
+            // A frame that has not ended: the next one goes on from where the particles are.
+            PhaseState::Flow(_) => true,
             _ => false,
         };
         let is_smooth = particles.patch.is_empty() && !self.creases.are_there();

@@ -249,30 +249,72 @@ fn particles_that_have_followed_can_be_relaxed() {
     assert!(matches!(warnings.as_slice(), [Warning::Count { .. }, Warning::Moved]), "{warnings:?}");
 }
 
+/// An ellipsoid of the length `q`, in the box of all of them.
+fn ellipsoid(q: f64) -> FieldRequest {
+    FieldRequest {
+        formula: Some(ELLIPSOID.to_string()),
+        parameters: [("q".to_string(), q)].into_iter().collect(),
+        bounds: Some(DRAWN_OUT),
+        ..FieldRequest::default()
+    }
+}
+
+/// The box of ellipsoids that are drawn out to twice their length.
+const DRAWN_OUT: Bounds = Bounds::symmetric([1.7, 0.8, 0.6]);
+
+/// A session, as on the page, that takes each surface and then starts or follows it.
+struct Drag {
+    session: Session,
+    settings: Settings,
+}
+
+impl Drag {
+    fn new(radius: f64) -> Self {
+        let share = radius / DRAWN_OUT.diagonal();
+        let settings = settings!(size_mode: SizeMode::Radius, radius_share: share; ..Settings::default());
+        let mut drag = Self { session: Session::new(), settings };
+        drag.take(0.8);
+        drag.session.start(&drag.settings).expect("valid settings");
+        drag.finish();
+        drag
+    }
+
+    fn take(&mut self, q: f64) {
+        self.session.set_field(&ellipsoid(q)).expect("a formula");
+        while self.session.fit(&self.settings, true, u32::MAX).is_none() {}
+    }
+
+    fn follow(&mut self, q: f64, is_closed: bool) {
+        self.take(q);
+        assert!(self.session.follow(&self.settings, is_closed), "the particles cannot follow to {q}");
+    }
+
+    fn finish(&mut self) {
+        while self.session.run.step(u32::MAX).stop_reason.is_none() {}
+    }
+}
+
 /// A finished run on an ellipsoid that is drawn out to twice its length, as in the lesson: without births and deaths, too.
 fn drawn_out(is_closed: bool) -> Session {
-    let bounds = Bounds::symmetric([1.7, 0.8, 0.6]);
-    let share = 0.04 / bounds.diagonal();
-    let settings = settings!(size_mode: SizeMode::Radius, radius_share: share; ..Settings::default());
-    let mut session = Session::new();
-    for step in 0..=60 {
-        let q = 0.8 + 0.8 * f64::from(step) / 60.0;
-        let request = FieldRequest {
-            formula: Some(ELLIPSOID.to_string()),
-            parameters: [("q".to_string(), q)].into_iter().collect(),
-            bounds: Some(bounds),
-            ..FieldRequest::default()
-        };
-        session.set_field(&request).expect("a formula");
-        while session.fit(&settings, true, u32::MAX).is_none() {}
-        if step == 0 {
-            session.start(&settings).expect("valid settings");
-        } else {
-            assert!(session.follow(&settings, is_closed), "the particles cannot follow to {q}");
-        }
-        while session.run.step(u32::MAX).stop_reason.is_none() {}
+    let mut drag = Drag::new(0.04);
+    for step in 1..=60 {
+        drag.follow(0.8 + 0.8 * f64::from(step) / 60.0, is_closed);
+        drag.finish();
     }
-    session
+    drag.session
+}
+
+#[test]
+fn a_frame_that_has_not_ended_is_gone_on_from_whether_or_not_the_surface_moves_again() {
+    for next in [0.82, 0.84] {
+        let mut drag = Drag::new(0.06);
+        drag.follow(0.82, false);
+        assert_eq!(drag.session.run.step(1).stop_reason, None);
+        drag.follow(next, false);
+        drag.finish();
+        let figures = drag.session.measure(u32::MAX).expect("a report").measures.quality.expect("figures");
+        assert!(figures.accuracy.err_max < 1e-4, "{next}: {}", figures.accuracy.err_max);
+    }
 }
 
 #[test]

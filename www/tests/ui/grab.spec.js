@@ -252,16 +252,8 @@ test('particles that have followed stay, if they are to', async ({ page }) => {
   const { clean } = await open(page);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ flow: true }));
   const right = await outermost(page, [1, 0]);
-  const start = (await state(page)).parameters;
   await page.keyboard.down('Shift');
-  await page.mouse.move(right.x, right.y);
-  await page.mouse.down();
-  await page.mouse.move(right.x + 8, right.y, { steps: 3 });
-  // Where the surface is let go before its first frame it is sampled anew, and no particle has followed.
-  await expect.poll(async () => (await state(page)).parameters).not.toEqual(start);
-  await page.mouse.move(right.x + 16, right.y, { steps: 3 });
-  await page.mouse.up();
-  await atRest(page);
+  await drag(page, right, { x: right.x + 16, y: right.y });
   await page.keyboard.up('Shift');
   const told = async () => (await report(page))?.warnings.join();
   await expect.poll(told).toContain('followed the surface while it moved');
