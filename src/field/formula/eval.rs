@@ -74,6 +74,7 @@ struct RegisterCells<'a> {
 }
 
 impl<'a> RegisterCells<'a> {
+    #[inline]
     fn get(&self, register: u32) -> &'a [Cell<Lanes>] {
         &self.cells[register as usize * self.stride..][..self.groups]
     }

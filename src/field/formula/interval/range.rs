@@ -133,6 +133,7 @@ impl Range {
         Self { bounds: Interval::new(self.bounds.lo.max(least), self.bounds.hi), flags: self.flags }
     }
 
+    #[inline]
     pub(super) fn reciprocal(self) -> Self {
         if self.is_empty() {
             return NOTHING;

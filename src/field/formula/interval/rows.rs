@@ -192,6 +192,7 @@ const TRUSTED_ANGLE: f64 = 1e5;
 ///
 /// The nearest multiple of π/2 is subtracted in two parts (W. J. Cody & W. Waite, "Software Manual for the Elementary
 /// Functions", 1980). The Taylor series follows; its first omitted terms are below 10⁻¹⁷ for |r| ≤ π/4.
+#[inline]
 fn sine_cosine(x: f64) -> (f64, f64) {
     // π/2 in two parts. The first has 33 bits, so that its product with a quadrant below 2²⁰ is exact.
     const HALF_PI_HEAD: f64 = 1.570_796_326_734_125_6;
