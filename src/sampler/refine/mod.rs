@@ -516,7 +516,9 @@ impl Refinement {
         match kind {
             Pass::Measure => self.measure(),
             Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
-            Pass::Thin => self.net.thin(&mut self.memory.crowded, self.level.spacing),
+            Pass::Thin => {
+                self.net.thin(&mut self.memory.crowded, self.level.spacing);
+            }
             Pass::Inspect => {
                 if let Some(at) = self.tally.inverted {
                     return Err(Refusal::Folded { at: at.into() });

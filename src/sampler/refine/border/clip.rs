@@ -8,7 +8,7 @@ use super::super::net::{Ground, Net};
 use super::super::refusal::Refusal;
 use super::super::walls::{Planes, Site};
 use super::land_on;
-use crate::math::{Bounds, key, unkey};
+use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use glam::Vec3;
 
@@ -178,20 +178,8 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
 /// random surfaces that the box cuts have six neighbours. Every round but the last takes a particle away.
 fn tidy(net: &mut Net, spacing: f32) {
     loop {
-        let mut short: Vec<u64> = net
-            .mesh
-            .edges()
-            .filter(|&h| net.is_short_at_border(h, spacing))
-            .map(|h| key(net.length(h), h))
-            .collect();
-        short.sort_unstable();
-        let mut has_changed = false;
-        for (_, h) in short.into_iter().map(unkey) {
-            if net.mesh.has_half_edge(h) && net.is_short_at_border(h, spacing) {
-                let twin = net.mesh.twin(h);
-                has_changed |= collapse(net, h, spacing) || twin != NONE && collapse(net, twin, spacing);
-            }
-        }
+        let mut short: Vec<u32> = net.mesh.edges().filter(|&h| net.is_short_at_border(h, spacing)).collect();
+        let has_changed = net.thin(&mut short, spacing);
         net.flip(0..net.mesh.half_edge_slots() as u32);
         if !has_changed {
             break;

@@ -25,8 +25,9 @@ impl Net {
 
     /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the
     /// one that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn.
-    /// None moves.
-    pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) {
+    /// None moves. Returns whether one was taken out.
+    pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) -> bool {
+        let mut has_changed = false;
         sort_by_key(half_edges, |&h| key(self.length(h), h));
         for &h in &*half_edges {
             if !self.is_crowded(h, spacing) {
@@ -34,10 +35,9 @@ impl Net {
             }
             let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
             let (first, second) = if self.room(a, b) <= self.room(b, a) { (a, b) } else { (b, a) };
-            if !self.take_out(first, spacing) {
-                self.take_out(second, spacing);
-            }
+            has_changed |= self.take_out(first, spacing) || self.take_out(second, spacing);
         }
+        has_changed
     }
 
     /// Distance of a particle on the border from the nearest of its neighbours but `other`, and 0 for one inside.
