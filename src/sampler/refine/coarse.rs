@@ -18,16 +18,20 @@ use glam::Vec3;
 /// cannot remove one.
 pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 
-/// Radius of a coarse front over that of its share of the particles: with this match tolerance it places 6 to 14 % fewer than the
-/// front of the paper. What it is off by is made up for at the first level.
+/// Radius of a coarse front over that of its share of the particles, of which it places fewer where its grains meet. What it is off by is made
+/// up for at the first level. With 1, 0.7 points fewer of the particles have six neighbours on 36 closed random surfaces and 1.1 on 36 that a box
+/// cuts; with 0.9 the closest pair on 36 solids is at 0.65 in place of 0.69.
 pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
 /// Largest number of halvings: with it a million particles come from 240.
 const MAX_LEVELS: u32 = 6;
-/// Largest product of coarse spacing and curvature: 0.89 has worked wherever it was tried, 1.45 once, 1.54 nowhere.
+/// Largest product of coarse spacing and curvature. On 40 closed random surfaces half of it makes the share of particles with six neighbours
+/// 0.3 points smaller and double 0.2 points larger; on 40 that a box cuts it is the other way, and with double angles are 0.2° smaller. With 3.2, a
+/// small ball beside a large one gets a seventh fewer particles than are due to it: so few do not know its area.
 const MAX_BEND: f64 = 0.9;
-/// Largest product of spacing and curvature for a front that is refined once, or healed at full resolution. With up to 3.0 it was good
-/// enough wherever that was tried; beyond, an edge spans half a turn.
+/// Largest product of spacing and curvature for a front that is refined once, or healed at full resolution: beyond it an edge spans half a turn.
+/// With half of it the share of particles with six neighbours is 2.5 and 1.4 points smaller on 40 strongly bent random surfaces with 2,500 and
+/// 4,000 particles; with twice as much one more is refined, with an Euler number that is not the front's.
 const MAX_BEND_LEAST: f64 = 3.2;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
@@ -150,7 +154,7 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bound
     if let Some(v) = joined.unfilled.iter().flatten().copied().find(is_inside) {
         return Err(doubtful(particles, v));
     }
-    // The only particle of a component, say.
+    // The only particle of a component, say. Without this 19 of 60 random solids beside a small ball lose the ball.
     let is_seed = |&v: &u32| particles.parent[v as usize] == Particles::NO_PARENT;
     if let Some(v) = left_out.find(is_seed) {
         return Err(doubtful(particles, v));

@@ -11,11 +11,11 @@ use glam::Vec3;
 /// Particles that are brought back onto the surface together: the field is evaluated in lanes.
 pub(super) const BLOCK: usize = 64;
 
-/// No move is longer than this share of the spacing. Without a limit ten times as many triangles have an angle above 90° where sizes
-/// differ.
+/// No move is longer than this share of the spacing. Of 40 random wedges of 6° to 25° eight are refused; without a limit 20 are, with twice as
+/// much 17, with half 3. On smooth surfaces and other solids nothing changes beyond noise.
 const MAX_MOVE: f32 = 0.3;
-/// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. No run on 57
-/// smooth random surfaces does that, and 3 on 59 with creases, near sheets and singular points.
+/// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. With twice as
+/// much six of 320 runs on random surfaces change: three more are refined, one of them with an Euler number that the surface has not.
 const MAX_CORRECTION: f32 = 0.5;
 /// No step to a surface that has moved is longer than this share of the spacing. Particles without a mesh are followed as far.
 const LONGEST_WAY: f32 = 1.0;
