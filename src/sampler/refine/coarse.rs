@@ -15,7 +15,8 @@ use crate::sampler::constraint::CreaseLadder;
 use glam::Vec3;
 
 /// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's front does, whose relaxation
-/// cannot remove one.
+/// cannot remove one. With the paper's 0.7 the figures of 180 random surfaces are the same within noise, but beside the tip of a narrow cone a
+/// particle stands 2.1 spacings from it.
 pub(crate) const MATCH_TOLERANCE: f64 = 0.8;
 
 /// Radius of a coarse front over that of its share of the particles, of which it places fewer where its grains meet. What it is off by is made

@@ -145,8 +145,6 @@ struct Memory {
     surgeon: Surgeon,
     /// Particles near defects, in ascending order.
     near: Vec<u32>,
-    /// Half-edges between crowded particles.
-    crowded: Vec<u32>,
 }
 
 /// The task under way in a refinement, with its state.
@@ -380,10 +378,6 @@ impl Refinement {
         let mesh = &self.net.mesh;
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
-            Pass::Thin => {
-                self.memory.crowded.clear();
-                mesh.half_edge_slots()
-            }
             Pass::Measure | Pass::Inspect => {
                 self.tally = Tally::default();
                 mesh.half_edge_slots() / 3
@@ -399,7 +393,7 @@ impl Refinement {
             | Pass::Mend { .. }
             | Pass::Land
             | Pass::Follow => mesh.vertex_slots(),
-            Pass::Clip => 0,
+            Pass::Thin | Pass::Clip => 0,
         };
         let end = end as u32;
         match (kind, self.level.turn) {
@@ -425,7 +419,7 @@ impl Refinement {
         let mut ground = Ground { probe, block: &mut self.memory.block };
         let kind = self.level.recipe.passes[pass];
         let per_unit = match kind {
-            Pass::Flip | Pass::Thin => HALF_EDGES_PER_UNIT,
+            Pass::Flip => HALF_EDGES_PER_UNIT,
             Pass::Measure | Pass::Inspect => FACES_PER_UNIT,
             _ => 1,
         };
@@ -474,7 +468,7 @@ impl Refinement {
                 net.centre(&mut ground, springs, near);
             }
             Pass::Thin => {
-                self.memory.crowded.extend((next..last).filter(|&h| net.is_crowded(h, self.level.spacing)));
+                net.thin(self.level.spacing);
             }
             Pass::Land => {
                 net.land(&mut ground, self.level.spacing, next..last, false);
@@ -516,9 +510,6 @@ impl Refinement {
         match kind {
             Pass::Measure => self.measure(),
             Pass::Find => self.memory.surgeon.widen(&self.net.mesh, &mut self.memory.near),
-            Pass::Thin => {
-                self.net.thin(&mut self.memory.crowded, self.level.spacing);
-            }
             Pass::Inspect => {
                 if let Some(at) = self.tally.inverted {
                     return Err(Refusal::Folded { at: at.into() });

@@ -19,7 +19,7 @@ pub(super) enum Pass {
     Find,
     /// A step of Lloyd's method for the particles near defects.
     Centre,
-    /// Finds the pairs of particles that crowd at the border, and takes one of each out.
+    /// Takes out one of each pair of particles that crowd at the border.
     Thin,
     /// A step of Newton's method for every particle, so that positions and normals are those of the surface.
     Land,

@@ -15,7 +15,8 @@ const SWEEPS: u32 = 2;
 /// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch must come to rest within a few.
 const OMEGA: f32 = 1.3;
 /// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20 trials a sweep gains no more than 0.35 of
-/// what the one before it did, and so all that follow no more than 0.54 of it.
+/// what the one before it did, and so all that follow no more than 0.54 of it. On 80 random surfaces the figures are the same within 1 % with
+/// none of it and with double.
 const STILL_TO_GAIN: f32 = 0.5;
 /// Price of a particle, in units of the spacing squared, over the share by which the faces exceed the wanted number. On 57 random surfaces
 /// the count is 0.10 % off; without a price it is 0.61 % off, with half 0.13 %, and with twice as much 0.08 %, where the share of particles

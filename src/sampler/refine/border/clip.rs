@@ -178,8 +178,7 @@ fn close_open_ends(net: &mut Net, ground: &mut Ground, spacing: f32, first: u32)
 /// random surfaces that the box cuts have six neighbours. Every round but the last takes a particle away.
 fn tidy(net: &mut Net, spacing: f32) {
     loop {
-        let mut short: Vec<u32> = net.mesh.edges().filter(|&h| net.is_short_at_border(h, spacing)).collect();
-        let has_changed = net.thin(&mut short, spacing);
+        let has_changed = net.thin(spacing);
         net.flip(0..net.mesh.half_edge_slots() as u32);
         if !has_changed {
             break;

@@ -17,20 +17,16 @@ impl Net {
             && self.length(h) < CROWDED * spacing * self.size_between(a, b)
     }
 
-    /// Whether the edge of `h`, each edge for one of its half-edges, joins two crowded particles.
-    pub(in super::super) fn is_crowded(&self, h: u32, spacing: f32) -> bool {
-        // The twin of none is the largest number.
-        self.mesh.has_half_edge(h) && h <= self.mesh.twin(h) && self.is_short_at_border(h, spacing)
-    }
-
-    /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the
-    /// one that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn.
+    /// Takes a particle out at each of the edges that is [short at the border](Self::is_short_at_border), the shortest first: an inner one, else
+    /// the one that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn.
     /// None moves. Returns whether one was taken out.
-    pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) -> bool {
+    pub(in super::super) fn thin(&mut self, spacing: f32) -> bool {
+        let mut short: Vec<u32> =
+            self.mesh.edges().filter(|&h| self.is_short_at_border(h, spacing)).collect();
+        sort_by_key(&mut short, |&h| key(self.length(h), h));
         let mut has_changed = false;
-        sort_by_key(half_edges, |&h| key(self.length(h), h));
-        for &h in &*half_edges {
-            if !self.is_crowded(h, spacing) {
+        for h in short {
+            if !self.mesh.has_half_edge(h) || !self.is_short_at_border(h, spacing) {
                 continue;
             }
             let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
