@@ -15,7 +15,7 @@ pub(super) const BLOCK: usize = 64;
 /// much 17, with half 3. On smooth surfaces and other solids nothing changes beyond noise.
 const MAX_MOVE: f32 = 0.3;
 /// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was. With twice as
-/// much six of 320 runs on random surfaces change: three more are refined, one of them with an Euler number that the surface has not.
+/// much four of 360 runs on random surfaces change: three more are refined, one of them with an Euler number that the surface has not.
 const MAX_CORRECTION: f32 = 0.5;
 /// No step to a surface that has moved is longer than this share of the spacing. Particles without a mesh are followed as far.
 const LONGEST_WAY: f32 = 1.0;
