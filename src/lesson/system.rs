@@ -26,6 +26,7 @@ use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
 use crate::math::frame_of;
 use crate::paper::{Buckets, Particle};
+use core::iter::successors;
 use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -173,23 +174,33 @@ impl Course {
         }
     }
 
-    /// The two children of a particle, half a radius to either side of it; `None` if one does not come to the surface.
+    /// The two children of a particle, half a radius to either side of it: half as far where one of them does not come to the surface, as
+    /// beside a lone particle that has grown larger than the surface bends, and so on down to half the wanted radius. `None` if one does not
+    /// come from there either.
     ///
     /// The sources do not say where they are put.
     fn children(&mut self, parent: &Particle, direction: DVec3) -> Option<[Particle; 2]> {
-        let method = self.setup.settings.method;
-        let mut child = |side: f64| {
-            let start = parent.p() + direction * (side * parent.radius);
-            let (position, normal) = self.run.come_back(parent, start, parent.radius)?;
-            let radius = match method {
-                // Both together cover the area that their parent has covered.
-                LessonMethod::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
-                LessonMethod::Front | LessonMethod::Forces => self.run.radius_at(position)?,
-            };
-            let level = parent.level + 1;
-            Some(Particle { level, ..Particle::seed(position, normal, radius, parent.front) })
+        let wanted = match self.setup.settings.method {
+            LessonMethod::WitkinHeckbert => witkin_heckbert::wanted(&self.setup),
+            LessonMethod::Front | LessonMethod::Forces => parent.radius,
         };
-        Some([child(0.5)?, child(-0.5)?])
+        let halves = successors(Some(0.5 * parent.radius), |reach| Some(0.5 * reach));
+        halves.take_while(|&reach| reach >= 0.5 * wanted).find_map(|reach| {
+            let offset = direction * reach;
+            Some([self.child(parent, offset)?, self.child(parent, -offset)?])
+        })
+    }
+
+    /// A child of a particle at an offset from it; `None` if it does not come to the surface.
+    fn child(&mut self, parent: &Particle, offset: DVec3) -> Option<Particle> {
+        let (position, normal) = self.run.come_back(parent, parent.p() + offset, parent.radius)?;
+        let radius = match self.setup.settings.method {
+            // Both together cover the area that their parent has covered.
+            LessonMethod::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
+            LessonMethod::Front | LessonMethod::Forces => self.run.radius_at(position)?,
+        };
+        let level = parent.level + 1;
+        Some(Particle { level, ..Particle::seed(position, normal, radius, parent.front) })
     }
 
     fn end_iteration(&mut self) {

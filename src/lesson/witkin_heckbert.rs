@@ -10,6 +10,9 @@
 //!   surface, and no less than 2σ̂.
 //! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a time step that
 //!   is not small, a pair that has just divided could leave the surface, or get negative radii.
+//! * The source samples closed surfaces. A particle that would leave the box stays and counts as near equilibrium. On the border it has
+//!   neighbours on one side only, so that it divides more often there: the gyroid gets 1.4 times as many particles as a front places, closed
+//!   surfaces 1.1 times.
 
 use super::course::Setup;
 use super::dynamics::Dynamics;
@@ -45,7 +48,7 @@ const MAX_GROWTH: f64 = 2.0;
 const LEAST: f64 = 0.05;
 
 /// The wanted radius σ̂.
-fn wanted(setup: &Setup) -> f64 {
+pub(super) fn wanted(setup: &Setup) -> f64 {
     setup.settings.radius
 }
 
@@ -90,7 +93,6 @@ pub(super) fn step(
     let normal = own.n();
     let force = dynamics.force * (sigma * sigma);
     let velocity = force - normal * (normal.dot(force) + PHI * own.height);
-    dynamics.is_at_rest = velocity.length() < GAMMA * sigma;
 
     let stretch = dynamics.moment / (sigma * sigma * sigma);
     let growth = RHO * (WANTED_ENERGY - dynamics.energy) / (stretch + BETA / largest(setup));
@@ -104,6 +106,7 @@ pub(super) fn step(
     let sample = surface.sample(target);
     let (height, there) = (sample.value / sample.slope, sample.gradient / sample.slope);
     let can_go = height.is_finite() && surface.bounds.holds(target) && there.dot(normal) > 0.0;
+    dynamics.is_at_rest = !can_go || velocity.length() < GAMMA * sigma;
     if can_go {
         (own.position, own.normal, own.height) = (target.to_array(), there.to_array(), height);
     }

@@ -97,6 +97,19 @@ fn lone_particle_of_witkin_and_heckbert_grows_to_half_the_diameter_and_divides()
 }
 
 #[test]
+fn witkin_and_heckberts_particles_cover_a_surface_that_bends_more_than_its_first_particle_or_ends_at_the_box()
+{
+    for (surface, radius) in [("gyroid", 0.5), ("plane", 0.1), ("schwarz-d", 0.6), ("helicoid", 0.3)] {
+        let progress = run(surface, &witkin_heckbert(radius)).progress();
+        let front = run(surface, &settings!(radius; ..LessonSettings::default())).progress().particles;
+        assert!(
+            progress.is_settled && (front..2 * front).contains(&progress.particles),
+            "{surface}: {front}, {progress:?}"
+        );
+    }
+}
+
+#[test]
 fn only_a_free_disc_divides_and_only_a_pressed_one_dies() {
     let mut run = run("ellipsoid", &forces());
     let (mut divided, mut died) = (0, 0);
