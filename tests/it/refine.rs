@@ -6,7 +6,7 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self};
-use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Search, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Search, Settings, SizeMode};
 use marching_particles::topology::Topology;
 
 fn refined(count: u32, seed: u64) -> Settings {
@@ -350,7 +350,7 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
     /// Steps of 10,000 units of work, ten times as many as it takes.
     const STEPS: usize = 900;
 
-    // The middle of an edge of one sphere is nearer to the other one. The first of them can be healed at full resolution.
+    // The middle of an edge of one sphere is nearer to the other one. The first of them can be refined all the same.
     for outer in [1.02, 1.0002] {
         let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
         let mut field = Formula::as_written(&text, &[]).expect("a formula");
@@ -361,10 +361,34 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
         assert!(steps < STEPS, "{outer}: {steps} steps were not enough");
         let refusal = sampler.counts().refusal;
         assert!(
-            matches!(refusal, Some(Refusal::Folded { .. })) != (sampler.counts().refined_levels == Some(0)),
+            matches!(refusal, Some(Refusal::Folded { .. })) != sampler.counts().refined_levels.is_some(),
             "{outer}: {refusal:?}"
         );
         assert_eq!(sampler.search(), Search::Proven, "{outer}");
+    }
+}
+
+#[test]
+fn thin_necks_and_ears_stay() {
+    // Surgery would shorten them, beginning at their rims.
+    let mut field = Formula::as_written("x^4+y^4+z^4-5*(x^2+y^2+z^2)+12", &[]).expect("a formula");
+    let bounds = Bounds::cube(2.6);
+    let settings = settings!(sampling: Sampling::Adaptive; ..refined(2_000, 0));
+    let sampler = sampled(&mut field, &bounds, &settings, 10_000);
+    let particles = sampler.particles();
+    let found = figures(&mut field, &bounds, particles, Some(&particles.radius));
+    assert_eq!(found.connectivity.euler, -8, "{:?}", sampler.counts().refusal);
+    #[cfg(feature = "points")]
+    for (count, seed) in [(5_000, 1), (4_000, 4)] {
+        use marching_particles::field::{model, rbf::RbfField};
+        let fit =
+            marching_particles::pointcloud::models::fit(model::find("bunny").expect("a built-in model"));
+        let mut field = RbfField::new(fit.data).expect("the data is whole");
+        let settings = settings!(sampling: Sampling::Adaptive; ..refined(count, seed));
+        let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);
+        let particles = sampler.particles();
+        let found = figures(&mut field, &fit.bounds, particles, Some(&particles.radius));
+        assert!(found.coverage.cover_local < 2.5, "{count}: a hole of {}", found.coverage.cover_local);
     }
 }
 
