@@ -191,8 +191,12 @@ impl HoleSearch {
             if !cover.counts(p) {
                 continue;
             }
-            let gap_sq = cover.tree.nearest_sq(p, u32::MAX, cover.nearest_of(p, triangle));
-            let ideal = cover.ideal(triangle);
+            let (gap_sq, nearer) = cover.tree.nearest(p, u32::MAX, cover.nearest_of(p, triangle));
+            let mut ideal = cover.ideal(triangle);
+            // The circumcentre of a long triangle may come to a far place, where other points are larger.
+            if nearer != u32::MAX {
+                ideal = ideal.max(cover.ideal(&[nearer]));
+            }
             let ideal_sq = ideal * ideal;
             let matters = self.matters(gap_sq, ideal_sq);
             // On a triangle across a gap in the surface a sample may find no surface. The leash of an almost flat triangle is far longer
@@ -326,5 +330,31 @@ mod tests {
             let widest = search.widest_sq.sqrt();
             assert!(holes.contains(&widest), "{widest}");
         }
+    }
+
+    #[test]
+    fn a_hole_is_measured_by_the_largest_of_the_discs_around_it() {
+        let mut field = Formula::as_written("z = 0", &[]).expect("a formula");
+        // The circumcentre of the long triangle of three small discs is beside the large one.
+        let tree = Tree::new(
+            &[[-0.1, 0.0], [0.0, 0.01], [0.1, 0.0], [0.0, -0.45]].map(|[x, y]| Vec3::new(x, y, 0.0)),
+        );
+        let place = |i: u32| tree.origin.iter().position(|&own| own == i).expect("a place") as u32;
+        let mut radius = vec![0.01; 4];
+        radius[place(3) as usize] = 0.05;
+        let wanted = WantedRadii { radius, hole: 1.0 };
+        let cover = Cover {
+            tree: &tree,
+            creases: &CreaseRows::default(),
+            mesh: &[[0, 1, 2].map(place)],
+            border: None,
+            wanted: Some(&wanted),
+            discs: &[],
+            lattice: 1.0,
+        };
+        let mut search = HoleSearch::default();
+        complete(search.add_corners(&mut field, &cover));
+        let relative = search.relative_sq.sqrt();
+        assert!((0.8..1.0).contains(&relative), "{relative}");
     }
 }

@@ -10,10 +10,10 @@ const HOLE: f64 = 2.0 / SQRT_3;
 
 /// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct WantedRadii {
-    radius: Vec<f64>,
+    pub(super) radius: Vec<f64>,
     /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the
     /// area of the surface.
-    hole: f64,
+    pub(super) hole: f64,
 }
 
 impl WantedRadii {
