@@ -7,7 +7,7 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
-use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Settings, SizeMode};
 use marching_particles::topology::Topology;
 use proptest::prelude::*;
 
@@ -149,6 +149,22 @@ fn acute_corners_hold_no_crowded_pair() {
                 shortest / mean
             );
         }
+    }
+}
+
+#[test]
+fn a_sliver_in_a_corner_of_the_box_is_on_the_surface() {
+    // A piece smaller than the particles is left of a sheet in the corner, and one step of Newton's method leads out of the box there.
+    let waves = "0.857*sin(-2.742*x-0.235*y+0.902*z+3.248) + 0.746*sin(0.738*x-0.41*y-0.765*z+2.977) + 0.792*cos(2.702*x-0.49*y-2.892*z+1.312) \
+        + 0.489*sin(1.819*x-1.653*y-2.218*z+0.169) + 0.528*cos(-2.271*x+1.143*y+2.634*z+4.389) = 0.21";
+    let bounds = Bounds { min: [0.9, 1.0, -1.1], max: [1.6, 1.6, 0.0] };
+    for count in [1_500, 2_500] {
+        let mut field = Formula::as_written(waves, &[]).expect("a formula");
+        let settings = settings!(sampling: Sampling::Adaptive; ..settings(Method::Refined, count, 0));
+        let sampler = sampled(&mut field, &bounds, &settings, 10_000);
+        assert_eq!(sampler.counts().refusal, None, "{count}");
+        let found = figures(&mut field, &bounds, sampler.particles(), None);
+        assert!(found.accuracy.err_max <= 1e-3, "{count}: residual {}", found.accuracy.err_max);
     }
 }
 

@@ -470,13 +470,8 @@ impl Refinement {
             Pass::Thin => {
                 net.thin(self.level.spacing);
             }
-            Pass::Land => {
-                net.land(&mut ground, self.level.spacing, next..last, false);
-            }
-            Pass::Follow => {
-                net.land(&mut ground, self.level.spacing, next..last, true);
-                net.rescue_refused(&mut ground, self.level.spacing, true)?;
-            }
+            Pass::Land => net.land_all(&mut ground, self.level.spacing, next..last, false)?,
+            Pass::Follow => net.land_all(&mut ground, self.level.spacing, next..last, true)?,
             Pass::Clip => border::clip(net, &mut ground, self.level.spacing)?,
         }
         if last < end {
@@ -566,8 +561,7 @@ impl Refinement {
             defects += u32::from(matches!(ends, [old, NONE] if coarse.excess(old) != 0));
         }
         let mut ground = Ground { probe, block: &mut self.memory.block };
-        net.land(&mut ground, self.level.spacing, start as u32..end as u32, false);
-        net.rescue_refused(&mut ground, self.level.spacing, false)?;
+        net.land_all(&mut ground, self.level.spacing, start as u32..end as u32, false)?;
         if end < ends.len() {
             return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
         }

@@ -128,18 +128,20 @@ impl Net {
         is_border(a, b) || is_border(b, a)
     }
 
-    /// Brings the border particles back that one step of Newton's method could not, out of the box if they `may_leave` it. Without that, 3 of
-    /// 400 surfaces in random boxes are refused.
+    /// [Lands](Self::land) particles, and those on the border that one step of Newton's method could not bring back by several. Without these, 3
+    /// of 400 surfaces in random boxes are refused.
     ///
     /// # Errors
     ///
-    /// If another particle could not be brought to the surface, or one of them not either.
-    pub(super) fn rescue_refused(
+    /// If a particle could not be brought to the surface.
+    pub(super) fn land_all(
         &mut self,
         ground: &mut Ground,
         spacing: f32,
+        particles: Range<u32>,
         may_leave: bool,
     ) -> Result<(), Refusal> {
+        self.land(ground, spacing, particles, may_leave);
         let refused = core::mem::take(&mut ground.block.refused);
         match refused.iter().find(|&&v| !self.rescue(ground, spacing, v, may_leave)) {
             Some(&v) => Err(Refusal::Folded { at: self.position[v as usize].into() }),
