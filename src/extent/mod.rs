@@ -68,18 +68,17 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The box with room for particles of which the largest radius is this share of the diagonal of the box, which may depend on the box.
-    #[must_use]
-    pub fn with_room_for(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
-        /// Rounds in which the box and the room for the largest particles in it follow each other.
-        const ROUNDS: u32 = 4;
-        (0..ROUNDS).fold(self.bounds, |bounds, _| self.with_room(share_in(&bounds)))
-    }
-
-    /// The box with room for particles, whose radius is at most this share of its diagonal: 5 % on every side, and three radii. A
-    /// box that cuts the surface has room already.
+    /// The box with room for particles whose radius is at most this share of its diagonal: [`with_room_for`](Self::with_room_for) a share that
+    /// is the same in any box.
     #[must_use]
     pub fn with_room(&self, share: f64) -> Bounds {
+        self.with_room_for(|_| share)
+    }
+
+    /// The box with room for particles whose radius is at most a share of its diagonal, which may depend on the box: 5 % on every side, and
+    /// three radii. A box that cuts the surface has room already.
+    #[must_use]
+    pub fn with_room_for(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
         if self.reach != Reach::Bounded {
             return self.bounds;
         }
@@ -87,12 +86,14 @@ impl Extent {
         const ROUNDS: u32 = 8;
         let size = self.bounds.size();
         let most = MOST_MARGIN * size.max_element();
+        let around = |room: DVec3| placeable(&Bounds::new(self.bounds.lo() - room, self.bounds.hi() + room));
         let mut room = MARGIN * size;
         for _ in 0..ROUNDS {
+            let share = share_in(&around(room));
             let radii = (MARGIN_RADII * share * (size + 2.0 * room).length()).min(most);
             room = (MARGIN * size).max(DVec3::splat(radii));
         }
-        placeable(&Bounds::new(self.bounds.lo() - room, self.bounds.hi() + room))
+        around(room)
     }
 }
 

@@ -176,6 +176,9 @@ fn the_room_is_a_twentieth_and_three_radii() {
     assert_eq!(sphere.with_room(0.2).max, [2.0; 3]);
     let plane = Extent { bounds: Bounds::cube(4.0), reach: Reach::Endless };
     assert_eq!(plane.with_room(0.006), plane.bounds);
+    // A radius that is a length has three times that length on every side.
+    let bounds = sphere.with_room_for(|bounds| 0.15 / bounds.diagonal());
+    assert!(bounds.max.iter().all(|x| (x - 1.45).abs() < 1e-12), "{bounds:?}");
 }
 
 #[test]
