@@ -50,6 +50,7 @@ pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIte
 
 /// Points of a coarse grid in a box, off its faces and its planes of symmetry.
 pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
+    /// 125 points fill one batch.
     const SIDE: usize = 5;
     bounds.spread(SIDE).map(|p| p.as_vec3())
 }

@@ -605,6 +605,7 @@ fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, h
 
 /// Whether the field has finite bounds at all, tested on a few small boxes.
 fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
+    /// 27 boxes: bounds in one of them are enough.
     const SIDE: usize = 3;
     let boxes: Vec<Bounds> =
         bounds.spread(SIDE).map(|p| Bounds::new(p, p + MARGIN * bounds.size())).collect();

@@ -19,7 +19,8 @@ const BEYOND: f64 = 3.0;
 /// surfaces in random boxes are the same within their scatter. With 0, seven of 180 runs on 60 of them are refined fewer times, one of these
 /// not at all, and one is refined more often.
 const FLAT: f32 = 0.05;
-/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the spacing.
+/// Where the front cannot grow beyond the box it ends before it, by no more than this share of the spacing. Of 36 random fields that end at the box
+/// 19 are refined; with half of it 15 are, with twice and four times as much the same 19.
 const OPEN_END: f32 = 1.3;
 
 /// The box to which a coarse front grows whose particles have this radius.
