@@ -336,6 +336,13 @@ pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.resize(len, value);
 }
 
+/// Makes room for `more` items, and for a 32nd of the column beyond them: one that grows by few items does not take up twice as much.
+pub(crate) fn make_room<T>(column: &mut Vec<T>, more: usize) {
+    if column.capacity() - column.len() < more {
+        column.reserve_exact(more + column.len() / 32);
+    }
+}
+
 /// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes five instructions.
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,6 +1,7 @@
 //! Local operations, and a journal by which they can be taken back.
 
 use super::{Change, HalfEdges, NONE, next, previous};
+use crate::math::make_room;
 
 impl HalfEdges {
     /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An earlier journal is dropped.
@@ -276,6 +277,7 @@ impl HalfEdges {
             self.record(Change::VertexTaken(v));
             return v;
         }
+        make_room(&mut self.outgoing, 1);
         self.outgoing.push(NONE);
         self.record(Change::VertexAdded);
         self.outgoing.len() as u32 - 1
@@ -287,8 +289,10 @@ impl HalfEdges {
             self.record(Change::FaceTaken(f));
             return 3 * f;
         }
-        self.origin.extend([NONE; 3]);
-        self.twin.extend([NONE; 3]);
+        for column in [&mut self.origin, &mut self.twin] {
+            make_room(column, 3);
+            column.extend([NONE; 3]);
+        }
         self.record(Change::FaceAdded);
         self.origin.len() as u32 - 3
     }

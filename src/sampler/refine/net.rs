@@ -2,6 +2,7 @@
 
 use super::walls::{Planes, Site, Walls};
 use crate::differential::Curvature;
+use crate::math::make_room;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
 use crate::sampler::constraint::CreaseLadder;
@@ -468,6 +469,7 @@ impl Net {
     pub(super) fn resize(&mut self, rows: usize) {
         fn resize<T: Copy>(column: &mut Vec<T>, rows: usize, value: T) {
             if !column.is_empty() {
+                make_room(column, rows.saturating_sub(column.len()));
                 column.resize(rows, value);
             }
         }

@@ -2,7 +2,7 @@
 
 use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
-use crate::math::sort_by_key;
+use crate::math::{make_room, sort_by_key};
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use core::cmp::Ordering;
 use glam::Vec3;
@@ -72,7 +72,7 @@ pub(super) struct Surgeon {
     stamp: Vec<u32>,
     trial: u32,
     /// Number of neighbours that a particle had when it was last tried, in vain; 0 if what is around it has changed since.
-    tried: Vec<usize>,
+    tried: Vec<u32>,
     /// Whether a trial was kept.
     has_kept: bool,
     /// Site of each particle of the patch before the trial.
@@ -86,7 +86,7 @@ impl Surgeon {
     /// with the nearest of them, with too many another one is inserted into the widest of its faces. What has failed is tried again
     /// only when something around it has changed. Returns whether it was tried.
     pub(super) fn mend(&mut self, net: &mut Net, ground: &mut Ground, aim: Aim, v: u32) -> bool {
-        if !net.mesh.has_vertex(v) || self.tried.get(v as usize) == Some(&net.mesh.valence(v)) {
+        if !net.mesh.has_vertex(v) || self.tried.get(v as usize) == Some(&(net.mesh.valence(v) as u32)) {
             return false;
         }
         let operations = if net.mesh.is_border(v) {
@@ -96,7 +96,7 @@ impl Surgeon {
         };
         let mut is_tried = false;
         for operation in operations.into_iter().flatten() {
-            let valence = net.mesh.valence(v);
+            let valence = net.mesh.valence(v) as u32;
             is_tried = true;
             // The first one that pays is kept.
             if self.attempt(net, ground, aim, operation, net.size_of(v)) {
@@ -214,8 +214,11 @@ impl Surgeon {
         self.trial += 1;
         self.patch.clear();
         // One more than there are: an insertion may take it.
-        self.stamp.resize(mesh.vertex_slots() + 1, 0);
-        self.tried.resize(mesh.vertex_slots() + 1, 0);
+        let rows = mesh.vertex_slots() + 1;
+        for column in [&mut self.stamp, &mut self.tried] {
+            make_room(column, rows.saturating_sub(column.len()));
+            column.resize(rows, 0);
+        }
         let rings = match operation {
             Operation::Collapse(h) => {
                 self.patch.extend([mesh.origin(h), mesh.target(h)]);
