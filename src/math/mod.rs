@@ -336,11 +336,12 @@ pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.resize(len, value);
 }
 
-/// Makes room for `more` items, and for a 32nd of the column beyond them: one that grows by few items does not take up twice as much.
-pub(crate) fn make_room<T>(column: &mut Vec<T>, more: usize) {
-    if column.capacity() - column.len() < more {
-        column.reserve_exact(more + column.len() / 32);
+/// Resizes a column, where it has to grow with room for a 32nd more: one that grows by few items does not take up twice as much.
+pub(crate) fn grow<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
+    if len > column.capacity() {
+        column.reserve_exact(len - column.len() + column.len() / 32);
     }
+    column.resize(len, value);
 }
 
 /// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes five instructions.

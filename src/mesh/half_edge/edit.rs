@@ -1,7 +1,7 @@
 //! Local operations, and a journal by which they can be taken back.
 
 use super::{Change, HalfEdges, NONE, next, previous};
-use crate::math::make_room;
+use crate::math::grow;
 
 impl HalfEdges {
     /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An earlier journal is dropped.
@@ -277,10 +277,10 @@ impl HalfEdges {
             self.record(Change::VertexTaken(v));
             return v;
         }
-        make_room(&mut self.outgoing, 1);
-        self.outgoing.push(NONE);
+        let v = self.outgoing.len();
+        grow(&mut self.outgoing, v + 1, NONE);
         self.record(Change::VertexAdded);
-        self.outgoing.len() as u32 - 1
+        v as u32
     }
 
     /// The first half-edge of a face that is free, of a new one if need be.
@@ -289,11 +289,10 @@ impl HalfEdges {
             self.record(Change::FaceTaken(f));
             return 3 * f;
         }
-        for column in [&mut self.origin, &mut self.twin] {
-            make_room(column, 3);
-            column.extend([NONE; 3]);
-        }
+        let h = self.origin.len();
+        grow(&mut self.origin, h + 3, NONE);
+        grow(&mut self.twin, h + 3, NONE);
         self.record(Change::FaceAdded);
-        self.origin.len() as u32 - 3
+        h as u32
     }
 }

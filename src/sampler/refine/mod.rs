@@ -521,6 +521,7 @@ impl Refinement {
     /// Hands the finished level on, whole, so that a run that is cancelled has all of its particles.
     fn show(&mut self, particles: &mut Particles) -> (Task, u32) {
         if self.level.to_come == 0 {
+            // The walk that orders the particles takes as much.
             self.memory = Memory::default();
         }
         let rings = Rings::new(&self.net, self.target.radius * (1_u32 << self.level.to_come) as f32);

@@ -2,7 +2,7 @@
 
 use super::walls::{Planes, Site, Walls};
 use crate::differential::Curvature;
-use crate::math::make_room;
+use crate::math::grow;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
 use crate::sampler::constraint::CreaseLadder;
@@ -389,6 +389,13 @@ impl Net {
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
     }
 
+    /// Whether a face with this [area vector](Self::area_vector) faces as the surface does at its corner `v`: the cosine of the angle between them
+    /// is above `least`. Any face does at a tip, where the surface has no normal.
+    pub(super) fn faces_as(&self, area: Vec3, v: u32, least: f32) -> bool {
+        // Written so that NaN does not.
+        area.dot(self.normal[v as usize]) > least * area.length() || self.is_tip(v)
+    }
+
     /// A half-edge of the widest face at `v`.
     pub(super) fn widest(&self, v: u32) -> Option<u32> {
         let corners = |h: u32| [h, next(h), previous(h)].map(|h| self.mesh.origin(h));
@@ -469,8 +476,7 @@ impl Net {
     pub(super) fn resize(&mut self, rows: usize) {
         fn resize<T: Copy>(column: &mut Vec<T>, rows: usize, value: T) {
             if !column.is_empty() {
-                make_room(column, rows.saturating_sub(column.len()));
-                column.resize(rows, value);
+                grow(column, rows, value);
             }
         }
         resize(&mut self.position, rows, Vec3::ZERO);

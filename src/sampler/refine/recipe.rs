@@ -62,14 +62,15 @@ pub(super) struct Tuning {
     between: Plan,
     /// Plan of the last level, where the lattice comes to rest. With one size surgery would add more defects there than it removes.
     last: Plan,
-    /// Rounds of surgery at every level but the last one, with a sweep after each. The first half of them is left out where they cost most: on the
+    /// Rounds of surgery at every level before the last one, with a sweep after each. The first half of them is left out where they cost most: on the
     /// last level but one, and on a first level at full resolution, which then comes to rest by the plan of the last one.
     rounds: usize,
     /// Share by which edges are too short or too long where surgery is tried on a particle without a defect.
     stretch: f32,
-    /// The same where order is kept: in a frame of a moving mesh, and at the last level of sizes that differ.
+    /// Share by which edges are too short or too long where surgery is tried on a particle without a defect in a frame of a moving mesh, and at
+    /// the last level of sizes that differ. There order is to be kept.
     kept_stretch: f32,
-    /// Least gain of a trial there, in units of the spacing squared.
+    /// Least gain of a trial in a frame of a moving mesh, and at the last level of sizes that differ, in units of the spacing squared.
     least_gain: f32,
     /// Loss that the first round of surgery accepts, in units of the spacing squared. It falls to 0 in the last one.
     loss: f32,
@@ -84,8 +85,8 @@ pub(super) struct Tuning {
     most_theta: f32,
     /// Steps of Lloyd's method near the defects of the last level.
     lloyd: usize,
-    /// Where sizes differ: rounds of surgery at the sizes half-way, after which the other rounds of the plan follow at the sizes of the radius
-    /// field; and rounds at the last level, the first one at which sizes are as steep as they are wanted.
+    /// Rounds of surgery at the sizes half-way from one size to those of the radius field, at which the other rounds of the first level follow; and
+    /// as many rounds at the last level of sizes that differ, the first one at which they may be as steep as they are wanted.
     graded_rounds: usize,
 }
 
@@ -126,7 +127,7 @@ pub(super) const TUNING: Tuning = Tuning {
     lloyd: 2,
     // Four steps of two rounds each instead of two steps make angles 0.2° smaller. Without rounds at the last level the largest hole of 58 runs on
     // random surfaces is 1.38 times that of the local lattice in place of 1.33, and three times as many are wider than 1.4; 0.6 points more of
-    // the particles have six neighbours. With one round they are 1.34, with three 1.32.
+    // the particles have six neighbours. With one round the largest hole is 1.34 times it, with three 1.32.
     graded_rounds: 2,
 };
 
@@ -166,8 +167,7 @@ impl Recipe {
         let losses: Vec<f32> = match to_come {
             0 if is_last && is_graded => vec![-TUNING.least_gain; TUNING.graded_rounds],
             0 if is_last => Vec::new(),
-            0 => losses().skip(TUNING.rounds / 2).collect(),
-            1 if !is_first => losses().skip(TUNING.rounds / 2).collect(),
+            0 | 1 if to_come == 0 || !is_first => losses().skip(TUNING.rounds / 2).collect(),
             _ => losses().collect(),
         };
         if is_graded && is_first {

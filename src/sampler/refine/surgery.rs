@@ -2,7 +2,7 @@
 
 use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
-use crate::math::{make_room, sort_by_key};
+use crate::math::{grow, sort_by_key};
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use core::cmp::Ordering;
 use glam::Vec3;
@@ -164,7 +164,7 @@ impl Surgeon {
         }
         if gain > least && !is_flat {
             net.land(ground, springs.spacing, self.patch.iter().copied(), false);
-            if ground.block.refused.is_empty() && self.faces_outward(net) {
+            if ground.block.refused.is_empty() && self.lies_on_surface(net) {
                 net.mesh.keep();
                 self.add_rings(&net.mesh, 1);
                 self.patch.iter().for_each(|&v| self.tried[v as usize] = 0);
@@ -215,10 +215,8 @@ impl Surgeon {
         self.patch.clear();
         // One more than there are: an insertion may take it.
         let rows = mesh.vertex_slots() + 1;
-        for column in [&mut self.stamp, &mut self.tried] {
-            make_room(column, rows.saturating_sub(column.len()));
-            column.resize(rows, 0);
-        }
+        grow(&mut self.stamp, rows, 0);
+        grow(&mut self.tried, rows, 0);
         let rings = match operation {
             Operation::Collapse(h) => {
                 self.patch.extend([mesh.origin(h), mesh.target(h)]);
@@ -297,17 +295,12 @@ impl Surgeon {
         }
     }
 
-    /// Whether the faces around the particles of the patch face as these do. A thin part of the surface would else be taken away from its rim on,
-    /// by trials that each leave a narrow face between its two sides.
-    fn faces_outward(&self, net: &Net) -> bool {
-        let is_outward = |v: u32| {
-            let normal = net.normal[v as usize];
-            net.mesh.around(v).all(|h| {
-                let area = net.area_vector([h, next(h), previous(h)].map(|h| net.mesh.origin(h)));
-                area.dot(normal) >= LEAST_AGREEMENT * area.length()
-            })
-        };
-        self.patch.iter().all(|&v| !net.mesh.has_vertex(v) || net.is_tip(v) || is_outward(v))
+    /// Whether each face around a particle of the patch is within 60° of the surface there. Without this rule trials shorten a thin part of the
+    /// surface from its rim on: each of them leaves a narrow face across the rim, between the two sides.
+    fn lies_on_surface(&self, net: &Net) -> bool {
+        let area_of = |h: u32| net.area_vector([h, next(h), previous(h)].map(|h| net.mesh.origin(h)));
+        let mut patch = self.patch.iter().copied().filter(|&v| net.mesh.has_vertex(v));
+        patch.all(|v| net.mesh.around(v).all(|h| net.faces_as(area_of(h), v, LEAST_AGREEMENT)))
     }
 
     /// Adds a new particle to the columns and to the patch.

@@ -51,8 +51,7 @@ impl Tally {
     pub(super) fn inspect(&mut self, net: &Net, faces: Range<u32>) {
         for face in faces.filter_map(|f| net.mesh.face(f)) {
             let area = net.area_vector(face);
-            // Written so that NaN counts.
-            let is_upright = face.iter().all(|&v| area.dot(net.normal[v as usize]) > 0.0 || net.is_tip(v));
+            let is_upright = face.iter().all(|&v| net.faces_as(area, v, 0.0));
             if !is_upright && self.inverted.is_none() {
                 self.inverted = Some(net.position[face[0] as usize]);
             }

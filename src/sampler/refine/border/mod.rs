@@ -128,8 +128,8 @@ impl Net {
         is_border(a, b) || is_border(b, a)
     }
 
-    /// [Lands](Self::land) particles, and those on the border that one step of Newton's method could not bring back by several. Without these, 3
-    /// of 400 surfaces in random boxes are refused.
+    /// Brings particles onto the surface by one step of Newton's method, as [`land`](Self::land) does, and those on the border that it cannot
+    /// bring there by several. Without the several steps, 3 of 400 surfaces in random boxes are refused.
     ///
     /// # Errors
     ///
