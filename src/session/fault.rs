@@ -43,8 +43,8 @@ pub struct Fault {
     pub suggestion: Option<String>,
     /// The formula with every mistake of this kind mended, if there are several.
     pub mended: Option<Box<Mended>>,
-    /// Unknown names that could become sliders.
-    pub names: Vec<String>,
+    /// The unknown name, which could become a slider.
+    pub name: Option<String>,
     /// The excess of particles, if the error is [`FaultKind::TooMany`].
     pub excess: Option<Excess>,
 }
@@ -73,7 +73,7 @@ impl Fault {
             end: 0,
             suggestion: None,
             mended: None,
-            names: Vec::new(),
+            name: None,
             excess: None,
         }
     }
@@ -89,7 +89,7 @@ impl Fault {
             end: span.end as u32,
             suggestion: error.suggestion,
             mended: error.mended,
-            names: error.names,
+            name: error.name,
             excess: None,
         }
     }

@@ -87,9 +87,8 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt:
     if let Some(Mended { text, places }) = error.mended.as_deref() {
         write!(f, "\n\nhelp: mended in all {places} places: {text}")?;
     }
-    if !error.names.is_empty() {
-        let parameters: Vec<String> = error.names.iter().map(|name| format!("--param {name}=1")).collect();
-        write!(f, "\n\nhelp: to make it a parameter, add {}", parameters.join(" "))?;
+    if let Some(name) = &error.name {
+        write!(f, "\n\nhelp: to make it a parameter, add --param {name}=1")?;
     }
     Ok(())
 }

@@ -161,9 +161,6 @@ functions! {
     Smax "smax(a, b, k)" "Smooth maximum: the intersection of two solids, blended where |a − b| < k.",
 }
 
-/// Maximum number of arguments of a function that takes any number of them.
-const MOST_ARGUMENTS: usize = 16;
-
 impl Function {
     pub(crate) fn find(name: &str) -> Option<Self> {
         FUNCTIONS.iter().find(|info| info.name == name).map(|info| info.function)
@@ -177,11 +174,11 @@ impl Function {
         self.info().name
     }
 
-    /// Minimum and maximum number of arguments, as the signature shows them.
+    /// Minimum and maximum number of arguments, as the signature shows them; a function with `…` takes any number from the minimum on.
     pub(crate) fn arity(self) -> (usize, usize) {
         let signature = self.info().signature;
         let commas = signature.matches(',').count();
-        if signature.contains('…') { (commas, MOST_ARGUMENTS) } else { (commas + 1, commas + 1) }
+        if signature.contains('…') { (commas, usize::MAX) } else { (commas + 1, commas + 1) }
     }
 
     /// Whether it can have so many arguments.

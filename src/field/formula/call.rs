@@ -54,7 +54,7 @@ impl Parser<'_> {
             let wanted = match function.arity() {
                 (1, 1) => "one argument".to_owned(),
                 (least, most) if least == most => format!("{least} arguments"),
-                (least, most) => format!("{least} to {most} arguments"),
+                (least, _) => format!("at least {least} arguments"),
             };
             let message = format!(
                 "`{}` takes {wanted}, and here it has {}",

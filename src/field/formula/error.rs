@@ -59,8 +59,8 @@ pub struct FormulaError {
     pub suggestion: Option<String>,
     /// The formula with every mistake of this kind corrected, if there are several.
     pub mended: Option<Box<Mended>>,
-    /// Unknown names that could be declared as parameters ("add a slider"), in order of appearance.
-    pub names: Vec<String>,
+    /// The unknown name, which could be declared as a parameter ("add a slider").
+    pub name: Option<String>,
 }
 
 /// A formula in which every mistake of a kind is corrected.
@@ -75,7 +75,7 @@ pub struct Mended {
 
 impl FormulaError {
     pub(crate) fn new(kind: FormulaErrorKind, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), span, suggestion: None, mended: None, names: Vec::new() }
+        Self { kind, message: message.into(), span, suggestion: None, mended: None, name: None }
     }
 
     pub(crate) fn suggest(mut self, suggestion: impl Into<String>) -> Self {
@@ -83,8 +83,8 @@ impl FormulaError {
         self
     }
 
-    pub(crate) fn names(mut self, names: Vec<String>) -> Self {
-        self.names = names;
+    pub(crate) fn unknown(mut self, name: &str) -> Self {
+        self.name = Some(name.into());
         self
     }
 

@@ -13,8 +13,7 @@
 //! is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of a definition `f(x, y, z) = …`, and what LaTeX has for
 //! all this: `\frac{1}{2}`, `\sqrt[3]{x}`, `x^{2}`, `\left|x\right|`, `\sin\theta`, `\cdot`.
 //!
-//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling. There are at most
-//! [`MAX_AUTOMATIC_PARAMETERS`] of them.
+//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling.
 //!
 //! # Evaluation
 //!
@@ -77,9 +76,6 @@ pub const MAX_DEPTH: usize = 64;
 
 /// Maximum number of operations of a formula. An integer power counts as its products.
 pub const MAX_OPERATIONS: usize = MAX_FORMULA_BYTES;
-
-/// Maximum number of unknown names that become parameters.
-pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
 
 /// A named number of a formula, which can be changed without parsing the formula again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -480,7 +476,7 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
     Ok(())
 }
 
-/// Undeclared names, if all of them may become automatic parameters.
+/// Undeclared names, which become automatic parameters, if none looks like a misspelling.
 fn automatic_names(
     names: &[(String, core::ops::Range<usize>)],
     declared: &[&str],
@@ -491,16 +487,9 @@ fn automatic_names(
         let Some((meant, message)) = likely_misspelling(name, declared) else { continue };
         return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message)
             .suggest(meant)
-            .names(vec![name.clone()]));
+            .unknown(name));
     }
-    let list: Vec<String> = unknown.iter().map(|(name, _)| name.clone()).collect();
-    if let Some((name, span)) = unknown.get(MAX_AUTOMATIC_PARAMETERS) {
-        let message = format!(
-            "Unknown name `{name}`: only {MAX_AUTOMATIC_PARAMETERS} names become sliders by themselves; add a slider `{name}`"
-        );
-        return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message).names(list));
-    }
-    Ok(list)
+    Ok(unknown.into_iter().map(|(name, _)| name.clone()).collect())
 }
 
 /// The correction of a misspelt `name`, with the message that suggests it.

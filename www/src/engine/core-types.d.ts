@@ -137,8 +137,8 @@ export type Fault = {
   suggestion: string | null,
   /** The formula with every mistake of this kind mended, if there are several. */
   mended: Mended | null,
-  /** Unknown names that could become sliders. */
-  names: Array<string>,
+  /** The unknown name, which could become a slider. */
+  name: string | null,
   /** The excess of particles, if the error is [`FaultKind::TooMany`]. */
   excess: Excess | null,
 };

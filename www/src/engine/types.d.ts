@@ -328,8 +328,8 @@ export interface EngineCommands {
   setPulls: (pulls: readonly Pull[], options?: { live?: boolean }) => void;
   /** has a press on the picture take hold of something in place of the camera */
   takeWith: (take: Take) => void;
-  /** declares unknown names of the formula as parameters */
-  declareParameters: (names: readonly string[]) => void;
+  /** declares an unknown name of the formula as a parameter */
+  declareParameter: (name: string) => void;
   setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
   /** the normal may have any length but 0 */
   setPlane: (plane: CuttingPlane | null, options?: { live?: boolean }) => void;

@@ -101,7 +101,7 @@ export function fakeCore({
             end: 4,
             suggestion: null,
             mended: null,
-            names: [],
+            name: null,
             excess: null,
           },
         };

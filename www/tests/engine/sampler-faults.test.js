@@ -9,7 +9,7 @@ afterEach(() => vi.useRealTimers());
 describe('a formula with a fault', () => {
   const fault = {
     ok: false,
-    error: { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, mended: null, names: [] },
+    error: { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, mended: null, name: null },
   };
 
   test('leaves the last surface, dimmed', () => {
@@ -209,7 +209,7 @@ describe('the surface that stays', () => {
           id: 2,
           answer: {
             ok: false,
-            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, mended: null, names: [] },
+            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, mended: null, name: null },
           },
         });
       }

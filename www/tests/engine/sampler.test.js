@@ -190,7 +190,7 @@ describe('a run', () => {
         id,
         answer: {
           ok: false,
-          error: { kind, message: '', start: 0, end: 0, suggestion: null, mended: null, names: [] },
+          error: { kind, message: '', start: 0, end: 0, suggestion: null, mended: null, name: null },
         },
       });
       expect(told.at(-1)).toBe('dim');

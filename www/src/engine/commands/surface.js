@@ -28,7 +28,7 @@ import { change, changeView, description, showAll } from '../store.js';
  *   'restore'>} SurfaceCommands
  */
 /**
- * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameters' |
+ * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
  *   'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
@@ -124,11 +124,10 @@ export function inputCommands({ store, runs }) {
       change(store, { pulls: [...pulls] });
       resample(live);
     },
-    declareParameters(names) {
+    declareParameter(name) {
       const { declared } = state.value;
-      const fresh = names.filter((name) => !declared.some((p) => p.name === name));
-      if (fresh.length === 0) return;
-      change(store, { declared: [...declared, ...fresh.map((name) => newParameter(description(store), name))] });
+      if (declared.some((p) => p.name === name)) return;
+      change(store, { declared: [...declared, newParameter(description(store), name)] });
       runs.resample();
     },
     setBounds(bounds, { live = false } = {}) {

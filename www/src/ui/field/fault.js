@@ -26,8 +26,7 @@ export function describeFault(formula, fault) {
   const start = Math.min(Math.max(0, fault.start), formula.length);
   const end = Math.min(Math.max(start, fault.end), formula.length);
   /** @type {Repair[]} */
-  const repairs = fault.names.map((name) => ({ label: `Add slider ${name}`, declare: [name] }));
-  if (repairs.length > 1) repairs.unshift({ label: 'Add all', declare: fault.names });
+  const repairs = fault.name === null ? [] : [{ label: `Add slider ${fault.name}`, declare: fault.name }];
   const mending = fault.suggestion;
   if (mending !== null) {
     const marked = formula.slice(start, end);

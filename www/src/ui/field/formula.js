@@ -161,7 +161,7 @@ class FormulaInput {
 
   /** @param {Repair} repair */
   #mend(repair) {
-    if (repair.declare) this.#engine.declareParameters(repair.declare);
+    if (repair.declare) this.#engine.declareParameter(repair.declare);
     if (repair.replace) this.editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
     this.#finish();
     this.editor.focus();

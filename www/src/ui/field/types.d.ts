@@ -21,7 +21,7 @@ export interface FaultView {
 }
 export type Repair = {
   label: string;
-  declare?: readonly string[];
+  declare?: string;
   replace?: { start: number; end: number; text: string };
 };
 /** The interface of both editors. Offsets are UTF-16 code units. */
