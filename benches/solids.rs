@@ -97,7 +97,7 @@ fn write_row(
     let method = match (settings.method, report.growth.refined_levels) {
         (Method::Front, _) => "front".to_owned(),
         (Method::Refined, Some(levels)) => format!("refined {levels} ×"),
-        (Method::Refined, None) => "the front stands".to_owned(),
+        _ => "the front stands".to_owned(),
     };
     let components = &sample.mesh().topology.components;
     let euler: i64 = components.iter().map(|component| component.euler()).sum();

@@ -148,7 +148,7 @@ pub use export::{Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordTe
 pub use extent::Reach;
 pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
 #[cfg(feature = "points")]
-pub use field::model::{GivenMesh, ModelInfo, NormalSource};
+pub use field::model::{GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]
 pub use field::rbf::RbfField;
 pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};

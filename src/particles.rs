@@ -48,7 +48,7 @@ pub struct Particles {
 }
 
 /// A column of the particles, whatever it is of.
-trait Column {
+trait Rows {
     /// Keeps the first `len` values.
     fn truncate(&mut self, len: usize);
     /// Keeps the values of the rows that have a new place, in their order.
@@ -57,7 +57,7 @@ trait Column {
     fn shrink(&mut self);
 }
 
-impl<T> Column for Vec<T> {
+impl<T> Rows for Vec<T> {
     fn truncate(&mut self, len: usize) {
         self.truncate(len);
     }
@@ -199,7 +199,7 @@ impl Particles {
     }
 
     /// The columns with a value for each row, and those that only some runs have.
-    fn columns(&mut self) -> [&mut dyn Column; 10] {
+    fn columns(&mut self) -> [&mut dyn Rows; 10] {
         let Self { position, normal, radius, parent, level, slots, patch, twins, periodic, identity, .. } =
             self;
         [position, normal, radius, parent, level, slots, patch, twins, periodic, identity]

@@ -41,7 +41,7 @@ impl MeshFormat {
 /// A file of a mesh: its format, the place of the mesh in it, and the record that it carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// Its format.
+    /// Format of the file.
     pub format: MeshFormat,
     /// Size and orientation of the mesh in it.
     pub placement: Placement,

@@ -49,7 +49,7 @@ impl Format {
 /// A file of particles: its format, and the record that it carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleFile {
-    /// Its format.
+    /// Format of the file.
     pub format: Format,
     /// The record that it carries, but for XYZ and NPY.
     pub record: RecordText,

@@ -51,12 +51,12 @@ pub(super) enum Scan {
 }
 
 /// Place of a cell in the grid of its level.
-type Place = [u32; 3];
+type CellPlace = [u32; 3];
 
 /// A cell that may hold surface.
 #[derive(Clone, Copy)]
 struct OpenCell {
-    at: Place,
+    at: CellPlace,
     /// The axes along which the surface may have an extreme in the cell.
     extremes: [bool; 3],
 }
@@ -73,13 +73,13 @@ struct ScanLevel {
 }
 
 impl ScanLevel {
-    fn cell(&self, at: Place) -> Bounds {
+    fn cell(&self, at: CellPlace) -> Bounds {
         let [lo, hi] =
             [0, 1].map(|end| self.lo + self.size * DVec3::from_array(at.map(|k| f64::from(k + end))));
         Bounds::new(lo, hi)
     }
 
-    fn is_at_face(&self, at: Place) -> bool {
+    fn is_at_face(&self, at: CellPlace) -> bool {
         at.into_iter().any(|k| k == 0 || k + 1 == self.cells)
     }
 }
@@ -103,7 +103,7 @@ pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -
 }
 
 /// The places of the eighths of the cells in the next level.
-fn eighths(cells: &[OpenCell]) -> Vec<Place> {
+fn eighths(cells: &[OpenCell]) -> Vec<CellPlace> {
     let of =
         |cell: &OpenCell, eighth: u32| core::array::from_fn(|axis| 2 * cell.at[axis] + (eighth >> axis & 1));
     cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
@@ -176,7 +176,7 @@ async fn bends(
 async fn visit(
     field: &mut dyn Bounded,
     level: &ScanLevel,
-    cells: &[Place],
+    cells: &[CellPlace],
     left: &mut usize,
 ) -> Vec<OpenCell> {
     *left = left.saturating_sub(cells.len());
@@ -218,7 +218,7 @@ impl BoundsBatch {
         field: &mut dyn Bounded,
         factor: usize,
         level: &ScanLevel,
-        cells: &[Place],
+        cells: &[CellPlace],
         extremes: &mut [Option<[bool; 3]>; BATCH],
     ) {
         self.boxes.clear();

@@ -7,6 +7,7 @@
 //! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an angle along a circle.
 //! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after each step whether there is one sheet;
 //!   both take the [`step`] of this file.
+//! * `quality::sheets` takes one step at a time on its way along a surface, and `sampler::discovery::sheets` takes turns with a box.
 
 use super::Field;
 use glam::Vec3;

@@ -56,7 +56,7 @@ pub struct ModelInfo {
     pub mesh: Option<GivenMesh>,
     /// Origin of the normals.
     pub normals: NormalSource,
-    /// Warnings for the user.
+    /// Warnings for the user, as sentences: they go from the bundle that fits a model to the one that samples it.
     pub warnings: Vec<String>,
 }
 

@@ -6,7 +6,7 @@
 use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
 use super::log::Log;
-use super::settings::{LessonMethod, LessonSettings, Placing, QueueOrder, Seeding};
+use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder, Seeding};
 use crate::field::Field;
 use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, RepulsionSums};
 use crate::sampler::GapPolicy;
@@ -297,13 +297,13 @@ impl Course {
             QueueOrder::Queue => waiting.pop_front(),
             QueueOrder::Stack => waiting.pop_back(),
         };
-        if placing == Placing::LevelByLevel && self.left == 0 {
+        if placing == LessonPlacing::LevelByLevel && self.left == 0 {
             self.settle_next();
         } else if let Some(particle) = next(&mut self.waiting) {
             self.run.seen.push(Event::Taken { particle });
             match placing {
-                Placing::OneByOne => self.run.treat(particle),
-                Placing::LevelByLevel => self.predict(particle),
+                LessonPlacing::OneByOne => self.run.treat(particle),
+                LessonPlacing::LevelByLevel => self.predict(particle),
             }
             self.finish(particle);
         }

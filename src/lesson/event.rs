@@ -86,7 +86,7 @@ pub enum Event {
         slot: u32,
         /// Position.
         position: Vector,
-        /// Unit normal there.
+        /// Unit normal at `position`.
         normal: Vector,
         /// Distance to the parent: 2r on the circle.
         distance: f64,
@@ -161,7 +161,7 @@ pub enum Event {
         before: Option<u32>,
         /// The particle behind the free space, in the direction of growing angles.
         behind: Option<u32>,
-        /// Directions of these two particles in the frame.
+        /// Directions of the particles `before` and `behind` in the frame.
         angles_rad: [f64; 2],
     },
     /// An adaptive child starts on the circle of its parent (§5.1, Figs 7a and 7c).
@@ -174,7 +174,7 @@ pub enum Event {
         tangent: Option<Vector>,
         /// The point s, in the tangent plane.
         position: Vector,
-        /// Repulsion radius there.
+        /// Repulsion radius at `position`.
         radius: f64,
     },
     /// An adaptive child is pushed away from its parent, until the two do not overlap (Figs 7b and 7e).
@@ -185,7 +185,7 @@ pub enum Event {
         slot: u32,
         /// Place after the push.
         position: Vector,
-        /// Repulsion radius there.
+        /// Repulsion radius at `position`.
         radius: f64,
     },
     /// An adaptive child is pushed along the circle, until it overlaps the others least (Fig. 7f).
@@ -196,7 +196,7 @@ pub enum Event {
         slot: u32,
         /// Place after the push.
         position: Vector,
-        /// Repulsion radius there.
+        /// Repulsion radius at `position`.
         radius: f64,
         /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is none.
         overlap: f64,
@@ -240,11 +240,11 @@ pub enum Event {
         target: Vector,
         /// The place on the surface.
         position: Vector,
-        /// Unit normal there.
+        /// Unit normal at `position`.
         normal: Vector,
-        /// Repulsion radius there.
+        /// Repulsion radius at `position`.
         radius: f64,
-        /// Whether it stayed where it was, because the move leads out of the box, off the surface or around a fold.
+        /// Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold.
         is_kept: bool,
     },
     /// A relaxation step is over.

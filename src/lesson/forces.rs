@@ -2,8 +2,7 @@
 //!
 //! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is
 //! applied on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception
-//! of the split criterion)": forces, step and landing are those of
-//! `paper::relaxation`.
+//! of the split criterion)": forces, step and landing are those of `paper::relaxation`.
 //!
 //! # Differs from the paper
 //!

@@ -51,7 +51,7 @@ pub use course::ChapterKind;
 pub use event::{Event, Vector};
 pub use section::Iterate;
 pub use settings::{
-    LessonError, LessonField, LessonMethod, LessonSettings, MAX_PARTICLES, Placing, QueueOrder, Seeding,
+    LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings, MAX_PARTICLES, QueueOrder, Seeding,
 };
 
 use crate::field::Field;

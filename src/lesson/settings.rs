@@ -52,9 +52,9 @@ pub enum QueueOrder {
 
 /// Order of the projection of children and their comparison with the particles that exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPlacing"))]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
-pub enum Placing {
+pub enum LessonPlacing {
     /// Particle by particle: the children of a particle are projected, then compared, as in Algorithm 2.
     OneByOne,
     /// A whole generation level together, as in the fast front. A child is compared where the curvature around its parent
@@ -117,7 +117,7 @@ pub struct LessonSettings {
     /// A child is identified with a particle within this distance, in 2r.
     pub match_tolerance: f64,
     /// Order of projection and comparison: particle by particle, or level by level.
-    pub placing: Placing,
+    pub placing: LessonPlacing,
     /// Whether gaps between fronts are filled.
     #[cfg_attr(test, ts(type = "'fill' | 'leave'"))]
     pub gaps: GapPolicy,
@@ -153,7 +153,7 @@ impl Default for LessonSettings {
             order: QueueOrder::Queue,
             matched: Matched::Leave,
             match_tolerance: 0.7,
-            placing: Placing::OneByOne,
+            placing: LessonPlacing::OneByOne,
             gaps: GapPolicy::Leave,
             residual: 1e-4,
             relax_steps: 10,
@@ -168,7 +168,7 @@ impl LessonSettings {
     /// The choices of the fast uniform front, whose particles these settings reproduce.
     #[must_use]
     pub fn of_fast_front() -> Self {
-        Self { placing: Placing::LevelByLevel, matched: Matched::Stay, ..Self::default() }
+        Self { placing: LessonPlacing::LevelByLevel, matched: Matched::Stay, ..Self::default() }
     }
 
     /// The rules of the paper's algorithms.
@@ -232,7 +232,7 @@ impl LessonSettings {
             }
             _ => {}
         }
-        if self.placing == Placing::LevelByLevel
+        if self.placing == LessonPlacing::LevelByLevel
             && (self.order, self.projection, self.matched)
                 != (QueueOrder::Queue, Projection::Circle, Matched::Stay)
         {
@@ -240,7 +240,7 @@ impl LessonSettings {
         }
         if (self.method, self.sampling) == (LessonMethod::Front, Sampling::Adaptive)
             && (self.placing, self.projection, self.gaps)
-                != (Placing::OneByOne, Projection::Circle, GapPolicy::Leave)
+                != (LessonPlacing::OneByOne, Projection::Circle, GapPolicy::Leave)
         {
             return Err(LessonError::Adaptive);
         }

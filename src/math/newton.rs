@@ -33,18 +33,18 @@ pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
 
 /// Limits of the way of a point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
+pub(crate) struct StepLimits {
     /// Largest number of steps.
     pub(crate) steps: u32,
     /// Largest distance from the start.
     pub(crate) reach: f64,
     /// Length of a step after which the point is at rest.
     pub(crate) at_rest: f64,
-    /// Length of such a step over the point's distance from the origin. The larger of both lengths counts.
+    /// Length of a step after which the point is at rest, over the point's distance from the origin. The larger of both lengths counts.
     pub(crate) share_at_rest: f64,
 }
 
-impl Limits {
+impl StepLimits {
     /// No limit but a number of steps.
     pub(crate) const fn steps(steps: u32) -> Self {
         Self { steps, reach: f64::MAX, at_rest: 0.0, share_at_rest: 0.0 }
@@ -55,7 +55,7 @@ impl Limits {
 /// also where `step_at` has no step, or one that is no number.
 pub(crate) fn land<T>(
     start: DVec3,
-    limits: Limits,
+    limits: StepLimits,
     mut step_at: impl FnMut(DVec3) -> Option<(DVec3, T)>,
 ) -> Option<(DVec3, T)> {
     let mut p = start;
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn points_come_to_rest_on_one_sphere_on_two_and_on_three() {
-        let limits = Limits { at_rest: 1e-12, ..Limits::steps(12) };
+        let limits = StepLimits { at_rest: 1e-12, ..StepLimits::steps(12) };
         let of = |p| CENTRES.map(|centre| sphere(centre, p));
         let on = [
             land(START, limits, |p| Some((step_to_surface(of(p)[0]), ()))),
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn points_that_go_too_far_or_nowhere_do_not_land() {
         let step_at = |p| Some((step_to_surface(sphere(DVec3::ZERO, p)), ()));
-        let limits = Limits { at_rest: 1e-12, ..Limits::steps(12) };
-        assert_eq!(land(3.0 * START, Limits { reach: 0.5, ..limits }, step_at), None);
-        assert_eq!(land(3.0 * START, Limits::steps(2), step_at), None);
+        let limits = StepLimits { at_rest: 1e-12, ..StepLimits::steps(12) };
+        assert_eq!(land(3.0 * START, StepLimits { reach: 0.5, ..limits }, step_at), None);
+        assert_eq!(land(3.0 * START, StepLimits::steps(2), step_at), None);
         assert_eq!(land(DVec3::ZERO, limits, step_at), None, "the gradient is zero there");
     }
 }

@@ -50,6 +50,7 @@ const ELIMINATION_SPAN: [f64; 2] = [0.5, 0.9];
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Centres and coefficients.
+    #[doc(hidden)]
     pub data: Arc<RbfData>,
     /// Box to sample in: that of all points, with a margin.
     pub bounds: Bounds,

@@ -112,7 +112,7 @@ pub(crate) struct Opening {
     pub(crate) edges: usize,
     /// Number of points in no triangle.
     pub(crate) points: usize,
-    /// Position of one of these edges or points.
+    /// Position of an open edge or of a point in no triangle.
     pub(crate) position: Vec3,
 }
 

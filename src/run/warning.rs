@@ -19,9 +19,10 @@ use serde::{Serialize, Serializer};
 /// up to 15 of them at any radius. At radii of 0.3 % of the diagonal this share tells of none of 12 random cones and drops and of four
 /// of 6 random pairs of balls nearer than 2r; half of it tells of one and of all six, twice as much of none and of two.
 const CLOSE_SHARE: f64 = 0.005;
-/// Least number of these particles: in samples of a few hundred, tips exceed the share. At radii of 0.5 to 1.5 % of the diagonal the two
-/// limits tell of 21 of 32 random cones and drops and of 12 of 20 random pairs of balls nearer than 2r; with half of this number of 28
-/// and of 16, with twice of none and of 7. Of all of 20 random plates thinner than 2r they tell with any of these.
+/// Least number of particles that face another sheet where sheets are said to be close: in samples of a few hundred, tips exceed the share.
+/// At radii of 0.5 to 1.5 % of the diagonal the two limits tell of 21 of 32 random cones and drops and of 12 of 20 random pairs of balls
+/// nearer than 2r; with half of this number of 28 and of 16, with twice of none and of 7. Of all of 20 random plates thinner than 2r they
+/// tell with any of these.
 const CLOSE_COUNT: usize = 8;
 /// Places of components without a particle that are named in words: as many as a note of some four lines holds. It is a choice of
 /// length; the report has all of them.
@@ -83,7 +84,7 @@ pub enum Warning {
     },
     /// Particles face another sheet within their diameter.
     CloseSheets {
-        /// Number of these particles.
+        /// Number of particles that face another sheet.
         count: usize,
     },
     /// The surface crosses itself along curves, or touches itself at points, where f has no gradient.
@@ -92,7 +93,7 @@ pub enum Warning {
         crossings: usize,
         /// Number of points at which it touches itself.
         touches: usize,
-        /// A place where it does.
+        /// A place where the surface crosses or touches itself.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
@@ -115,7 +116,7 @@ pub enum Warning {
     },
     /// Features within the reach of other particles are too small for a particle of their own.
     SmallFeatures {
-        /// Number of such features.
+        /// Number of features too small for a particle of their own.
         count: u32,
     },
     /// Components of the surface hold no particle.
@@ -133,24 +134,26 @@ pub enum Warning {
         edges: usize,
         /// Number of particles in no triangle.
         points: usize,
-        /// Position of one of these edges or particles.
+        /// Position of an open edge or of a particle in no triangle.
         position: [f64; 3],
         /// Radius of the run.
         length: f64,
     },
     /// The mesh and the triangles between the particles have different topologies.
     MeshDiffers {
-        /// Components and Euler number of the mesh.
-        mesh: (usize, i64),
-        /// Components and Euler number of the sample.
-        sample: (usize, i64),
+        /// Components of the mesh and of the sample.
+        components: [usize; 2],
+        /// Euler numbers of the mesh and of the sample.
+        euler: [i64; 2],
     },
     /// The surface that was fitted to a mesh has another topology or area than the mesh.
     FileDiffers {
         /// The mesh of the file.
         mesh: GivenMesh,
-        /// Components and Euler number of the sample.
-        sample: (usize, i64),
+        /// Components of the sample.
+        components: usize,
+        /// Euler number of the sample.
+        euler: i64,
         /// Area of the sample.
         area: f64,
         /// Position of the point of the file that is farthest from the surface.
@@ -169,9 +172,9 @@ pub enum Warning {
     Digits {
         /// The particle, of a selection, at which it does so most.
         position: [f64; 3],
-        /// Bound of the distance by which the surface is moved there.
+        /// Bound of the distance by which the surface is moved near the particle.
         distance: f64,
-        /// Wanted distance between neighbours there.
+        /// Wanted distance between neighbours near the particle.
         spacing: f64,
     },
     /// The search was left open beside places where f is beyond double precision.
@@ -191,10 +194,10 @@ impl Warning {
     pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Option<Self> {
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
         let is_cut = measured.figures.boundary_excluded > 0;
-        let sample = (components, euler);
-        let mesh = (mesh.topology.components.len(), mesh.topology.euler());
-        let differs = mesh.0 != sample.0 || !is_cut && mesh.1 != sample.1;
-        (differs && !measured.valence.is_empty()).then_some(Self::MeshDiffers { mesh, sample })
+        let components = [mesh.topology.components.len(), components];
+        let euler = [mesh.topology.euler(), euler];
+        let differs = components[0] != components[1] || !is_cut && euler[0] != euler[1];
+        (differs && !measured.valence.is_empty()).then_some(Self::MeshDiffers { components, euler })
     }
 
     /// The warning about a surface that was fitted to the mesh of a file, if it has another topology than the mesh or if their areas differ
@@ -203,11 +206,12 @@ impl Warning {
     pub fn of_file(model: &ModelInfo, report: &Report) -> Option<Self> {
         let (mesh, figures) = (model.mesh?, report.measures.quality?);
         let Connectivity { components, euler, .. } = figures.connectivity;
-        let sample = (components, euler);
-        let is_other = mesh.topology.is_some_and(|given| (given.components, given.euler) != sample);
+        let is_other =
+            mesh.topology.is_some_and(|given| (given.components, given.euler) != (components, euler));
         let differs = is_other || (figures.area / mesh.area - 1.0).abs() > AREA_TOLERANCE;
         let (position, length) = (model.farthest, report.sizes.radius);
-        differs.then_some(Self::FileDiffers { mesh, sample, area: figures.area, position, length })
+        let area = figures.area;
+        differs.then_some(Self::FileDiffers { mesh, components, euler, area, position, length })
     }
 }
 
@@ -429,32 +433,33 @@ impl fmt::Display for Warning {
                     place_text(*position, *length)
                 )
             }
-            Self::MeshDiffers { mesh, sample } => {
-                let told = |&(components, euler): &(usize, i64)| {
-                    format!("{} and Euler number {euler}", counted(components as u64, "component", "components"))
+            Self::MeshDiffers { components, euler } => {
+                let told = |k: usize| {
+                    let components = counted(components[k] as u64, "component", "components");
+                    format!("{components} and Euler number {}", euler[k])
                 };
                 write!(
                     f,
                     "The mesh has {}, the sample {}: at this radius one of them, or both, do not have the topology of the surface. A \
                      smaller radius may show which.",
-                    told(mesh),
-                    told(sample)
+                    told(0),
+                    told(1)
                 )
             }
-            Self::FileDiffers { mesh, sample, area, position, length } => {
-                let told = |&(components, euler): &(usize, i64), area: f64| {
+            Self::FileDiffers { mesh, components, euler, area, position, length } => {
+                let told = |components: usize, euler: i64, area: f64| {
                     let components = counted(components as u64, "component", "components");
                     format!("{components}, Euler number {euler} and area {area:.3}")
                 };
                 let given = match mesh.topology {
-                    Some(GivenTopology { components, euler, .. }) => told(&(components, euler), mesh.area),
+                    Some(GivenTopology { components, euler, .. }) => told(components, euler, mesh.area),
                     None => format!("area {:.3} and edges of more than two faces", mesh.area),
                 };
                 write!(
                     f,
                     "The mesh of the file has {given}, the surface fitted to it {}: holes are closed, parts joined or edges rounded. \
                      The farthest point of the file is near {}. More centres, or a file with more points, follow the mesh more closely.",
-                    told(sample, *area),
+                    told(*components, *euler, *area),
                     place_text(*position, *length)
                 )?;
                 let is_open = mesh.topology.is_some_and(|topology| topology.borders > 0);

@@ -25,7 +25,7 @@ use crate::math::functions::{atan2, cos, sin};
 use crate::math::{Bounds, refill, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::discovery::survey::Survey;
-use crate::sampler::front::{UNCOVERED, widest_gap};
+use crate::sampler::front::widest_gap;
 use crate::sampler::neighbours::constants::GAUSSIAN_RANGE;
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
@@ -33,7 +33,7 @@ use crate::sampler::probe::Probe;
 use crate::sampler::projection::{ChildCircle, CircleLanding, tolerance};
 use crate::sampler::relaxation::TRANSPORT_REACH;
 use crate::sampler::relaxation::repulsion::{END_ENERGY, pair_energy};
-use crate::sampler::sheet::{OrientedPoint, SheetRule, is_level};
+use crate::sampler::sheet::{OrientedPoint, SheetRule, UNCOVERED, is_cover, is_level};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::f32::consts::{PI, TAU};
@@ -469,11 +469,7 @@ impl Flow {
     /// Whether a particle of its sheet is near a point of the surface.
     fn is_covered(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
         self.grids.gather(position, |largest| UNCOVERED * largest, &mut self.found);
-        self.found.iter().any(|near| {
-            let j = near.index as usize;
-            let reach = UNCOVERED * particles.radius[j];
-            near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0
-        })
+        self.found.iter().any(|near| is_cover(particles, near, normal))
     }
 
     /// Places children in the open sectors of a particle.
@@ -539,9 +535,8 @@ impl Flow {
         probe.land_on_circles(&[*circle], limits, &mut self.landing);
         let CircleLanding::On { position, normal } = self.landing[0] else { return };
         let pair = own.pair(position - own.position, normal);
-        let is_own_sheet = pair.faces_one_way()
-            && (!rule.is_doubtful(pair, circle.radius) || rule.is_one_sheet(probe, own.position, pair));
-        if !is_own_sheet || !surface.bounds.contains(position) || particles.len() >= surface.max_particles {
+        let is_own = rule.is_own(probe, own.position, pair, circle.radius);
+        if !is_own || !surface.bounds.contains(position) || particles.len() >= surface.max_particles {
             return;
         }
         let point = OrientedPoint { position, normal };

@@ -48,7 +48,7 @@ pub struct Progress {
     pub fraction: f64,
     /// Set once the run has ended.
     pub stop_reason: Option<StopReason>,
-    /// A sentence for the user where the reason needs one.
+    /// A sentence for the user where the reason needs one. It may name places, which the reason does not hold.
     pub message: Option<String>,
     /// Repulsion radius.
     pub radius: f64,

@@ -29,6 +29,7 @@ pub enum SizeMode {
 /// Law for the radius of an adaptive particle, given the principal curvatures κ₁ and κ₂.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum LawKind {
     /// The largest radius at which every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
     ChordError,
@@ -41,6 +42,7 @@ pub enum LawKind {
 /// Method by which the particles are placed and evened out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Method {
     /// A front of the wanted radius, and relaxation (paper §4 and §5).
     Front,
@@ -51,6 +53,7 @@ pub enum Method {
 /// Treatment of gaps between fronts that are wide enough for a particle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum GapPolicy {
     /// A particle is placed in the middle of each gap.
     Fill,

@@ -70,6 +70,18 @@ impl PointPair {
     }
 }
 
+/// A point of the surface farther than this many radii from every particle of its sheet is not covered: a closed cover has no hole
+/// larger than 1.85 (1.6 of the ideal).
+pub(crate) const UNCOVERED: f32 = 2.0;
+
+/// Whether the particle `near` a point of the surface, which has this unit normal, covers it: it faces the same way and is within
+/// [`UNCOVERED`] of its radii.
+pub(crate) fn is_cover(particles: &Particles, near: &Neighbour, normal: Vec3) -> bool {
+    let j = near.index as usize;
+    let reach = UNCOVERED * particles.radius[j];
+    particles.normal[j].dot(normal) > 0.0 && near.distance_sq <= reach * reach
+}
+
 /// sin² 45°: the steepest direction from a point to one on its sheet, above the tangent plane. A sheet that bends by 45° over the
 /// distance of two neighbours is not resolved by its particles. Half and double change the particles of 10 and 3 of 33 random
 /// surfaces, and no figure beyond scatter.
@@ -167,6 +179,12 @@ impl SheetRule {
         let from = OrientedPoint { position, normal: pair.normal };
         let to = OrientedPoint { position: position + pair.offset, normal: pair.other };
         is_one_sheet_between(probe, from, to, least, HALVINGS)
+    }
+
+    /// Whether two points, the first at `position`, are on one sheet: they face the same way, and where their lift leaves that in doubt
+    /// the field shows it.
+    pub(crate) fn is_own(self, probe: &mut Probe, position: Vec3, pair: PointPair, spacing: f32) -> bool {
+        pair.faces_one_way() && (!self.is_doubtful(pair, spacing) || self.is_one_sheet(probe, position, pair))
     }
 
     /// Whether one of the particles `near` a point lies on the point's sheet. All of them face the same way as the point;

@@ -66,16 +66,7 @@ impl Fault {
     #[must_use]
     pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self {
-            kind,
-            message,
-            start: 0,
-            end: 0,
-            suggestion: None,
-            mended: None,
-            name: None,
-            excess: None,
-        }
+        Self { kind, message, start: 0, end: 0, suggestion: None, mended: None, name: None, excess: None }
     }
 
     /// An error in the formula `text`.

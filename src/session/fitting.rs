@@ -128,7 +128,7 @@ impl SolidSettings {
 struct BoxSearch {
     /// The search, while it is under way.
     search: Option<BoxFit>,
-    /// Its result.
+    /// The box that the search has found.
     found: Option<Extent>,
 }
 

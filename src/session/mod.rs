@@ -247,7 +247,7 @@ impl Session {
         let surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
-        self.take_formula(field, surface, (own, is_given));
+        self.take_formula(field, surface, own, is_given);
         self.declared = declared;
         Ok(FieldAnswer { grip, ..self.answer() })
     }
@@ -317,7 +317,8 @@ impl Session {
         &mut self,
         field: Formula,
         surface: Option<&'static Surface>,
-        (own, is_given): (Bounds, bool),
+        own: Bounds,
+        is_given: bool,
     ) {
         let present = self.source().formula();
         let is_same_text = present.is_some_and(|p| p.text() == field.text());

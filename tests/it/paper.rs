@@ -8,8 +8,8 @@ use glam::DVec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
-    ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonSettings, Placing, QueueOrder,
-    Seeding, digest,
+    ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings,
+    QueueOrder, Seeding, digest,
 };
 use marching_particles::paper::{
     ImplicitSurface, Matched, PaperRun, Particle, Projection, RadiusRule, Rules, sum_of_curvatures,
@@ -377,7 +377,7 @@ fn what_cannot_be_followed_is_refused_in_words() {
     assert!(words.starts_with("about 14") && words.contains("times as large"), "{words}");
     assert!(refused(settings!(radius: f64::NAN; ..LessonSettings::default())).starts_with("radius is NaN"));
     assert!(refused(settings!(match_tolerance: 2.0; ..coarse())).starts_with("match_tolerance is 2"));
-    assert!(refused(settings!(placing: Placing::LevelByLevel; ..coarse())).contains("needs a queue"));
+    assert!(refused(settings!(placing: LessonPlacing::LevelByLevel; ..coarse())).contains("needs a queue"));
     assert!(refused(settings!(seeding: Seeding::Together; ..coarse())).contains("have to be given"));
     assert!(refused(settings!(gaps: GapPolicy::Fill; ..adaptive())).starts_with("adaptive sampling places"));
     let two_sizes = settings!(method: LessonMethod::WitkinHeckbert; ..adaptive());

@@ -19,7 +19,7 @@ pub(crate) const LIMIT: u8 = 4;
 pub(crate) enum Failure {
     /// The formula is invalid.
     Formula { text: String, error: Box<FormulaError> },
-    /// Another argument is invalid.
+    /// An argument other than the formula is invalid.
     Usage(String),
     /// No particle could be placed.
     Nothing(String),

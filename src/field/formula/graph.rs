@@ -489,8 +489,6 @@ impl Graph {
 
     /// a^b for any exponent. Integer and half-integer constants become products and square roots.
     pub(super) fn pow(&mut self, a: Id, b: Id) -> Id {
-        // Larger half-integer powers are no faster as products.
-        const MAX_HALF_INTEGER: f64 = 32.0;
         if self.is(a, core::f64::consts::E) {
             return self.unary(Unary::Exp, b);
         }
@@ -500,7 +498,7 @@ impl Graph {
                 return self.power(a, exponent as i32);
             }
             let twice = 2.0 * exponent;
-            if twice == libm::trunc(twice) && exponent.abs() <= MAX_HALF_INTEGER {
+            if twice == libm::trunc(twice) && twice.abs() <= f64::from(i32::MAX) {
                 let root = self.unary(Unary::Sqrt, a);
                 #[expect(clippy::cast_possible_truncation, reason = "an integer within the range")]
                 return self.power(root, twice as i32);

@@ -64,17 +64,19 @@ use ast::{COORDINATES, Constant, Equation, Function};
 use branches::Branches;
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
+use graph::{Graph, Id};
 use serde::{Deserialize, Serialize};
 use solids::Solid;
 
-/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed: the time that a typed
-/// character takes is bounded.
+/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so that the time that a typed character
+/// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of a thousand factors in nine.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
-/// Maximum nesting of brackets, calls, signs and exponents, which keeps recursion within the stack.
+/// Maximum nesting of brackets, calls, signs and exponents. So deep a formula takes less than 256 kB of stack, of the 1 MiB that there is in
+/// WebAssembly.
 pub const MAX_DEPTH: usize = 64;
 
-/// Maximum number of operations of a formula. An integer power counts as its products.
+/// Maximum number of operations of a formula: one for each byte, which only powers can exceed. An integer power counts as its products.
 pub const MAX_OPERATIONS: usize = MAX_FORMULA_BYTES;
 
 /// A named number of a formula, which can be changed without parsing the formula again.
@@ -134,6 +136,8 @@ pub struct Formula {
     equation: Equation,
     /// Equation of the same surface that is evaluated instead, if [`Formula::without_powers`] has found one.
     simplified: Option<Equation>,
+    /// The graph of the surface, and its node, from which a solid is made.
+    surface: (Graph, Id),
     /// The solid that is sampled in place of the surface, if one is: a sheet of some thickness, closed by a box or not.
     solid: Solid,
     parameters: Vec<Parameter>,
@@ -212,6 +216,7 @@ impl Formula {
         Ok(Self {
             text: text.to_owned(),
             simplified: None,
+            surface: compiled.graph.part(compiled.root),
             solid: Solid::default(),
             branches: Branches::new(&compiled, &values),
             values,
@@ -239,6 +244,7 @@ impl Formula {
             && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
             self.simplified = Some(simplified);
+            self.surface = compiled.graph.part(compiled.root);
             self.use_compiled(compiled);
             if self.solid != Solid::default() {
                 self.make_solid();
@@ -277,8 +283,8 @@ impl Formula {
     /// The period of the surface, which no box closes, along each axis: see [`Field::periods`].
     #[must_use]
     pub fn surface_periods(&self) -> [Option<f64>; 3] {
-        let (graph, root) = self.surface_graph();
-        [0, 1, 2].map(|axis| periods::period(&graph, root, axis, &self.values))
+        let (graph, root) = &self.surface;
+        [0, 1, 2].map(|axis| periods::period(graph, *root, axis, &self.values))
     }
 
     /// Field of the sheet of this thickness around the surface: |f| − t/2 |∇f|, which is negative where the distance from the surface
@@ -313,18 +319,9 @@ impl Formula {
         self.solid.closed
     }
 
-    /// The graph of the surface that is made to a solid, with its node.
-    fn surface_graph(&self) -> (graph::Graph, graph::Id) {
-        let equation = self.simplified.as_ref().unwrap_or(&self.equation);
-        let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let mut graph = graph::Graph::default();
-        let f = build::build(&mut graph, equation, &names).expect("it was built before");
-        (graph, f)
-    }
-
     /// Compiles what the surface is made to, anew from f.
     fn make_solid(&mut self) {
-        let (mut graph, f) = self.surface_graph();
+        let (mut graph, f) = self.surface.clone();
         let root = self.solid.made_of(&mut graph, f);
         let (graph, root) = graph.part(root);
         self.use_compiled(Compiled::from_graph(graph, root, &self.values));

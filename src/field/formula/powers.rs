@@ -3,6 +3,7 @@
 //! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0. There is no normal,
 //! and the residual |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute
 //! values are replaced by their arguments too, since their slope at 0 is infinite or jumps.
+//! The syntax tree is changed and not the graph, because the user is shown the equation that is sampled.
 
 use super::ast::{Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::build::build;

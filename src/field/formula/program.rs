@@ -87,8 +87,9 @@ impl Program {
     }
 }
 
-/// Estimated cost of computing `outputs` for a point, in units of one addition. It serves to choose between forward and
-/// backward differentiation.
+/// Estimated cost of computing `outputs` for a point, in units of one addition. It serves to choose between forward and backward
+/// differentiation. With every operation at 1 two adaptive runs of the gallery and one of 58 on random surfaces choose the other, and take as
+/// long.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
     let of_node = |id: Id| {
         if graph.is_uniform(id) {

@@ -3,9 +3,6 @@
 use super::error::{FormulaError, Mended};
 use super::{MAX_FORMULA_BYTES, syntax};
 
-/// Largest number of places that one repair corrects. It bounds the work of a repair.
-const MOST_PLACES: usize = 256;
-
 /// The error, with the formula in which all mistakes of its kind are corrected, if there are several: each suggestion is taken until
 /// none follows, or a mistake of another kind.
 pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> FormulaError {
@@ -16,8 +13,8 @@ pub(super) fn throughout(text: &str, declared: &[&str], error: FormulaError) -> 
         let Some(suggestion) = correction(&present).filter(|_| is_same_kind(&present, &error)) else { break };
         mended.replace_range(present.span.clone(), suggestion);
         places += 1;
-        // A suggestion that leads to itself corrects nothing.
-        if places > MOST_PLACES || mended.len() > MAX_FORMULA_BYTES {
+        // A formula has no more mistakes than bytes: a suggestion that leads to itself corrects nothing.
+        if places > text.len() || mended.len() > MAX_FORMULA_BYTES {
             return error;
         }
         next = syntax(&mended, declared).err();

@@ -43,6 +43,7 @@ impl RbfField {
     /// # Errors
     ///
     /// If `data` fails [`RbfData::check`].
+    #[doc(hidden)]
     pub fn new(data: impl Into<Arc<RbfData>>) -> Result<Self, DataError> {
         let data = data.into();
         data.check()?;
@@ -55,6 +56,7 @@ impl RbfField {
     /// # Errors
     ///
     /// [`DataError::Pull`] if one is not finite, or longer than [`LONGEST_PULL`] of its reach; nothing is changed then.
+    #[doc(hidden)]
     pub fn pull(&mut self, pulls: &[Pull]) -> Result<(), DataError> {
         self.pulls = Pulls::new(pulls)?;
         Ok(())
@@ -62,12 +64,14 @@ impl RbfField {
 
     /// The pulls on the surface.
     #[must_use]
+    #[doc(hidden)]
     pub fn pulls(&self) -> &[Pull] {
         self.pulls.list()
     }
 
     /// Centres and coefficients of the field, which its copies share.
     #[must_use]
+    #[doc(hidden)]
     pub fn data(&self) -> &Arc<RbfData> {
         &self.data
     }

@@ -28,7 +28,7 @@ impl Rim {
         let mut ways = Vec::new();
         for at in ends.chunk_by(|one, other| one[0] == other[0]) {
             let v = at[0][0];
-            let turns = Angles::new(position, normal, v);
+            let turns = AnglesAround::new(position, normal, v);
             let mut after: Vec<u32> = at.iter().map(|end| end[2]).filter(|&w| w != NONE).collect();
             for before in at.iter().map(|end| end[1]).filter(|&u| u != NONE) {
                 // What lies beyond the rim is counter-clockwise from the way in to the next way out.
@@ -108,7 +108,7 @@ impl Rim {
     /// Takes what lies beyond the rim out of the gaps of a vertex, those from `first` on.
     pub(super) fn narrow(&self, patch: &Patch, v: u32, gaps: &mut Vec<Gap>, first: usize) {
         let ways = self.ways(v);
-        let turns = Angles::new(patch.position, patch.normal, v);
+        let turns = AnglesAround::new(patch.position, patch.normal, v);
         if gaps.len() == first {
             // Without a triangle each sector on the left of the rim is a gap.
             for &[_, _, after] in ways.iter().filter(|way| way[2] != NONE) {
@@ -135,13 +135,13 @@ impl Rim {
 }
 
 /// Angles around a vertex, counter-clockwise seen from outside, in quarter turns.
-struct Angles<'a> {
+struct AnglesAround<'a> {
     position: &'a [Vec3],
     centre: Vec3,
     frame: (Vec3, Vec3),
 }
 
-impl<'a> Angles<'a> {
+impl<'a> AnglesAround<'a> {
     fn new(position: &'a [Vec3], normal: &[Vec3], v: u32) -> Self {
         Self { position, centre: position[v as usize], frame: tangent_frame(normal[v as usize]) }
     }

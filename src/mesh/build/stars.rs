@@ -58,6 +58,15 @@ struct Star {
     rays: [Ray; MOST_NEIGHBOURS],
 }
 
+/// The points of a mesh.
+struct StarPoints<'a> {
+    tree: &'a Tree,
+    /// Unit normals, in tree order.
+    normal: &'a [Vec3],
+    /// The points at the apex of a cone, in ascending order.
+    tips: &'a [u32],
+}
+
 impl Stars {
     /// The stars of the points of `tree` with the unit `normal`s (in tree order), of which `tips` are at the apex of a cone, in ascending
     /// order.
@@ -70,6 +79,7 @@ impl Stars {
             twins: Vec::new(),
         };
         stars.start.push(0);
+        let cloud = StarPoints { tree, normal, tips };
         let mut scratch = Box::<StarBuffers>::default();
         let mut pause_at = HEAVY;
         for Leaf { range, lo, hi } in tree.leaves() {
@@ -83,7 +93,7 @@ impl Stars {
             }
             let reach = BALL * (hi - lo).length();
             scratch.surroundings.gather(tree, normal, lo - reach, hi + reach);
-            range.for_each(|i| stars.add((tree, normal, tips), i, reach, &mut scratch));
+            range.for_each(|i| stars.add(&cloud, i, reach, &mut scratch));
         }
         stars
     }
@@ -100,7 +110,7 @@ impl Stars {
     /// Adds the star of point `i`, of a leaf whose surroundings reach as far as told.
     fn add(
         &mut self,
-        (tree, normal, tips): (&Tree, &[Vec3], &[u32]),
+        &StarPoints { tree, normal, tips }: &StarPoints<'_>,
         i: usize,
         reach: f32,
         scratch: &mut StarBuffers,

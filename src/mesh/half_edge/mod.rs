@@ -54,13 +54,13 @@ enum Change {
     Outgoing(u32, u32),
     /// A face was removed.
     FaceFreed,
-    /// This face was used again.
+    /// A removed face was used again.
     FaceTaken(u32),
     /// A face was added at the end.
     FaceAdded,
     /// A vertex was removed.
     VertexFreed,
-    /// This vertex was used again.
+    /// A removed vertex was used again.
     VertexTaken(u32),
     /// A vertex was added at the end.
     VertexAdded,

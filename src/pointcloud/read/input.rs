@@ -15,7 +15,7 @@ const SHOWN: usize = 24;
 pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
 /// Place in a file that an error names.
-enum Place {
+enum FilePlace {
     /// Number of the line, from 1.
     Line(u64),
     /// A row of a binary file: its kind, its number among its kind, from 1, and its offset.
@@ -26,7 +26,7 @@ enum Place {
 pub(super) struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
-    place: Place,
+    place: FilePlace,
     /// Number of rows that have ended.
     rows: usize,
     tell: &'a dyn Fn(f64),
@@ -37,7 +37,7 @@ impl<'a> Input<'a> {
     pub(super) fn new(bytes: &'a [u8], tell: &'a dyn Fn(f64)) -> Self {
         // Skip the byte-order mark, with which some editors begin a text.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Self { bytes, at, place: Place::Line(0), rows: 0, tell }
+        Self { bytes, at, place: FilePlace::Line(0), rows: 0, tell }
     }
 
     /// Ends a row, which is a line or a record, and with every [`MEDIUM`] of them a slice of work.
@@ -67,7 +67,7 @@ impl<'a> Input<'a> {
             [] => 0,
         };
         self.at += length + end;
-        if let Place::Line(number) = &mut self.place {
+        if let FilePlace::Line(number) = &mut self.place {
             *number += 1;
         }
         Some(&rest[..length])
@@ -87,12 +87,12 @@ impl<'a> Input<'a> {
 
     /// Says that the rows of a binary file that follow are of this kind.
     pub(super) fn begin_records(&mut self, element: &str) {
-        self.place = Place::Row { element: element.to_owned(), row: 0, byte: 0 };
+        self.place = FilePlace::Row { element: element.to_owned(), row: 0, byte: 0 };
     }
 
     /// Begins a row of a binary file.
     pub(super) fn begin_record(&mut self) {
-        if let Place::Row { row, byte, .. } = &mut self.place {
+        if let FilePlace::Row { row, byte, .. } = &mut self.place {
             (*row, *byte) = (*row + 1, self.at as u64);
         }
     }
@@ -102,8 +102,8 @@ impl<'a> Input<'a> {
     pub(super) fn error(&self, message: impl Into<String>) -> ReadError {
         let message = message.into();
         match &self.place {
-            &Place::Line(line) => ReadError::Line { line, message },
-            Place::Row { element, row, byte } => {
+            &FilePlace::Line(line) => ReadError::Line { line, message },
+            FilePlace::Row { element, row, byte } => {
                 ReadError::Row { element: element.clone(), row: *row, byte: *byte, message }
             }
         }

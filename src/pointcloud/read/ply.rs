@@ -18,7 +18,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         }
         let has_normal = element.has_components(3..6);
         for _ in 0..element.count {
-            let mut row = Row::begin(input, encoding, element)?;
+            let mut row = PlyRow::begin(input, encoding, element)?;
             let mut values = [0.0; COMPONENTS.len()];
             corners.clear();
             for property in &element.properties {
@@ -47,7 +47,7 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
 }
 
 /// A row that is read number by number: words of a line, or bytes.
-struct Row<'r, 'a> {
+struct PlyRow<'r, 'a> {
     input: &'r mut Input<'a>,
     encoding: Encoding,
     element: &'r Element,
@@ -55,7 +55,7 @@ struct Row<'r, 'a> {
     line: &'a [u8],
 }
 
-impl<'r, 'a> Row<'r, 'a> {
+impl<'r, 'a> PlyRow<'r, 'a> {
     fn begin(input: &'r mut Input<'a>, encoding: Encoding, element: &'r Element) -> Result<Self, ReadError> {
         input.begin_record();
         let line = if encoding == Encoding::Text { input.line_with_text() } else { Some(&b""[..]) };

@@ -14,10 +14,10 @@ const UNIT_SHARE: f64 = 0.9;
 
 /// Component of a point and its normal that each column of a file holds, if it holds one. Bytes, because a line may have as many columns
 /// as half a file has bytes.
-type Columns = Vec<Option<u8>>;
+type XyzColumns = Vec<Option<u8>>;
 
 /// Columns by a header; `None` if the line does not name x, y and z.
-pub(super) fn named(line: &[u8]) -> Option<Columns> {
+pub(super) fn named(line: &[u8]) -> Option<XyzColumns> {
     let found =
         COMPONENTS.map(|name| words(line).position(|word| word.eq_ignore_ascii_case(name.as_bytes())));
     let used = if found.contains(&None) { 3 } else { 6 };
@@ -29,7 +29,7 @@ pub(super) fn named(line: &[u8]) -> Option<Columns> {
 }
 
 /// Columns of lines of `count` numbers without a header.
-fn usual(count: usize) -> Columns {
+fn usual(count: usize) -> XyzColumns {
     let used = if count < 6 { 3 } else { 6 };
     (0..count).map(|column| (column < used).then_some(column as u8)).collect()
 }
@@ -62,7 +62,7 @@ fn has_decimal_commas(line: &[u8]) -> bool {
 /// Reads the points.
 pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(), ReadError> {
     let mut header = None;
-    let mut columns = Columns::new();
+    let mut columns = XyzColumns::new();
     let mut unit_normals = 0_usize;
     while let Some(line) = input.line() {
         input.end_row().await;

@@ -1,6 +1,6 @@
 //! Points where branches of f are zero together.
 
-use crate::math::newton::{self, Limits, step_to_corner, step_to_curve, step_to_surface};
+use crate::math::newton::{self, StepLimits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
@@ -30,8 +30,8 @@ pub(super) struct Meeting {
 }
 
 /// Limits of a search within `reach`.
-fn limits(reach: f64) -> Limits {
-    Limits { reach, at_rest: AT_REST * reach, ..Limits::steps(STEPS) }
+fn limits(reach: f64) -> StepLimits {
+    StepLimits { reach, at_rest: AT_REST * reach, ..StepLimits::steps(STEPS) }
 }
 
 /// Value and gradient of a branch at a point.
@@ -137,7 +137,7 @@ pub(super) fn common_point(
 /// The third function that is zero at a corner, beside two branches.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Third {
-    /// Another branch.
+    /// A third branch.
     Branch(u32),
     /// The plane across an axis at this coordinate.
     Plane { axis: usize, offset: f64 },

@@ -82,7 +82,7 @@ pub enum Doubt {
     Witnesses {
         /// Number of witnesses.
         count: u64,
-        /// Position of the first of these witnesses.
+        /// Position of the first witness in doubt.
         position: [f64; 3],
     },
 }

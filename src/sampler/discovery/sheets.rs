@@ -2,7 +2,7 @@
 //! by the rules of [`sheet`](crate::sampler::sheet).
 
 use crate::field::{Bounded, Enclosure};
-use crate::math::newton::{self, Limits, step_to_surface};
+use crate::math::newton::{self, StepLimits, step_to_surface};
 use crate::math::{Bounds, Interval};
 use crate::sampler::discovery::cell::rise;
 use crate::sampler::discovery::octree::Region;
@@ -127,7 +127,7 @@ impl Prover<'_> {
 
     /// The point of the surface that Newton's method along the gradient finds from `p`, to the precision of a number.
     fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
-        let limits = Limits { share_at_rest: 1e-12, ..Limits::steps(MAX_NEWTON_STEPS) };
+        let limits = StepLimits { share_at_rest: 1e-12, ..StepLimits::steps(MAX_NEWTON_STEPS) };
         let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
         gradient.try_normalize().map(|normal| ExactPoint { position, normal })
     }

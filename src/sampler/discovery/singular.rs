@@ -27,7 +27,7 @@ const SIZES: usize = 10;
 const MOST_LARGER: usize = 2;
 /// Number of sub-boxes: three along each axis.
 const SUB_BOXES: usize = 27;
-/// Distances of the sides of such a box from the point, in units of its size. They differ, because in a symmetric box a symmetric
+/// Distances of the sides of a box around a singular point from the point, in units of its size. They differ, because in a symmetric box a symmetric
 /// surface has several of its highest points in one place, where they cannot be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);

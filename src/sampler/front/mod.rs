@@ -20,13 +20,9 @@ use crate::sampler::front::uniform::UniformPlacing;
 use crate::sampler::neighbours::grids::GridHandle;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::settings::Sampling;
-use crate::sampler::sheet::OrientedPoint;
+use crate::sampler::sheet::{OrientedPoint, UNCOVERED, is_cover};
 use crate::spatial::Neighbour;
 use glam::Vec3;
-
-/// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
-/// cover has no hole larger than 1.85 (1.6 of the ideal).
-pub(crate) const UNCOVERED: f32 = 2.0;
 
 /// Largest sine of the angle by which the way to a child is predicted to dip below the tangent plane, or to rise above it. Beyond
 /// it the radius does not resolve the curvature.
@@ -247,11 +243,7 @@ impl Front {
     /// Collects the particles on the patch of a `point` that face the same way and are so near that no front need start there.
     fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint, patch: Option<u32>) {
         self.level.gather(particles, patch, point.position, |largest| UNCOVERED * largest);
-        self.level.found.retain(|near| {
-            let j = near.index as usize;
-            let reach = UNCOVERED * particles.radius[j];
-            particles.normal[j].dot(point.normal) > 0.0 && near.distance_sq <= reach * reach
-        });
+        self.level.found.retain(|near| is_cover(particles, near, point.normal));
     }
 
     /// Whether a particle of the sheet of a `point` is so near that no front need start there. `patch` is that of the point.

@@ -62,7 +62,7 @@ pub(super) struct Ground<'a, 'field> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct MovedBlock {
     which: Vec<u32>,
-    /// Positions of these particles before the move.
+    /// Positions of the particles of the block before the move.
     before: Vec<Vec3>,
     points: Vec<Vec3>,
     /// Principal curvatures at the particles of the block, from which their sizes follow.

@@ -31,19 +31,19 @@ pub enum Refusal {
         "The front stands, and is not refined: near {at} the surface bends too much for particles of this size."
     )]
     Bent {
-        /// Position of such a place.
+        /// A place where the surface bends too much.
         at: Spot,
     },
     /// The gradient vanishes on the surface, and not at the tip of a cone.
     #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
     Singular {
-        /// Position of such a place.
+        /// A place where the gradient vanishes.
         at: Spot,
     },
     /// The surface has a border that is not at the box.
     #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
-        /// Position of such a place.
+        /// A place where the surface ends.
         at: Spot,
     },
     /// The border could not be laid on the faces of the box.
@@ -52,7 +52,7 @@ pub enum Refusal {
          more particles it may be."
     )]
     Cut {
-        /// Position of such a place.
+        /// A place where the border was not found.
         at: Spot,
     },
     /// The particles could not be joined to a closed surface beyond doubt.
@@ -61,7 +61,7 @@ pub enum Refusal {
          more of them they may be."
     )]
     Doubtful {
-        /// Position of such a place.
+        /// A place where the particles were not joined.
         at: Spot,
     },
     /// Particles beside a tip could not be joined, or halving their edges led off the surface.
@@ -75,7 +75,7 @@ pub enum Refusal {
     /// A refinement has left the surface, or has led onto another sheet.
     #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
     Folded {
-        /// Position of such a place.
+        /// A place where halving edges led off the surface.
         at: Spot,
     },
 }

@@ -85,7 +85,7 @@ pub(super) struct Site {
     pub(super) normal: Vec3,
     /// The planes of the box on which the particle lies.
     pub(super) planes: Planes,
-    /// Its number, if it lies on a crease: see [`Net::on_crease`](super::net::Net::on_crease).
+    /// Number of the particle on a crease, if it lies on one: see [`Net::on_crease`](super::net::Net::on_crease).
     pub(super) number: u32,
 }
 

@@ -17,7 +17,7 @@ const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of larger ones. Its
 /// rounding there may be a millionth of the way between two poles.
-const TRUSTED_ANGLE: f64 = 1e9;
+const LARGEST_TANGENT: f64 = 1e9;
 
 /// The empty range.
 const NOTHING: Range = Range { bounds: Interval::NOTHING, flags: EMPTY };
@@ -163,7 +163,7 @@ impl Range {
         let size = self.bounds.magnitude();
         let slack = 1e-15 * size + 1e-15;
         let (lo, hi) = (self.bounds.lo / core::f64::consts::PI, self.bounds.hi / core::f64::consts::PI);
-        let trusted = size <= TRUSTED_ANGLE;
+        let trusted = size <= LARGEST_TANGENT;
         let pole = !trusted || libm::floor(hi + 0.5 + slack) > libm::floor(lo + 0.5 - slack);
         if !pole {
             return self.increasing(libm::tan);

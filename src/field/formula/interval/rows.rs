@@ -174,7 +174,7 @@ impl<const N: usize> Row<N> {
                 let lo = greatest(least(value, other) - swing, -1.0);
                 let hi = least(greatest(value, other) + swing, 1.0);
                 // Both comparisons are false for NaN.
-                let trusted = half <= 1.0 && middle.abs() <= TRUSTED_ANGLE;
+                let trusted = half <= 1.0 && middle.abs() <= LARGEST_SINE;
                 if trusted { (lo, hi) } else { (-1.0, 1.0) }
             },
             flags,
@@ -182,11 +182,12 @@ impl<const N: usize> Row<N> {
     }
 }
 
-/// Bound of the rounding error of [`Row::sine`]: some tens of units in the last place of 1.
+/// Bound of the rounding error of [`Row::sine`], and more than twice that: sine and cosine err by less than 10⁻¹⁵ each, as the test below
+/// shows, and neither factor of theirs is above 1; six operations on numbers up to 2 err by 2⁻⁵² each.
 const SINE_SLACK: f64 = 1e-14;
 
 /// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`]: it has less than 2¹⁶ quadrants.
-const TRUSTED_ANGLE: f64 = 1e5;
+const LARGEST_SINE: f64 = 1e5;
 
 /// Sine and cosine for |x| ≤ 10⁵ with an error of a few 10⁻¹⁶.
 ///

@@ -166,10 +166,7 @@ impl UniformPlacing {
         };
         let &ChildCircle { centre, normal: above, .. } = circle;
         let pair = PointPair { offset: position - centre, normal: above, other: normal };
-        let is_stranger = !pair.faces_one_way()
-            || level.rule.is_doubtful(pair, 2.0 * self.radius)
-                && !level.rule.is_one_sheet(probe, centre, pair);
-        if is_stranger {
+        if !level.rule.is_own(probe, centre, pair, 2.0 * self.radius) {
             return ChildLanding::NotConverged;
         }
         let curvature = Curvature::default();
