@@ -1,6 +1,6 @@
 //! A mesh file of any format, written row by row.
 
-use super::{MeshFormat, Placement, RecordText, glb, mesh, ply, three_mf};
+use super::{MeshFile, MeshFormat, glb, mesh, ply, three_mf};
 use crate::particles::Particles;
 use crate::quality::Measurements;
 use core::ops::Range;
@@ -8,19 +8,17 @@ use std::io::{self, Write};
 
 /// A mesh file with what it is written from. The particles are placed as they are in it.
 pub(crate) struct File<'a> {
-    pub(crate) format: MeshFormat,
+    pub(crate) wish: &'a MeshFile,
     pub(crate) particles: &'a Particles,
     pub(crate) measured: &'a Measurements,
     pub(crate) triangles: &'a [[u32; 3]],
-    pub(crate) placement: &'a Placement,
-    pub(crate) record: &'a RecordText,
 }
 
 impl File<'_> {
     /// Number of rows: a row takes up to a microsecond to write, but for GLB and 3MF, which are written as a whole.
     pub(crate) fn rows(&self) -> usize {
         let (particles, triangles) = (self.particles.len(), self.triangles.len());
-        match self.format {
+        match self.wish.format {
             MeshFormat::Glb | MeshFormat::ThreeMf => 1,
             MeshFormat::Obj => 2 * particles + triangles,
             MeshFormat::Stl => triangles,
@@ -39,8 +37,8 @@ impl File<'_> {
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub(crate) fn write_rows(&self, rows: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
-        let &Self { particles, measured, triangles, placement, record, .. } = self;
-        match self.format {
+        let &Self { wish: MeshFile { format, placement, record }, particles, measured, triangles } = self;
+        match format {
             MeshFormat::Glb => glb::write(particles, triangles, record, out),
             MeshFormat::ThreeMf => three_mf::write(particles, triangles, placement, record, out),
             MeshFormat::Obj => mesh::obj(particles, triangles, record, rows, out),

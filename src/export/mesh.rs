@@ -58,7 +58,7 @@ impl From<MeshFormat> for MeshFile {
 /// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
 /// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every row of a particle is a vertex, so that normals are
 /// split at creases, whether it is in a triangle or not, so that indices stay; but in 3MF, which has no normals, every particle is one.
-/// `measured` is as for [`write`](super::write). All formats but STL carry the `record`.
+/// `measured` is as for [`write`](super::write).
 ///
 /// # Errors
 ///
@@ -68,17 +68,15 @@ impl From<MeshFormat> for MeshFile {
 ///
 /// If a triangle names a particle that is not there.
 pub fn write_mesh(
-    format: MeshFormat,
+    file: &MeshFile,
     particles: &Particles,
     measured: &quality::Measurements,
     triangles: &[[u32; 3]],
-    placement: &Placement,
-    record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let placed = placement.placed(format, particles, measured);
+    let placed = file.placement.placed(file.format, particles, measured);
     let (particles, measured) = placed.as_ref().map_or((particles, measured), |(p, m)| (p, m));
-    File { format, particles, measured, triangles, placement, record }.write(out)
+    File { wish: file, particles, measured, triangles }.write(out)
 }
 
 pub(super) fn obj(

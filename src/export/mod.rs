@@ -225,16 +225,15 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
 
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them:
 /// where it is empty, its columns are left out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in
-/// text are the shortest that read back to the same bits. PLY and CSV carry the `record`, in a comment.
+/// text are the shortest that read back to the same bits. PLY and CSV carry the record, in a comment.
 ///
 /// # Errors
 ///
 /// The errors of `out`.
 pub fn write(
-    format: Format,
+    ParticleFile { format, record }: &ParticleFile,
     particles: &Particles,
     measured: &quality::Measurements,
-    record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
@@ -376,8 +375,7 @@ mod tests {
             residual: vec![1e-7],
             ..quality::Measurements::default()
         };
-        write(format, &two(), &measured, &RecordText::default(), &mut out)
-            .expect("writing to memory does not fail");
+        write(&format.into(), &two(), &measured, &mut out).expect("writing to memory does not fail");
         out
     }
 
@@ -436,7 +434,7 @@ mod tests {
         particles.position[1] = particles.position[0];
         (particles.patch, particles.twins) = (vec![4, 9], vec![0, 0]);
         let mut out = Vec::new();
-        write(Format::Csv, &particles, &quality::Measurements::default(), &RecordText::default(), &mut out)
+        write(&Format::Csv.into(), &particles, &quality::Measurements::default(), &mut out)
             .expect("writing to memory does not fail");
         let text = String::from_utf8(out).expect("text");
         let lines: Vec<&str> = text.lines().collect();

@@ -12,7 +12,7 @@ mod scan;
 
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::slices::{self, Work, pause};
+use crate::slices::{self, pause};
 use glam::DVec3;
 use scan::Scan;
 use serde::Serialize;
@@ -68,17 +68,10 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The box with room for particles whose radius is at most this share of its diagonal: [`with_room_for`](Self::with_room_for) a share that
-    /// is the same in any box.
-    #[must_use]
-    pub fn with_room(&self, share: f64) -> Bounds {
-        self.with_room_for(|_| share)
-    }
-
     /// The box with room for particles whose radius is at most a share of its diagonal, which may depend on the box: 5 % on every side, and
     /// three radii. A box that cuts the surface has room already.
     #[must_use]
-    pub fn with_room_for(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
+    pub fn with_room(&self, share_in: impl Fn(&Bounds) -> f64) -> Bounds {
         if self.reach != Reach::Bounded {
             return self.bounds;
         }
@@ -100,28 +93,11 @@ impl Extent {
 /// Finds the box of the surface of a field, whose [origin](Field::origin) is zero.
 #[must_use]
 pub fn find(field: &mut dyn Field) -> Extent {
-    slices::complete(fit(field))
+    slices::complete(find_in_slices(field))
 }
 
-/// A search for the box of a surface, in slices.
-pub struct BoxFit {
-    work: Work<'static, Extent>,
-}
-
-impl BoxFit {
-    /// Begins the search for the box of the surface of a field, whose origin is zero.
-    #[must_use]
-    pub fn new(mut field: Box<dyn Field>) -> Self {
-        Self { work: Box::pin(async move { fit(&mut *field).await }) }
-    }
-
-    /// Does up to `budget` slices of the work, of some 32 cells each: the box, once it is found. It must not be called after that.
-    pub fn step(&mut self, budget: u32) -> Option<Extent> {
-        slices::advance(self.work.as_mut(), budget)
-    }
-}
-
-async fn fit(field: &mut dyn Field) -> Extent {
+/// [`find`] in slices of some 32 cells each.
+pub(crate) async fn find_in_slices(field: &mut dyn Field) -> Extent {
     let operations = field.bounded().map_or(SHORT, |bounded| bounded.operations());
     let cells = MOST_CELLS * SHORT / operations.max(SHORT);
     let found = scanned(field, cells).await;
@@ -147,7 +123,7 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
                 let bounds = placeable(&hull);
                 // What is beyond the box says nothing about the room within.
                 let extent = Extent { bounds, reach: Reach::Bounded };
-                return if is_first { extent } else { Extent { bounds: extent.with_room(0.0), reach } };
+                return if is_first { extent } else { Extent { bounds: extent.with_room(|_| 0.0), reach } };
             }
             Scan::Empty => {
                 return match before {

@@ -5,12 +5,7 @@ use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
     let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    let mut fit = BoxFit::new(Box::new(field.without_powers()));
-    loop {
-        if let Some(extent) = fit.step(u32::MAX) {
-            return extent;
-        }
-    }
+    find(&mut field.without_powers())
 }
 
 /// Asserts that the box holds `lo` to `hi` and is larger by less than 5 % of its longest side.
@@ -166,29 +161,30 @@ fn where_there_is_no_surface_it_is_said() {
 #[test]
 fn the_room_is_a_twentieth_and_three_radii() {
     let sphere = Extent { bounds: Bounds::cube(1.0), reach: Reach::Bounded };
-    assert_eq!(sphere.with_room(0.006).max, [1.1; 3]);
+    assert_eq!(sphere.with_room(|_| 0.006).max, [1.1; 3]);
     for share in [0.02, 0.03] {
-        let bounds = sphere.with_room(share);
+        let bounds = sphere.with_room(|_| share);
         let room = bounds.max[0] - 1.0;
         assert!((room / (3.0 * share * bounds.diagonal()) - 1.0).abs() < 0.01, "{share}: {bounds:?}");
     }
     // Very large particles take no more than half of the side.
-    assert_eq!(sphere.with_room(0.2).max, [2.0; 3]);
+    assert_eq!(sphere.with_room(|_| 0.2).max, [2.0; 3]);
     let plane = Extent { bounds: Bounds::cube(4.0), reach: Reach::Endless };
-    assert_eq!(plane.with_room(0.006), plane.bounds);
+    assert_eq!(plane.with_room(|_| 0.006), plane.bounds);
     // A radius that is a length has three times that length on every side.
-    let bounds = sphere.with_room_for(|bounds| 0.15 / bounds.diagonal());
+    let bounds = sphere.with_room(|bounds| 0.15 / bounds.diagonal());
     assert!(bounds.max.iter().all(|x| (x - 1.45).abs() < 1e-12), "{bounds:?}");
 }
 
 #[test]
 fn budgets_do_not_change_the_box() {
     let text = "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8";
-    let mut fit = BoxFit::new(Box::new(Formula::as_written(text, &[]).expect("a formula")));
+    let mut field = Formula::as_written(text, &[]).expect("a formula");
+    let mut fit = core::pin::pin!(find_in_slices(&mut field));
     let mut steps = 0;
     let slowly = loop {
         steps += 1;
-        if let Some(extent) = fit.step(1) {
+        if let Some(extent) = slices::advance(fit.as_mut(), 1) {
             break extent;
         }
     };
@@ -204,8 +200,7 @@ fn a_field_without_bounds_is_looked_at_on_a_grid() {
             (p.length() - 2.5, p.normalize_or_zero())
         }
     }
-    let mut fit = BoxFit::new(Box::new(Blob));
-    let extent = fit.step(u32::MAX).expect("no slice is left");
+    let extent = find(&mut Blob);
     assert_eq!(extent.reach, Reach::Bounded);
     assert!(extent.bounds.max.iter().all(|end| (2.5..3.0).contains(end)), "{extent:?}");
 }

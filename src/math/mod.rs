@@ -61,6 +61,12 @@ pub fn grouped(count: usize) -> String {
     text
 }
 
+/// A number of things, in words.
+#[must_use]
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{} {}", grouped(count), if count == 1 { one } else { many })
+}
+
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.
 pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 

@@ -265,7 +265,7 @@ async fn figures_of(
             mesh,
             border,
             wanted,
-            discs: options.discs,
+            discs: options.rows.map_or(&[], |rows| &rows.radius),
             lattice,
         };
         measured.holes = measure_holes(&cover, field, bounds, &mut figures).await;

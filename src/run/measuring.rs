@@ -66,8 +66,8 @@ pub(super) async fn measure(
     sampling: Sampling,
 ) -> quality::Measurements {
     let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
-    let (discs, rows) = (&particles.radius[..], Some(particles));
-    let options = quality::MeasureOptions { radii, discs, rows, ..quality::MeasureOptions::default() };
+    let options =
+        quality::MeasureOptions { radii, rows: Some(particles), ..quality::MeasureOptions::default() };
     quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options).await
 }
 

@@ -81,30 +81,15 @@ impl Meshing {
             _ => None,
         }
     }
+}
 
-    /// Joins particles to triangles, or takes those that are `known`, in slices of work.
-    fn work(
-        particles: &Particles,
-        count: usize,
-        known: &[[u32; 3]],
-        bounds: Bounds,
-    ) -> Work<'static, Triangulation> {
-        let mut copy = particles.clone();
-        copy.truncate(count);
-        let known = known.to_vec();
-        Box::pin(async move {
-            if known.is_empty() {
-                let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
-                build::particles_in_slices(&copy, &options).await
-            } else {
-                Triangulation::known(known, &copy).await
-            }
-        })
-    }
-
-    /// Joins all particles at once. `bounds` is the clip box, counted from their origin.
-    pub(super) fn join(particles: &Particles, known: &[[u32; 3]], bounds: Bounds) -> Triangulation {
-        slices::complete(Self::work(particles, particles.len(), known, bounds))
+/// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted from the origin of the particles.
+pub(super) async fn joined(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
+    if known.is_empty() {
+        let options = MeshOptions { bounds: Some(bounds), ..MeshOptions::default() };
+        build::particles_in_slices(particles, &options).await
+    } else {
+        Triangulation::known(known.to_vec(), particles).await
     }
 }
 
@@ -149,9 +134,11 @@ impl<F: Field> Run<F> {
     /// until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         if let MeshState::None = self.meshing.state {
-            let work =
-                Meshing::work(self.particles(), self.rows(), self.sampler.triangles(), self.local_bounds());
-            self.meshing.state = MeshState::Joining(work);
+            let (mut particles, bounds) = (self.particles().clone(), self.local_bounds());
+            particles.truncate(self.rows());
+            let known = self.sampler.triangles().to_vec();
+            let work = async move { joined(&particles, &known, &bounds).await };
+            self.meshing.state = MeshState::Joining(Box::pin(work));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
             self.meshing.state = MeshState::Joined(slices::advance(work.as_mut(), budget)?);
@@ -181,9 +168,7 @@ impl<F: Field> Run<F> {
         });
         let own = (self.particles(), self.measured());
         let (particles, measured) = begun.placed.as_ref().map_or(own, |(p, m)| (p, m));
-        let MeshFile { format, placement, record } = wish;
-        let file =
-            File { format: *format, particles, measured, triangles: self.triangles(), placement, record };
+        let file = File { wish, particles, measured, triangles: self.triangles() };
         let all = file.rows();
         let end = all.min(begun.next.saturating_add(ROWS.saturating_mul(budget as usize)));
         file.write_rows(begun.next..end, &mut begun.bytes)?;

@@ -143,7 +143,7 @@ impl<F: Field> Run<F> {
             Some(bounds) => (bounds, None),
             None => {
                 let extent = extent::find(&mut field);
-                let bounds = extent.with_room_for(|bounds| settings_in(bounds).largest_share());
+                let bounds = extent.with_room(|bounds| settings_in(bounds).largest_share());
                 (bounds, Some(extent.reach))
             }
         };
@@ -182,7 +182,7 @@ impl<F: Field> Run<F> {
             self.field.set_origin(self.bounds.local_origin());
             let bounds = self.bounds.relative_to(self.field.origin());
             match self.creases.take() {
-                Some(known) => self.sampler.start_with(&mut self.field, &bounds, settings, known)?,
+                known @ Some(_) => self.sampler.begin(&mut self.field, &bounds, settings, known)?,
                 None => self.sampler.start(&mut self.field, &bounds, settings)?,
             }
         };

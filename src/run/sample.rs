@@ -1,6 +1,6 @@
 //! The whole job in one call, and its result.
 
-use super::mesh::Meshing;
+use super::mesh::joined;
 use super::{Error, Report, Run, Warning};
 use crate::export::{self, MeshFile, ParticleFile};
 use crate::field::Field;
@@ -9,6 +9,7 @@ use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
+use crate::slices;
 use std::cell::OnceCell;
 use std::io::{self, Write};
 
@@ -57,7 +58,7 @@ impl Sample {
         Self {
             bounds: run.bounds(),
             known: run.sampler.triangles().to_vec(),
-            particles: run.sampler.particles().clone(),
+            particles: run.sampler.into_particles(),
             measured: run.measuring.measured,
             report,
             mesh: run.meshing.into_joined().map_or_else(OnceCell::new, OnceCell::from),
@@ -93,7 +94,7 @@ impl Sample {
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         let bounds = || self.bounds.relative_to(self.particles.origin);
-        self.mesh.get_or_init(|| Meshing::join(&self.particles, &self.known, bounds()))
+        self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds())))
     }
 
     /// The warning about the [mesh](Sample::mesh) if it has another topology than the particles as they were measured.
@@ -115,8 +116,7 @@ impl Sample {
     ///
     /// The errors of `out`.
     pub fn write(&self, file: impl Into<ParticleFile>, out: &mut dyn Write) -> io::Result<()> {
-        let ParticleFile { format, record } = file.into();
-        export::write(format, &self.particles, &self.measured, &record, out)
+        export::write(&file.into(), &self.particles, &self.measured, out)
     }
 
     /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a [`MeshFormat`](crate::MeshFormat), or as a
@@ -126,8 +126,6 @@ impl Sample {
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub fn write_mesh(&self, file: impl Into<MeshFile>, out: &mut dyn Write) -> io::Result<()> {
-        let MeshFile { format, placement, record } = file.into();
-        let triangles = &self.mesh().triangles;
-        export::write_mesh(format, &self.particles, &self.measured, triangles, &placement, &record, out)
+        export::write_mesh(&file.into(), &self.particles, &self.measured, &self.mesh().triangles, out)
     }
 }

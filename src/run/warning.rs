@@ -4,7 +4,7 @@ use super::report::{CreaseCounts, creases_of};
 use super::{Report, Run, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
-use crate::math::{grouped, place_text, shortest_text, text_within};
+use crate::math::{counted, place_text, shortest_text, text_within};
 use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
@@ -370,10 +370,11 @@ impl fmt::Display for Warning {
                 write!(f, "Opposite faces across {} are closed, but not the same: {reason}", ["x", "y", "z"][*axis])
             }
             Self::Children { not_converged, undefined } => {
-                let children = |&count: &u64| counted(count, "child", "children");
+                let [not_converged, undefined] = [*not_converged, *undefined].map(|count| count as usize);
+                let children = |count| counted(count, "child", "children");
                 let troubles = those_that_are([
-                    (*not_converged, format!("{} found no surface at the right distance", children(not_converged))),
-                    (*undefined, format!("{} met a place without a value or a normal", children(undefined))),
+                    (not_converged, format!("{} found no surface at the right distance", children(not_converged))),
+                    (undefined, format!("{} met a place without a value or a normal", children(undefined))),
                 ]);
                 write!(f, "{troubles}: an edge, a singular point or a radius too large for the curvature.")
             }
@@ -383,10 +384,9 @@ impl fmt::Display for Warning {
                  too large to tell them apart by position alone: choose a smaller radius."
             ),
             Self::Meets { crossings, touches, position, length } => {
-                let [crossings, touches] = [*crossings, *touches].map(|count| count as u64);
                 let meets = those_that_are([
-                    (crossings, format!("crosses itself along {}", counted(crossings, "curve", "curves"))),
-                    (touches, format!("touches itself at {}", counted(touches, "point", "points"))),
+                    (*crossings, format!("crosses itself along {}", counted(*crossings, "curve", "curves"))),
+                    (*touches, format!("touches itself at {}", counted(*touches, "point", "points"))),
                 ]);
                 write!(
                     f,
@@ -399,7 +399,7 @@ impl fmt::Display for Warning {
                 f,
                 "Sheets of the surface cross along {}, first near {}, and share the particles there: components and Euler number \
                  are those of all sheets together, and the mesh is no manifold along it.",
-                counted(*curves as u64, "curve", "curves"),
+                counted(*curves, "curve", "curves"),
                 place_text(*position, *length)
             ),
             Self::Moved => f.write_str(
@@ -420,10 +420,9 @@ impl fmt::Display for Warning {
                 without_particle(f, components, *length, *is_unresolved)
             }
             Self::Open { edges, points, position, length } => {
-                let [edges, points] = [*edges, *points].map(|count| count as u64);
                 let found = those_that_are([
-                    (edges, format!("{} open", counted(edges, "edge", "edges"))),
-                    (points, format!("{} out", counted(points, "particle", "particles"))),
+                    (*edges, format!("{} open", counted(*edges, "edge", "edges"))),
+                    (*points, format!("{} out", counted(*points, "particle", "particles"))),
                 ]);
                 write!(
                     f,
@@ -435,7 +434,7 @@ impl fmt::Display for Warning {
             }
             Self::MeshDiffers { components, euler } => {
                 let told = |k: usize| {
-                    let components = counted(components[k] as u64, "component", "components");
+                    let components = counted(components[k], "component", "components");
                     format!("{components} and Euler number {}", euler[k])
                 };
                 write!(
@@ -448,7 +447,7 @@ impl fmt::Display for Warning {
             }
             Self::FileDiffers { mesh, components, euler, area, position, length } => {
                 let told = |components: usize, euler: i64, area: f64| {
-                    let components = counted(components as u64, "component", "components");
+                    let components = counted(components, "component", "components");
                     format!("{components}, Euler number {euler} and area {area:.3}")
                 };
                 let given = match mesh.topology {
@@ -482,13 +481,8 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A number of things, in words.
-fn counted(count: u64, one: &str, many: &str) -> String {
-    format!("{} {}", grouped(count as usize), if count == 1 { one } else { many })
-}
-
 /// The words of those things of which there are some.
-fn those_that_are(things: [(u64, String); 2]) -> String {
+fn those_that_are(things: [(usize, String); 2]) -> String {
     let words = things.into_iter().filter(|(count, _)| *count > 0).map(|(_, words)| words);
     words.collect::<Vec<_>>().join(" and ")
 }
@@ -555,7 +549,7 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
             f,
             "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
              hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
-            counted(count, "cell", "cells"),
+            counted(count as usize, "cell", "cells"),
             place_text(position, size.min(length)),
             about_length(size)
         ),
@@ -563,7 +557,7 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
             f,
             "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
              may be too near there for this radius: a smaller one may decide it.",
-            counted(count, "point of the surface", "points of the surface"),
+            counted(count as usize, "point of the surface", "points of the surface"),
             place_text(position, length)
         ),
     }

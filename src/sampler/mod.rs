@@ -166,6 +166,11 @@ impl Sampler {
         self.output.inside.as_ref().unwrap_or(&self.output.particles)
     }
 
+    /// The [`Sampler::particles`], without a copy.
+    pub(crate) fn into_particles(self) -> Particles {
+        self.output.inside.unwrap_or(self.output.particles)
+    }
+
     /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold
     /// whose border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
     #[must_use]
@@ -269,21 +274,6 @@ impl Sampler {
     ) -> Result<Forecast, SettingsError> {
         check(settings, bounds)?;
         let creases = slices::complete(find_creases(field, bounds));
-        self.start_with(field, bounds, settings, creases)
-    }
-
-    /// [`Sampler::start`] where the creases of the surface in the box are [known](find_creases).
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Sampler::start`].
-    pub(crate) fn start_with(
-        &mut self,
-        field: &mut dyn Field,
-        bounds: &Bounds,
-        settings: &Settings,
-        creases: Creases,
-    ) -> Result<Forecast, SettingsError> {
         self.begin(field, bounds, settings, Some(creases))
     }
 
@@ -304,8 +294,13 @@ impl Sampler {
         self.begin(field, &bounds, settings, creases)
     }
 
-    /// Starts a run, with a survey unless creases are not given: they and the survey are known then.
-    fn begin(
+    /// [`Sampler::start`] where the creases of the surface in the box are [known](find_creases). Without them, all that is known of field
+    /// and box is kept from the last start, with its survey.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Sampler::start`].
+    pub(crate) fn begin(
         &mut self,
         field: &mut dyn Field,
         bounds: &Bounds,

@@ -16,9 +16,7 @@ use serde::Serialize;
 pub struct Description {
     /// Version of this crate.
     pub version: &'static str,
-    /// Identifier of the surface to begin with.
-    pub default_surface: &'static str,
-    /// The gallery.
+    /// The gallery. Its first surface is shown at the start.
     pub surfaces: Vec<SurfaceEntry>,
     /// The models from points.
     pub models: &'static [Model],
@@ -66,28 +64,15 @@ pub struct Limits {
     pub file_bytes: u32,
 }
 
-/// A gallery surface.
+/// A surface in the gallery.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct SurfaceEntry {
-    /// Identifier.
-    pub id: &'static str,
-    /// Name.
-    pub name: &'static str,
-    /// Formula.
-    pub formula: &'static str,
+    /// The surface.
+    #[serde(flatten)]
+    pub surface: &'static Surface,
     /// Parameters with their ranges.
     pub parameters: Vec<Parameter>,
-    /// Clip box.
-    pub bounds: Bounds,
-    /// Degree of the polynomial, if it is one.
-    pub degree: Option<u32>,
-    /// Genus, where the surface is closed, connected and smooth.
-    pub genus: Option<u32>,
-    /// Two sentences about the surface.
-    pub story: &'static str,
-    /// Reference to a text about the surface.
-    pub source: &'static str,
     /// Name of the group of the surface in the gallery.
     pub group: &'static str,
 }
@@ -181,7 +166,6 @@ pub enum ColourMode {
 pub fn describe() -> Description {
     Description {
         version: env!("CARGO_PKG_VERSION"),
-        default_surface: gallery::SURFACES[0].id,
         surfaces: surfaces(),
         models: MODELS,
         settings: setting::settings(),
@@ -208,24 +192,14 @@ pub fn describe() -> Description {
 }
 
 fn surfaces() -> Vec<SurfaceEntry> {
-    let entries =
-        |group: &'static SurfaceGroup| group.surfaces.iter().map(|surface| entry(surface, group.name));
+    let entries = |group: &'static SurfaceGroup| {
+        group.surfaces.iter().map(|surface| SurfaceEntry {
+            surface,
+            parameters: surface.declared(),
+            group: group.name,
+        })
+    };
     gallery::GROUPS.iter().flat_map(entries).collect()
-}
-
-fn entry(surface: &Surface, group: &'static str) -> SurfaceEntry {
-    SurfaceEntry {
-        id: surface.id,
-        name: surface.name,
-        formula: surface.formula,
-        parameters: surface.declared(),
-        bounds: surface.bounds,
-        degree: surface.degree,
-        genus: surface.genus,
-        story: surface.story,
-        source: surface.source,
-        group,
-    }
 }
 
 const fn row(

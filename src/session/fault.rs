@@ -74,14 +74,12 @@ impl Fault {
     pub fn in_formula(error: FormulaError, text: &str) -> Self {
         let span = error.utf16_span(text);
         Self {
-            kind: FaultKind::Formula(error.kind),
-            message: error.message,
             start: span.start as u32,
             end: span.end as u32,
             suggestion: error.suggestion,
             mended: error.mended,
             name: error.name,
-            excess: None,
+            ..Self::new(FaultKind::Formula(error.kind), &error.message)
         }
     }
 }

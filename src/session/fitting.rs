@@ -2,7 +2,7 @@
 //! surface of a formula; the solid that is made of the surface in it; and its creases.
 
 use super::{FieldAnswer, Session, Source};
-use crate::extent::{self, BoxFit, Extent};
+use crate::extent::{self, Extent};
 use crate::field::Field;
 use crate::field::formula::Formula;
 use crate::field::gallery::Surface;
@@ -127,7 +127,7 @@ impl SolidSettings {
 #[derive(Default)]
 struct BoxSearch {
     /// The search, while it is under way.
-    search: Option<BoxFit>,
+    search: Option<Work<'static, Extent>>,
     /// The box that the search has found.
     found: Option<Extent>,
 }
@@ -139,9 +139,9 @@ impl BoxSearch {
             let search = self.search.get_or_insert_with(|| {
                 let mut field = field();
                 field.set_origin(DVec3::ZERO);
-                BoxFit::new(Box::new(field))
+                Box::pin(async move { extent::find_in_slices(&mut field).await })
             });
-            self.found = Some(search.step(budget)?);
+            self.found = Some(slices::advance(search.as_mut(), budget)?);
             self.search = None;
         }
         self.found
@@ -212,7 +212,7 @@ impl Session {
         if let Some(field) = field.filter(|_| is_fitted) {
             let found = self.fitting.unclosed.step(|| choice.made_of(field.clone(), None), budget)?;
             let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
-            (clip, reach) = (found.with_room(room), Some(found.reach));
+            (clip, reach) = (found.with_room(|_| room), Some(found.reach));
             clip = before.map_or(clip, |before| clip.joined(&before));
         }
         let closing = field.and_then(|field| choice.faces(field, clip, self.is_to_choose()));
@@ -230,7 +230,7 @@ impl Session {
         }
         if let Some(solid) = self.run.field().formula().filter(|field| field.closing_box().is_some()) {
             let found = self.fitting.closed.step(|| solid.clone(), budget)?;
-            (bounds, reach_in) = (found.with_room(room), Some(found.reach));
+            (bounds, reach_in) = (found.with_room(|_| room), Some(found.reach));
         }
         (self.clip, self.reach) = (clip, reach);
         self.run.set_bounds(bounds, reach_in);

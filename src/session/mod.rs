@@ -52,24 +52,11 @@ pub struct FieldRequest {
     pub pulls: Vec<Pull>,
 }
 
-/// Kind of a field, by its source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-#[serde(rename_all = "snake_case")]
-pub enum FieldKind {
-    /// A formula.
-    Formula,
-    /// Points with normals.
-    Points,
-}
-
 /// The field as it now is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FieldAnswer {
-    /// Kind of the field.
-    pub kind: FieldKind,
-    /// The model, if it is made of points.
+    /// The model, if the field is made of points; else it is a formula.
     pub model: Option<ModelInfo>,
     /// Gallery surface, if the formula is still its own.
     pub surface: Option<&'static str>,
@@ -184,7 +171,6 @@ impl Session {
     #[must_use]
     pub fn answer(&self) -> FieldAnswer {
         let answer = FieldAnswer {
-            kind: FieldKind::Formula,
             model: None,
             surface: self.surface.map(|surface| surface.id),
             formula: String::new(),
@@ -203,9 +189,7 @@ impl Session {
                 mathml: Some(field.mathml()),
                 ..answer
             },
-            Source::Points { info, .. } => {
-                FieldAnswer { kind: FieldKind::Points, model: Some(info.clone()), ..answer }
-            }
+            Source::Points { info, .. } => FieldAnswer { model: Some(info.clone()), ..answer },
         }
     }
 

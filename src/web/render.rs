@@ -9,8 +9,7 @@ use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
@@ -305,15 +304,12 @@ impl Renderer {
                 .borrow_mut()
                 .picture([width_px, height_px], transparent, f64::INFINITY)
                 .ok_or_else(lost)?;
-            let state = Arc::new((AtomicBool::new(false), AtomicBool::new(false)));
+            let is_mapped = Arc::new(OnceLock::new());
             picture.map({
-                let state = Arc::clone(&state);
-                move |ok| {
-                    state.1.store(ok, Ordering::Relaxed);
-                    state.0.store(true, Ordering::Relaxed);
-                }
+                let is_mapped = Arc::clone(&is_mapped);
+                move |ok| is_mapped.set(ok).expect("a picture is mapped once")
             });
-            while !state.0.load(Ordering::Relaxed) {
+            while is_mapped.get().is_none() {
                 if inner.borrow().is_lost() {
                     return Err(lost().into());
                 }
@@ -321,7 +317,7 @@ impl Renderer {
                 let tick = Promise::new(&mut |resolve, _| set_timeout(&resolve, POLL_MS));
                 JsFuture::from(tick).await?;
             }
-            if !state.1.load(Ordering::Relaxed) {
+            if is_mapped.get() == Some(&false) {
                 return Err(lost().into());
             }
             let pixels = picture.pixels().ok_or_else(lost)?;

@@ -148,8 +148,7 @@ fn files_hold_far_places_in_double_precision() {
     let (particles, measured) = (session.run.particles(), session.run.measured());
     let file = |format: Format| {
         let mut bytes = Vec::new();
-        export::write(format, particles, measured, &export::RecordText::default(), &mut bytes)
-            .expect("memory does not run out");
+        export::write(&format.into(), particles, measured, &mut bytes).expect("memory does not run out");
         bytes
     };
     let on_sphere = |p: DVec3, what: &str| {
@@ -179,16 +178,9 @@ fn files_hold_far_places_in_double_precision() {
 
     let mesh = |format: MeshFormat| {
         let mut bytes = Vec::new();
-        export::write_mesh(
-            format,
-            particles,
-            &quality::Measurements::default(),
-            session.run.triangles(),
-            &export::Placement::default(),
-            &export::RecordText::default(),
-            &mut bytes,
-        )
-        .expect("memory does not run out");
+        let unmeasured = quality::Measurements::default();
+        export::write_mesh(&format.into(), particles, &unmeasured, session.run.triangles(), &mut bytes)
+            .expect("memory does not run out");
         bytes
     };
     let obj = String::from_utf8(mesh(MeshFormat::Obj)).expect("text");

@@ -2,7 +2,7 @@
 
 use crate::runs::of_gallery;
 use glam::Vec3;
-use marching_particles::export::{MeshFormat, Placement, RecordText, Unit, UpAxis, write_mesh};
+use marching_particles::export::{MeshFile, MeshFormat, Placement, Unit, UpAxis, write_mesh};
 use marching_particles::field::gallery;
 use marching_particles::mesh::build::{MeshOptions, triangulate};
 use marching_particles::particles::Particles;
@@ -32,8 +32,8 @@ fn placed(
     placement: &Placement,
 ) -> Vec<u8> {
     let mut out = Vec::new();
-    let (measured, record) = (quality::Measurements::default(), RecordText::default());
-    write_mesh(format, particles, &measured, triangles, placement, &record, &mut out)
+    let file = MeshFile { placement: *placement, ..format.into() };
+    write_mesh(&file, particles, &quality::Measurements::default(), triangles, &mut out)
         .expect("writing to memory does not fail");
     out
 }

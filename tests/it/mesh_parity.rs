@@ -7,7 +7,7 @@
 use crate::golden;
 use crate::runs::run;
 use marching_particles::MeshAnswer;
-use marching_particles::export::{MeshFormat, Placement, RecordText, write_mesh};
+use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, FileRequest, Session};
 use serde::{Deserialize, Serialize};
@@ -94,16 +94,9 @@ fn a_file_written_slice_by_slice_is_the_one_written_at_once() {
         assert_eq!(first.is_some(), is_whole, "{extension}: one slice is not all of it");
         assert!(written(&mut session, extension, 1) == whole, "{extension}");
         let mut direct = Vec::new();
-        write_mesh(
-            format,
-            session.run.particles(),
-            session.run.measured(),
-            session.run.triangles(),
-            &Placement::default(),
-            &RecordText::default(),
-            &mut direct,
-        )
-        .expect("writing to memory does not fail");
+        let (run, file) = (&session.run, format.into());
+        write_mesh(&file, run.particles(), run.measured(), run.triangles(), &mut direct)
+            .expect("writing to memory does not fail");
         assert!(direct == whole, "{extension}");
     }
     // Another format begins anew.

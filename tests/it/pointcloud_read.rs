@@ -297,7 +297,8 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
         }
         let mut bytes = Vec::new();
         let record = export::RecordText::new(r#"{"formula":"x"}"#);
-        export::write(format, &particles, &quality::Measurements::default(), &record, &mut bytes)
+        let file = export::ParticleFile { format, record };
+        export::write(&file, &particles, &quality::Measurements::default(), &mut bytes)
             .expect("writing to memory does not fail");
         let (_, mesh) = read(&format!("a.{ending}"), bytes);
         assert!(

@@ -4,6 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
+use marching_particles::particles::Particles;
 use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, measure, triangles};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -121,8 +122,8 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
     let (points, bounds) = lattice(HEXAGONAL, scale, half);
     let cell = scale * scale * HEXAGONAL[1];
     let normals = vec![Vec3::Z; points.len()];
-    let discs = vec![(0.5 * scale) as f32; points.len()];
-    let options = MeasureOptions { discs: &discs, ..with_area(points.len(), cell) };
+    let discs = Particles { radius: vec![(0.5 * scale) as f32; points.len()], ..Particles::default() };
+    let options = MeasureOptions { rows: Some(&discs), ..with_area(points.len(), cell) };
     let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
     let f = report.figures;
     println!("{f:#?}");

@@ -453,7 +453,6 @@ fn every_row_of_the_report_is_in_the_report() {
 fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     use marching_particles::field::model::ModelInfo;
     use marching_particles::field::rbf::RbfData;
-    use marching_particles::session::FieldKind;
 
     // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small coefficient adds a
     // constant.
@@ -466,10 +465,9 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     let mut session = Session::new();
     let own = FieldRequest::default();
     let before = session.answer();
-    assert_eq!((before.kind, before.model), (FieldKind::Formula, None));
+    assert_eq!(before.model, None);
     let answer = session.set_points(data.clone(), info.clone(), Bounds::cube(1.5), &own).expect("a field");
-    assert_eq!((answer.kind, answer.model.as_ref()), (FieldKind::Points, Some(&info)));
-    assert_eq!((answer.surface, answer.formula.as_str()), (None, ""));
+    assert_eq!((answer.model.as_ref(), answer.surface, answer.formula.as_str()), (Some(&info), None, ""));
 
     session.start(&settings!(radius_share: 0.02; ..Settings::default())).expect("valid settings");
     while session.run.step(1000).stop_reason.is_none() {}
@@ -481,14 +479,14 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     // Only the box of such a field can be changed. An invalid box changes nothing.
     let smaller = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
     let answer = session.set_field(&smaller).expect("a box");
-    assert_eq!((answer.kind, answer.bounds), (FieldKind::Points, Bounds::cube(1.2)));
+    assert_eq!((answer.model.as_ref(), answer.bounds), (Some(&info), Bounds::cube(1.2)));
     assert!(session.set_points(RbfData::default(), info.clone(), Bounds::cube(1.0), &own).is_err());
     assert!(session.set_points(data, info, Bounds { min: [1.0; 3], max: [0.0; 3] }, &own).is_err());
     assert_eq!(session.answer(), answer);
 
     let formula = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 1".into()), ..FieldRequest::default() };
     let answer = session.set_field(&formula).expect("a formula");
-    assert_eq!((answer.kind, answer.model, answer.bounds), (FieldKind::Formula, None, Bounds::cube(1.2)));
+    assert_eq!((answer.model, answer.bounds), (None, Bounds::cube(1.2)));
 }
 
 #[test]

@@ -33,8 +33,7 @@ const share = (count, max_particles) => {
   let progress;
   do progress = core.step(20000);
   while (progress.stop_reason === null);
-  const { surfaces, default_surface } = core.describe();
-  const { min, max } = surfaces.find(({ id }) => id === default_surface).bounds;
+  const { min, max } = core.describe().surfaces[0].bounds;
   core.free();
   return progress.radius / Math.hypot(...max.map((high, axis) => high - min[axis]));
 };

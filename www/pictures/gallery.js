@@ -87,7 +87,7 @@ const dots = await page.evaluate(
   async ({ share, size, viewRad, initial }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
     await mp.set({
-      surface: mp.engine.description.value.default_surface,
+      surface: mp.engine.description.value.surfaces[0].id,
       settings: { radius_share: share },
       view: { camera: initial },
     });

@@ -15,8 +15,15 @@ const BUDGET: u32 = 100;
 /// Fits a field to the points of a file.
 pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
     let wrong = |error: JobError| Failure::Usage(format!("{}: {error}", path.display()));
-    let bytes = read(path).map_err(|error| Failure::Unreadable { path: path.to_owned(), error })?;
-    let bytes = bytes.map_err(wrong)?;
+    let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
+    let file = File::open(path).map_err(unreadable)?;
+    let metadata = file.metadata().map_err(unreadable)?;
+    // The size of a regular file is checked first; of others, no more than the limit is read.
+    if metadata.is_file() {
+        check_size(metadata.len()).map_err(|error| wrong(error.into()))?;
+    }
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
 }
@@ -24,21 +31,6 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
 /// Fits a field to a built-in model.
 pub(crate) fn of_model(id: &str, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
     solve(Job::model(id, centres), bar).map_err(|error| Failure::Usage(error.to_string()))
-}
-
-/// Reads a file that is not too large. The size of a regular file is checked first; of others, no more than the limit
-/// is read.
-fn read(path: &Path) -> std::io::Result<Result<Vec<u8>, JobError>> {
-    let file = File::open(path)?;
-    let metadata = file.metadata()?;
-    if metadata.is_file()
-        && let Err(error) = check_size(metadata.len())
-    {
-        return Ok(Err(error.into()));
-    }
-    let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
-    Ok(Ok(bytes))
 }
 
 fn solve(job: Result<Job, JobError>, bar: &ProgressBar) -> Result<Fit, JobError> {

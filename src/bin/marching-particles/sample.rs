@@ -105,14 +105,8 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if is_joined {
         timed(&mut seconds.mesh, || run.join(u32::MAX));
     }
-    let finished =
-        timed(
-            &mut seconds.quality,
-            || {
-                if arguments.no_report { run.finish_unmeasured() } else { run.finish() }
-            },
-        );
-    let sample = finished.map_err(|error| match error {
+    let finish = if arguments.no_report { Run::finish_unmeasured } else { Run::finish };
+    let sample = timed(&mut seconds.quality, || finish(run)).map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }
@@ -123,11 +117,11 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         digest: sample.report().digest.clone(),
         link: None,
-        surface: name.clone(),
+        surface: name,
         model: model.as_ref().map(|model| model.name.clone()),
         pulls: arguments.surface.pulls.clone(),
-        formula: formula.clone(),
-        parameters: parameters.clone(),
+        formula,
+        parameters,
         bounds: sample.bounds(),
         faces,
         solid: arguments.surface.solid(),
@@ -155,11 +149,11 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let capped = report.stop_reason == Some(StopReason::Cap);
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
-        surface: name,
+        surface: made.surface,
         model,
-        formula,
-        parameters,
-        bounds: sample.bounds(),
+        formula: made.formula,
+        parameters: made.parameters,
+        bounds: made.bounds,
         settings,
         predicted_count,
         report,

@@ -3,7 +3,7 @@
 use crate::outcome::{MeshCounts, Outcome};
 use marching_particles::Cut;
 use marching_particles::field::model::{ModelInfo, NormalSource};
-use marching_particles::math::{grouped, significant};
+use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
@@ -63,7 +63,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     if let Some(cut) = report.cut {
         let [min, max] =
             [outcome.bounds.min, outcome.bounds.max].map(|corner| corner.map(significant).join(","));
-        let of = counted(report.border, "particle");
+        let of = counted(report.border, "particle", "particles");
         match cut {
             Cut::Endless => {
                 writeln!(out, "the surface goes on beyond the box from {min} to {max}; --box sets another")?;
@@ -157,10 +157,10 @@ fn mesh_line(mesh: &MeshCounts) -> String {
     let borders = match mesh.borders + mesh.holes {
         0 if mesh.volume.is_some() => "closed".to_owned(),
         0 => "not a manifold".to_owned(),
-        loops => counted(loops, "border loop"),
+        loops => counted(loops, "border loop", "border loops"),
     };
-    let [triangles, components] = [(mesh.triangles, "triangle"), (mesh.components, "component")]
-        .map(|(count, name)| counted(count, name));
+    let triangles = counted(mesh.triangles, "triangle", "triangles");
+    let components = counted(mesh.components, "component", "components");
     let volume = mesh.volume.map_or("–".to_owned(), significant);
     let angle = mesh.smallest_angle.map_or("–".to_owned(), |angle| format!("{angle:.1}°"));
     format!(
@@ -173,18 +173,13 @@ fn mesh_line(mesh: &MeshCounts) -> String {
 fn mesh_warnings(mesh: &MeshCounts) -> Vec<String> {
     let mut warnings = Vec::new();
     if mesh.holes > 0 {
-        warnings.push(format!("the mesh has {} that could not be filled", counted(mesh.holes, "hole")));
+        let holes = counted(mesh.holes, "hole", "holes");
+        warnings.push(format!("the mesh has {holes} that could not be filled"));
     }
     if mesh.left_out > 0 {
-        warnings.push(format!("the mesh leaves {} out", counted(mesh.left_out, "particle")));
+        warnings.push(format!("the mesh leaves {} out", counted(mesh.left_out, "particle", "particles")));
     }
     warnings
-}
-
-/// A number of things, in words.
-fn counted(count: usize, name: &str) -> String {
-    let ending = if count == 1 { "" } else { "s" };
-    format!("{} {name}{ending}", grouped(count))
 }
 
 /// Formats a duration in milliseconds or seconds.

@@ -10,13 +10,9 @@ pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
     let description = describe();
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let mut all = Vec::new();
-        for surface in &description.surfaces {
-            all.push(serde_json::to_value(surface).map_err(std::io::Error::other)?);
-        }
-        for model in description.models {
-            all.push(serde_json::to_value(model).map_err(std::io::Error::other)?);
-        }
+        let surfaces = description.surfaces.iter().map(serde_json::to_value);
+        let all = surfaces.chain(description.models.iter().map(serde_json::to_value));
+        let all: Vec<serde_json::Value> = all.collect::<Result<_, _>>().map_err(std::io::Error::other)?;
         writeln!(out, "{}", serde_json::Value::from(all))?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -30,14 +26,17 @@ pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn write_entry(out: &mut impl Write, surface: &SurfaceEntry) -> std::io::Result<()> {
+fn write_entry(
+    out: &mut impl Write,
+    SurfaceEntry { surface, parameters, .. }: &SurfaceEntry,
+) -> std::io::Result<()> {
     let mut facts = Vec::new();
     facts.extend(surface.degree.map(|degree| format!("degree {degree}")));
     facts.extend(surface.genus.map(|genus| format!("genus {genus}")));
     let facts = if facts.is_empty() { String::new() } else { format!(" ({})", facts.join(", ")) };
     writeln!(out, "{}  {}{facts}", surface.id, surface.name)?;
     writeln!(out, "    {}", surface.formula)?;
-    for p in &surface.parameters {
+    for p in parameters {
         writeln!(out, "    --param {}={}  {}, {} to {}", p.name, p.value, p.label, p.min, p.max)?;
     }
     let [lo, hi] = [surface.bounds.min, surface.bounds.max];

@@ -44,15 +44,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         counted.number(&mut particles.identity, count);
         let path = arguments.out.join(format!("{frame:0digits$}.{extension}"));
         for output in OutputFile::beside(&[&path])? {
-            output.write(|out| {
-                export::write(
-                    format,
-                    &particles,
-                    &Measurements::default(),
-                    &export::RecordText::default(),
-                    out,
-                )
-            })?;
+            output.write(|out| export::write(&format.into(), &particles, &Measurements::default(), out))?;
         }
         counted.note(run.count());
         bar.set_position(u64::from(frame) + 1);
@@ -127,7 +119,7 @@ fn box_of(arguments: &mut SweepArguments) -> Result<Bounds, Failure> {
             return Ok(bounds);
         }
         let extent = extent::find(&mut chosen.field);
-        let fitted = extent.with_room_for(|bounds| arguments.sampling.settings(bounds).largest_share());
+        let fitted = extent.with_room(|bounds| arguments.sampling.settings(bounds).largest_share());
         all = Some(all.map_or(fitted, |all| all.joined(&fitted)));
     }
     Ok(all.unwrap_or(Bounds::cube(1.0)))

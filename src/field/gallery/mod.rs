@@ -8,6 +8,7 @@ mod singular;
 
 use super::formula::{Formula, Parameter};
 use crate::math::Bounds;
+use serde::Serialize;
 use std::sync::LazyLock;
 
 /// A parameter of a gallery surface.
@@ -28,7 +29,8 @@ pub struct SurfaceParameter {
 }
 
 /// A named surface.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Surface {
     /// Identifier: lower case, words joined by hyphens.
     pub id: &'static str,
@@ -37,20 +39,24 @@ pub struct Surface {
     /// Formula of f, or an equation; f < 0 inside.
     pub formula: &'static str,
     /// Parameters of the formula, in the order of their sliders.
+    #[serde(skip)]
     pub parameters: &'static [SurfaceParameter],
     /// Box that is sampled.
     pub bounds: Bounds,
     /// Algebraic degree; `None` for a transcendental surface.
     pub degree: Option<u32>,
     /// Whether the surface is closed, so that it lies in the box for all values of the parameters.
+    #[serde(skip)]
     pub closed: bool,
     /// Genus with the default parameters; `None` unless the surface is closed, connected and free of
     /// self-intersections.
     pub genus: Option<u32>,
     /// Whether the surface with the default parameters has no singular point.
+    #[serde(skip)]
     pub smooth: bool,
     /// Whether thin parts or long blends keep the search for components from a proof, and a coarse relaxation from its last
     /// steps.
+    #[serde(skip)]
     pub intricate: bool,
     /// Two sentences about the surface.
     pub story: &'static str,

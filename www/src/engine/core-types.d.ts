@@ -63,9 +63,7 @@ export type Cut = "endless" | "fixed";
 export type Description = {
   /** Version of this crate. */
   version: string,
-  /** Identifier of the surface to begin with. */
-  default_surface: string,
-  /** The gallery. */
+  /** The gallery. Its first surface is shown at the start. */
   surfaces: Array<SurfaceEntry>,
   /** The models from points. */
   models: Array<Model>,
@@ -148,9 +146,7 @@ export type FaultKind = "request" | "settings" | "too_many" | "unknown_surface" 
 
 /** The field as it now is. */
 export type FieldAnswer = {
-  /** Kind of the field. */
-  kind: FieldKind,
-  /** The model, if it is made of points. */
+  /** The model, if the field is made of points; else it is a formula. */
   model: ModelInfo | null,
   /** Gallery surface, if the formula is still its own. */
   surface: string | null,
@@ -169,9 +165,6 @@ export type FieldAnswer = {
   /** What has become of the surface that was to pass through the pins of the request; none without pins. */
   grip: Grip | null,
 };
-
-/** Kind of a field, by its source. */
-export type FieldKind = "formula" | "points";
 
 /** Request for a field. All members are optional. */
 export type FieldRequest = {
@@ -1231,28 +1224,29 @@ export type Start = {
 /** Why a run ended. */
 export type StopReason = "complete" | "cancelled" | "cap" | "no_surface" | "constant" | "undefined" | "one_particle";
 
-/** A gallery surface. */
+/** A surface in the gallery. */
 export type SurfaceEntry = {
-  /** Identifier. */
-  id: string,
-  /** Name. */
-  name: string,
-  /** Formula. */
-  formula: string,
   /** Parameters with their ranges. */
   parameters: Array<Parameter>,
-  /** Clip box. */
+  /** Name of the group of the surface in the gallery. */
+  group: string,
+  /** Identifier: lower case, words joined by hyphens. */
+  id: string,
+  /** Name for the user. */
+  name: string,
+  /** Formula of f, or an equation; f < 0 inside. */
+  formula: string,
+  /** Box that is sampled. */
   bounds: Bounds,
-  /** Degree of the polynomial, if it is one. */
+  /** Algebraic degree; `None` for a transcendental surface. */
   degree: number | null,
-  /** Genus, where the surface is closed, connected and smooth. */
+  /** Genus with the default parameters; `None` unless the surface is closed, connected and free of
+  * self-intersections. */
   genus: number | null,
   /** Two sentences about the surface. */
   story: string,
   /** Reference to a text about the surface. */
   source: string,
-  /** Name of the group of the surface in the gallery. */
-  group: string,
 };
 
 /** Unit of length of a file. */

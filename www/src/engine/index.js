@@ -80,8 +80,8 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     lessonSurface() {
       const field = store.field.value;
       if (!field) return null;
-      const { kind, formula, parameters, bounds } = field;
-      if (kind === 'formula') return { formula, parameters, bounds };
+      const { model, formula, parameters, bounds } = field;
+      if (!model) return { formula, parameters, bounds };
       const solved = runs.loader.client.get(runs.loader.key());
       return solved ? { system: solved.field, pulls: store.state.value.pulls, bounds } : null;
     },

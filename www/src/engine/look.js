@@ -34,7 +34,7 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
   function points() {
     const { view, pulls } = store.state.value;
     // They are those of the surface before it is pulled.
-    if (!view.points || store.field.value?.kind !== 'points' || pulls.length > 0) return null;
+    if (!view.points || !store.field.value?.model || pulls.length > 0) return null;
     return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
   }
 

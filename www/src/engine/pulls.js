@@ -36,7 +36,7 @@ export function pullBetween(at, to, { reach, held }) {
 }
 
 /** Whether a surface can be grabbed. @param {FieldOk | null} field */
-export const canGrab = (field) => field?.kind === 'points' || Boolean(field?.parameters.length);
+export const canGrab = (field) => Boolean(field?.model) || Boolean(field?.parameters.length);
 
 /** Where the place of a pull comes to. @param {Pull} pull @returns {Vec3} */
 export const endOf = ({ at, by }) => along(at, by, 1);

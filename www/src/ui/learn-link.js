@@ -17,7 +17,7 @@ export function bindLearnLink(link, engine) {
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
   explain(link, () => {
     // A model from points is too large for a link.
-    const isOwn = engine.field.peek()?.kind !== 'points';
+    const isOwn = !engine.field.peek()?.model;
     const on = isOwn ? 'this surface' : 'an ellipsoid: a link cannot hold a model from points';
     return { title: 'The lesson', text: `The paper’s idea in ten short chapters, with figures on ${on}.` };
   });

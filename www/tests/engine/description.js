@@ -30,7 +30,6 @@ const column = (name, kind) => ({ name, kind });
 /** @type {Description} */
 export const description = {
   version: '0.1.0',
-  default_surface: 'ellipsoid',
   surfaces: [
     {
       id: 'ellipsoid',

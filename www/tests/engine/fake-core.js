@@ -16,7 +16,6 @@
  */
 const field = (formula, bounds) => ({
   ok: true,
-  kind: 'formula',
   model: null,
   surface: null,
   formula,
@@ -112,7 +111,6 @@ export function fakeCore({
       calls.push(`set_points ${bytes.length}`);
       return {
         ok: true,
-        kind: 'points',
         model: info,
         surface: null,
         formula: '',

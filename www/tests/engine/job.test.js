@@ -544,7 +544,7 @@ test('a job on a model hands the core the solved system, with the clip box in fo
   const own = await work(core, sampleJob({ field: { points: 'bunny' }, points }));
   expect(core.calls).toContain('set_points 44');
   expect(core.calls).not.toContain('set_field');
-  expect(of(own.posted, 'field')[0].answer).toMatchObject({ ok: true, kind: 'points', model: info, bounds });
+  expect(of(own.posted, 'field')[0].answer).toMatchObject({ ok: true, model: info, bounds });
   const clip = { min: bounds.min, max: /** @type {[number, number, number]} */ ([1, 1, 0]) };
   const clipped = await work(core, sampleJob({ field: { points: 'bunny', bounds: clip }, points }));
   expect(of(clipped.posted, 'field')[0].answer).toMatchObject({ bounds: clip });

@@ -25,7 +25,6 @@ describe('a model from points', () => {
   });
   const answer = {
     ok: true,
-    kind: 'points',
     model: { name: 'Bunny' },
     surface: null,
     formula: '',
@@ -41,13 +40,13 @@ describe('a model from points', () => {
     sampler.sample({ ...request(''), field: { points: 'bunny', surface: 'bunny' } });
     expect(jobs()[0].points).toBe(solved);
     say({ type: 'field', id: 1, answer });
-    expect(store.field.value).toMatchObject({ kind: 'points', surface: 'bunny' });
+    expect(store.field.value).toMatchObject({ model: { name: 'Bunny' }, surface: 'bunny' });
     expect(store.model.value).toMatchObject({ name: 'Bunny' });
     say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
     say({ type: 'ready', description });
     expect(jobs()[0].points).toBe(solved);
     sampler.sample(request('x'));
-    say({ type: 'field', id: 3, answer: { ...answer, kind: 'formula', model: null } });
+    say({ type: 'field', id: 3, answer: { ...answer, model: null } });
     expect(store.model.value).toBe(null);
   });
 });

@@ -74,7 +74,7 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
         const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
         const next = isOwn ? { formula: text, parameters: {} } : { formula: text };
-        change(store, fresh ? freshShape(description(store).default_surface, text) : next);
+        change(store, fresh ? freshShape(description(store).surfaces[0].id, text) : next);
         framing.written({ typed: true });
       } else if (!store.typing.value) {
         if (!typing) runs.sampling.commit();

@@ -36,7 +36,7 @@ export const emptyState = () => ({
 
 /** @param {Description} description @returns {State} */
 export function defaultState(description) {
-  const surface = surfaceOf(description, description.default_surface) ?? description.surfaces[0];
+  const surface = description.surfaces[0];
   return { ...emptyState(), surface: surface?.id ?? '', formula: surface?.formula ?? '' };
 }
 

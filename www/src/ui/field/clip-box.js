@@ -16,7 +16,7 @@ export function createClipBox(engine) {
   const bounds = computed(() => engine.state.value.bounds ?? engine.field.value?.bounds ?? null);
   const own = computed(() => engine.state.value.bounds !== null || engine.state.value.settings.box_mode === 'fixed');
   /** Whether the surface has a box of its own, as those of the gallery and of points have. */
-  const kept = computed(() => engine.field.value?.surface !== null || engine.field.value?.kind === 'points');
+  const kept = computed(() => engine.field.value?.surface !== null || engine.field.value?.model !== null);
   const size = () => {
     const size = bounds.value?.max
       .map((high, i) => formatSignificant(high - (bounds.value?.min[i] ?? 0), 3))

@@ -26,7 +26,7 @@ export function createFormula(engine, description) {
   );
   const section = h(
     'div',
-    { class: 'section formula', hidden: () => engine.field.value?.kind === 'points' },
+    { class: 'section formula', hidden: () => Boolean(engine.field.value?.model) },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
     input.holder,
     input.error,

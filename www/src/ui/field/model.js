@@ -16,11 +16,11 @@ import { factsOf, fittedOf } from './facts.js';
  * @param {Description} description
  */
 export function createModel(engine, description) {
-  const model = computed(() => (engine.field.value?.kind === 'points' ? engine.field.value.model : null));
+  const model = computed(() => engine.field.value?.model ?? null);
   const warnings = computed(() => model.value?.warnings ?? []);
   const section = h(
     'div',
-    { class: 'section model', hidden: () => engine.field.value?.kind !== 'points' },
+    { class: 'section model', hidden: () => !model.value },
     h(
       'div',
       { class: 'section-head' },
@@ -40,11 +40,11 @@ export function createModel(engine, description) {
   let left = null;
   live(section, () => {
     const { v: _, view: __, ...shape } = engine.state.value;
-    if (shape.formula !== '' && engine.field.value?.kind !== 'points') left = shape;
+    if (shape.formula !== '' && !engine.field.value?.model) left = shape;
   });
   function goBack() {
     if (left) engine.restore({ ...left, settings: engine.state.peek().settings });
-    else engine.setSurface(description.default_surface);
+    else engine.setSurface(description.surfaces[0].id);
   }
 
   return section;

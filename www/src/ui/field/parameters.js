@@ -22,7 +22,7 @@ const pullsOf = (n) => (n === 0 ? 'The surface can be pulled by hand.' : `${plur
 
 /** @param {Engine} engine @param {{ motion: Motion, pins: Pins }} shared */
 export function createParameters(engine, { motion, pins }) {
-  const isModel = computed(() => engine.field.value?.kind === 'points');
+  const isModel = computed(() => Boolean(engine.field.value?.model));
   // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
     JSON.stringify(
@@ -55,7 +55,7 @@ function grabbing(engine, pins) {
     pins.value = isOn.peek() ? null : [];
   };
   return explain(button({ class: 'plain small', 'aria-pressed': () => String(isOn.value), press }, 'Grab'), () => ({
-    text: `Drag the surface${engine.field.value?.kind === 'points' ? '' : ': the parameters follow'}. Shift and drag does it once.`,
+    text: `Drag the surface${engine.field.value?.model ? '' : ': the parameters follow'}. Shift and drag does it once.`,
   }));
 }
 

@@ -71,7 +71,7 @@ export function createSolid(engine, { settings }) {
       class: 'section solid',
       role: 'group',
       'aria-label': 'Solid',
-      hidden: () => engine.field.value?.kind === 'points',
+      hidden: () => Boolean(engine.field.value?.model),
     },
     h(
       'div',

@@ -162,7 +162,7 @@ export class Follower {
     if (run && run.surface === surface && run.own === own && (coarser === null || run.radius === coarser)) return run;
     const { adaptive } = columns;
     const field = engine.field.peek();
-    const words = field?.kind === 'formula' ? surfaceWords(field) : 'a model from points';
+    const words = field?.model === null ? surfaceWords(field) : 'a model from points';
     return this.#begin({ surface, words, pictureRadius, own, radius, adaptive });
   }
 

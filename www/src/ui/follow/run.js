@@ -33,7 +33,7 @@ export const settingOf = ({ state, description }, name) =>
 
 /** Returns whether the picture is of a solid that is made of the surface. @param {Engine} engine */
 export const isOfSolid = (engine) =>
-  engine.field.peek()?.kind === 'formula' &&
+  engine.field.peek()?.model === null &&
   (settingOf(engine, 'box_faces') === 'closed' || Number(settingOf(engine, 'thickness')) > 0);
 
 /**

@@ -46,7 +46,7 @@ async function createSheet(engine) {
     { class: 'sheet' },
     h('h1', null, title),
     picture,
-    engine.field.peek()?.kind === 'points' ? null : (math ?? h('p', null, formula)),
+    engine.field.peek()?.model ? null : (math ?? h('p', null, formula)),
     parameters.length ? h('p', null, parameters.join(', ')) : null,
     copyOf('.figures'),
     credit && credit !== formula ? h('p', null, credit) : null,

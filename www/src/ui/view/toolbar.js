@@ -94,7 +94,7 @@ function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
   const act = () => engine.setView({ points: !shown.peek() });
   return tool('points', 'Show points', 'The points that the surface is built from, as dots.', act, {
-    hidden: () => engine.field.value?.kind !== 'points' || engine.state.value.pulls.length > 0,
+    hidden: () => !engine.field.value?.model || engine.state.value.pulls.length > 0,
     'aria-pressed': () => String(shown.value),
   });
 }

@@ -158,7 +158,7 @@ class Hand {
   /** Takes the surface along to where the pins are to be. @param {readonly Vec3[]} wanted @param {boolean} live */
   #go(wanted, live) {
     const [engine, { parameters }] = [this.#engine, this.#start];
-    if (engine.field.peek()?.kind !== 'points') return engine.pull(parameters, wanted, { live });
+    if (!engine.field.peek()?.model) return engine.pull(parameters, wanted, { live });
     const { pulls, pins } = pulled(this.#start, this.#held, wanted[this.#held]);
     batch(() => {
       engine.setPulls(pulls, { live });
@@ -232,7 +232,7 @@ function pulled({ pulls, diagonal, pins }, k, to) {
 function fieldOf({ field: { value: field }, state }) {
   const { surface, centres, pulls } = state.value;
   return JSON.stringify(
-    field?.kind === 'points' ? [surface, centres, pulls] : field && [field.formula, field.parameters],
+    field?.model ? [surface, centres, pulls] : field && [field.formula, field.parameters],
   );
 }
 
