@@ -128,8 +128,8 @@ impl SlotFate {
 pub struct Slots(pub u32);
 
 impl Slots {
-    /// Slots of a particle, at most.
-    pub const COUNT: usize = 10;
+    /// Slots of a particle, at most: as many as there is room for below [`SINGULAR`](Self::SINGULAR).
+    pub const COUNT: usize = Self::SINGULAR.trailing_zeros() as usize / Self::BITS;
     /// Bits of a fate.
     pub const BITS: usize = 3;
     /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the

@@ -12,9 +12,9 @@ use core::task::{Context, Poll, Waker};
 /// A computation under way, which may borrow what it works on.
 pub type Work<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
-/// Items in a slice of work of which each takes up to a microsecond or two: they search a tree, or evaluate a field.
+/// Items in a slice of work, of 10 to 50 µs, of which each takes up to a microsecond or two: they search a tree, or evaluate a field.
 pub const HEAVY: usize = 32;
-/// Items that take some 100 ns each: they ask their neighbours.
+/// Items that take some 100 ns each: they ask their neighbours, or a field evaluates them in lanes.
 pub const MEDIUM: usize = 8 * HEAVY;
 /// Items that take some 10 ns each: they are read and counted.
 pub const LIGHT: usize = 8 * MEDIUM;

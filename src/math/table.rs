@@ -2,8 +2,6 @@
 
 /// Golden ratio times 2⁶⁴. Multiplication by it spreads keys that differ in a few bits over the top bits (Fibonacci hashing).
 pub(crate) const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
-/// Number of buckets of the first table.
-const FIRST: usize = 64;
 
 /// Hash of words, the same on every machine.
 pub(crate) fn hash(words: impl IntoIterator<Item = u64>) -> u32 {
@@ -67,7 +65,7 @@ impl IndexTable {
     }
 
     fn grow(&mut self) -> Option<()> {
-        let size = (2 * self.buckets.len()).max(FIRST);
+        let size = (2 * self.buckets.len()).max(2);
         let mut fresh = Vec::new();
         fresh.try_reserve_exact(size).ok()?;
         fresh.resize(size, 0);

@@ -6,12 +6,9 @@ use super::one_rings::OneRings;
 use super::sheets::Sheets;
 use crate::field::Field;
 use crate::particles::Particles;
-use crate::slices::{pause, ranges};
+use crate::slices::{HEAVY, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
-
-/// Points at which the field is evaluated together, in one slice of work.
-const BATCH: usize = 64;
 
 /// The points to be measured, with their normals, residuals and one-rings. All columns are in tree order.
 pub(super) struct MeasuredPoints {
@@ -43,9 +40,9 @@ impl MeasuredPoints {
         let mut normal = Vec::with_capacity(tree.len());
         let mut height = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();
-        for range in ranges(tree.len(), BATCH) {
+        for range in ranges(tree.len(), HEAVY) {
             let (position, origin) = (&tree.position[range.clone()], &tree.origin[range.clone()]);
-            let (mut value, mut gradient) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
+            let (mut value, mut gradient) = ([0.0; HEAVY], [DVec3::ZERO; HEAVY]);
             creases.exact_gradients(field, range.clone(), position, &mut value, &mut gradient);
             for (((k, &i), value), &gradient) in range.zip(origin).zip(value).zip(&gradient) {
                 let slope = gradient.length();
