@@ -20,7 +20,8 @@ use crate::sampler::probe::BATCH;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Number of sizes of a box around a singular point that are tried: the longest side of the whole box, and each half the one before.
+/// Number of sizes of a box around a singular point that are tried: the longest side of the whole box, and each half the one before. Half of
+/// them leaves 0.01 % more cells undecided on 48 random surfaces, and double as many.
 const SIZES: usize = 10;
 /// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes. Without any, 7 of 150 random surfaces
 /// with cone points are no longer proven.
@@ -48,7 +49,8 @@ const LARGEST_NECK: f64 = 1e-3;
 /// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
 /// curve: the Newton step does not run along it. It is the root of the precision to which second derivatives are known.
 const SMALL: f64 = 1e-6;
-/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular points the step runs along the curve.
+/// Share in the place of [`SMALL`] where a Newton step leads too far: beside a curve of singular points the step runs along the curve. In 60
+/// runs on 30 random surfaces that cross themselves 124 places are found, with half 118, with double 136, and 166 without: curves in pieces.
 const DAMPED: f64 = 0.1;
 /// Factors by which steps shrink where the first derivatives that do not vanish are of third to eighth order: (n − 2)/(n − 1). Such a
 /// step is lengthened to where the steps would end. Without, 5 of 50 random surfaces with cusps no longer show theirs.
@@ -58,8 +60,6 @@ const SLOW: core::ops::Range<f64> = 0.45..0.88;
 pub(super) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
-/// Points of the survey from which one is searched, at most. On a surface that crosses itself along a curve there are many.
-const MOST_STARTS: usize = 4_096;
 /// Extent of linked points that are no curve, as a share of the search distance: at a point where sheets touch, Newton's method ends
 /// within a hundredth of it.
 const ONE_PLACE: f64 = 0.25;
@@ -149,7 +149,6 @@ pub(crate) fn near_survey(
             let is_near = |other: DVec3| other.distance_squared(p) <= 0.25 * spacing * spacing;
             // False for NaN.
             let is_start = slope_sq <= most_sq
-                && tried.len() < MOST_STARTS
                 && !tried.iter().copied().any(is_near)
                 && !found.iter().any(|point| is_near(point.position));
             if !is_start {
