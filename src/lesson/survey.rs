@@ -5,7 +5,7 @@ use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Cells of the grid along the longest side of the box. A component smaller than a cell may be missed.
+/// Cells of the grid along the longest side of the box, as many as in the survey of the sampler. A component smaller than a cell may be missed.
 const CELLS: f64 = 32.0;
 
 /// A point near the surface, and the part of the surface around it.

@@ -66,17 +66,20 @@ const SPARSE_ENERGY: f32 = 0.8;
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
 
-/// Share of the radius of a gap that the curvature of the surface leaves of it.
+/// Share of the radius of a gap that the curvature of the surface leaves of it. From 0.8 to 1 the mean figures of 16 random motions are the
+/// same within 1 %.
 const GAP_ROOM: f32 = 0.97;
 
 /// Energy of a pair of neighbours in a lattice: exp(−2) less the energy at the end of the range.
 const LATTICE_PAIR: f64 = 0.124_226_3;
 
-/// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120° where one neighbour is missing.
+/// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120° where one neighbour is missing. From 80° to 120°
+/// the mean figures of 16 random motions are the same within 1 %.
 const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 
 /// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a sector too narrow for two it is placed in
-/// the middle.
+/// the middle: below half-way between 120° and the 180° that two take. From 120° to 180° the mean figures of 16 random motions are the same
+/// within 1 %.
 const SLOT_ANGLE: f32 = PI / 3.0;
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 

@@ -18,14 +18,17 @@ const ONE_IN: usize = 7;
 /// Double precision is taken where the median of those distances is more than this times that by which coordinates in single precision
 /// are rounded. On the gallery's formulas it is at most 0.3 times that.
 const MOST_BLUR: f64 = 4.0;
-/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a tenth of those of the survey.
+/// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a tenth of those of the survey. With half and
+/// double the figures of 24 random surfaces that need double precision are the same within 0.01 %.
 const FINE_SIDE: usize = 16;
-/// Largest number of points of the surface at which it is taken, of which the median is wanted.
+/// Largest number of points of the surface at which it is taken, of which the median is wanted. With half and double the figures of those
+/// surfaces are the same within 0.01 %.
 const MOST_ROOTS: usize = 64;
 /// Halvings of an edge between two nodes: more than the bits of a number.
 const HALVINGS: u32 = 60;
 
-/// Number of particles at which the rounding of double precision is looked at. It is much the same at neighbours.
+/// Number of particles at which the rounding of double precision is looked at. It is much the same at neighbours: half and double tell of the
+/// same ones of 24 random surfaces.
 const LOOKED_AT: usize = 256;
 /// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth of the scatter of such distances on
 /// a relaxed surface.

@@ -366,7 +366,8 @@ impl Survey {
     ) -> Option<OrientedPoint> {
         /// Lines that are tried. A third of them meet a surface that its box fits.
         const LINES: u32 = 64;
-        /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface, the point moves more than that.
+        /// Least cosine of the angle between line and normal: 60°. Where a line grazes the surface, the point moves more than that. With half
+        /// of it and with 0 holes are 0.6 % wider in 104 runs on 52 random surfaces.
         const LEAST_COSINE: f32 = 0.5;
         let Tolerance { residual, min_gradient, .. } = self.tolerance();
         // One more step from there.
@@ -415,7 +416,8 @@ const LARGEST: f32 = 0.125;
 /// Number of points at which the resolution is measured: an upper quartile rests on 12 of them. Half and twice as many change no particle on
 /// 43 random surfaces.
 const RESOLUTION_SAMPLES: usize = 48;
-/// Number of points at which near sheets are looked for.
+/// Number of points at which near sheets are looked for. Half of it gives the same particles in 72 runs on 36 random surfaces, many of which
+/// have some, twice as many others on one.
 const SAMPLES: usize = 256;
 /// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets are told apart.
 const NOISE: f32 = UNRESOLVED[0] as f32;
@@ -450,7 +452,7 @@ fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut
 /// Looks for near sheets in double precision at a selection of the points. Returns whether more than half of these have one.
 fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -> bool {
     /// Largest distance, in grid spacings, at which the tolerance of particles depends on another sheet: a hundred times that to which
-    /// the survey's points land.
+    /// the survey's points land. Half and double give the same particles in 72 runs on 36 random surfaces, many of which have some.
     const MOST: f32 = 0.01;
     let points: Vec<DVec3> = selection(&out.position, SAMPLES).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));

@@ -117,9 +117,10 @@ pub(super) const TUNING: Tuning = Tuning {
     loss: 0.1,
     // Half-way from 1, where sweeps are slow, to 2, where those of a quadratic energy diverge.
     omega: 1.5,
-    // The limits below then hold for one defect in a hundred particles and for one in forty.
+    // The limits below then hold for one defect in a hundred particles and for one in forty. With half of it the closest pairs of 56 runs on 28
+    // random surfaces are 2.1 % farther apart and angles 0.7 % smaller, with double 0.6 % nearer and 0.2 % larger.
     theta_per_defect: 30.0,
-    // The least that was tried.
+    // With half of it the largest holes of those runs are 4.6 % wider where sizes differ, with 0.8 angles are 0.7 % smaller.
     least_theta: 0.6,
     // Pairs are at 0.81 and angles of 56.8° with this everywhere on closed surfaces, at 0.79 and of 57.2° with 0.7.
     most_theta: 0.98,

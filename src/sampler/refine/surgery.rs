@@ -12,7 +12,9 @@ use glam::Vec3;
 const RINGS: u32 = 2;
 /// Sweeps over the patch of a trial. With four of them the figures of 43 random surfaces are the same within their noise.
 const SWEEPS: u32 = 2;
-/// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch must come to rest within a few.
+/// Over-relaxation of the steps of surgery: less than in sweeps over all particles, since the patch must come to rest within a few. With 1 and
+/// with 1.7 the share of particles with six neighbours is 0.4 and 0.3 % smaller in 56 runs on 28 random surfaces, with 1.5 holes are
+/// 0.9 % wider where sizes differ.
 const OMEGA: f32 = 1.3;
 /// A trial ends early if the gain of its last sweep, times this, would not be enough. In 19 of 20 trials a sweep gains no more than 0.35 of
 /// what the one before it did, and so all that follow no more than 0.54 of it. On 80 random surfaces the figures are the same within 1 % with

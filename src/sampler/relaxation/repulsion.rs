@@ -119,6 +119,7 @@ impl Gaussian {
 impl Repulsion for Gaussian {
     const RANGE: f32 = GAUSSIAN_RANGE;
     const SKIN: f32 = GAUSSIAN_SKIN;
+    /// Half of it takes 0 to 1.2 % more instructions in runs on six random surfaces, double of it as many within 0.3 %.
     const SLACK: f32 = 0.5;
     const POLISH_UNITS: u32 = 1;
     /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps

