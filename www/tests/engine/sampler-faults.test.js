@@ -209,7 +209,15 @@ describe('the surface that stays', () => {
           id: 2,
           answer: {
             ok: false,
-            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, mended: null, name: null },
+            error: {
+              kind: 'unexpected_end',
+              message: '',
+              start: 0,
+              end: 0,
+              suggestion: null,
+              mended: null,
+              name: null,
+            },
           },
         });
       }

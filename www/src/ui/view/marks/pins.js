@@ -231,9 +231,7 @@ function pulled({ pulls, diagonal, pins }, k, to) {
 /** Returns a text by which fields are compared. @param {Engine} engine */
 function fieldOf({ field: { value: field }, state }) {
   const { surface, centres, pulls } = state.value;
-  return JSON.stringify(
-    field?.model ? [surface, centres, pulls] : field && [field.formula, field.parameters],
-  );
+  return JSON.stringify(field?.model ? [surface, centres, pulls] : field && [field.formula, field.parameters]);
 }
 
 /** Creates the card that says what a pull has come to. @param {Engine} engine @param {Pins} pins */
