@@ -43,12 +43,12 @@ pub struct Surface {
     pub parameters: &'static [SurfaceParameter],
     /// Box that is sampled.
     pub bounds: Bounds,
-    /// Algebraic degree; `None` for a transcendental surface.
+    /// Algebraic degree; none for a transcendental surface.
     pub degree: Option<u32>,
     /// Whether the surface is closed, so that it lies in the box for all values of the parameters.
     #[serde(skip)]
     pub closed: bool,
-    /// Genus with the default parameters; `None` unless the surface is closed, connected and free of
+    /// Genus with the default parameters; none unless the surface is closed, connected and free of
     /// self-intersections.
     pub genus: Option<u32>,
     /// Whether the surface with the default parameters has no singular point.

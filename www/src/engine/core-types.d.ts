@@ -1238,9 +1238,9 @@ export type SurfaceEntry = {
   formula: string,
   /** Box that is sampled. */
   bounds: Bounds,
-  /** Algebraic degree; `None` for a transcendental surface. */
+  /** Algebraic degree; none for a transcendental surface. */
   degree: number | null,
-  /** Genus with the default parameters; `None` unless the surface is closed, connected and free of
+  /** Genus with the default parameters; none unless the surface is closed, connected and free of
   * self-intersections. */
   genus: number | null,
   /** Two sentences about the surface. */

@@ -65,12 +65,12 @@ export function settingsOf(engine, { radius, adaptive }) {
 
 /** Names the surface of the picture, and the sizes on it, so that a change can be told. @param {Engine} engine */
 export function surfaceKey(engine) {
-  const { kind, formula, parameters, bounds, surface, model } = engine.field.value ?? {};
+  const { formula, parameters, bounds, surface, model } = engine.field.value ?? {};
   const values = parameters?.map(({ name, value }) => [name, value]);
   const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
   const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
   const solid = ['box_faces', 'box_cell', 'thickness'].map((name) => settingOf(engine, name));
-  return JSON.stringify([kind, formula, values, bounds, surface, model, engine.state.value.pulls, sizes, solid]);
+  return JSON.stringify([formula, values, bounds, surface, model, engine.state.value.pulls, sizes, solid]);
 }
 
 /** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */
