@@ -140,13 +140,16 @@ fn long_binary(
     registers.set(i.out, &first);
 }
 
-/// `exponent` as an integer, if it is one other than 0, as those of parameters often are. Such a power is one of products, as in
-/// [`Graph::pow`](super::graph::Graph::pow).
-fn integer(exponent: f32) -> Option<i32> {
-    #[expect(clippy::cast_possible_truncation, reason = "compared with the exponent")]
-    let n = exponent as i32;
-    #[expect(clippy::cast_precision_loss, reason = "an integer of single precision is converted to itself")]
-    (n != 0 && n as f32 == exponent).then_some(n)
+/// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln a). They are as accurate: eight factors err by
+/// seven roundings, which is 4·10⁻⁷ at most; thirty were found to err by 1.1·10⁻⁶.
+const MAX_SMALL_INTEGER: f32 = 8.0;
+
+/// `exponent` as an integer, if it is a small one other than 0. The exponents of parameters often are.
+fn small_integer(exponent: f32) -> Option<i32> {
+    let small =
+        exponent != 0.0 && exponent.abs() <= MAX_SMALL_INTEGER && functions::floor(exponent) == exponent;
+    #[expect(clippy::cast_possible_truncation, reason = "a small integer")]
+    small.then_some(exponent as i32)
 }
 
 /// a^n. For n < 0 the reciprocal is raised to −n.
@@ -186,7 +189,7 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
                 Binary::Mul => unary(registers, i, |a| a * b),
                 Binary::Min => unary(registers, i, |a| a.zip(b, functions::min)),
                 Binary::Max => unary(registers, i, |a| a.zip(b, functions::max)),
-                Binary::Pow => match integer(uniforms[i.b as usize]) {
+                Binary::Pow => match small_integer(uniforms[i.b as usize]) {
                     Some(n) => unary(registers, i, |a| integer_power(a, n)),
                     None => long_binary(registers, i, &|_| b, functions::pow_all),
                 },
