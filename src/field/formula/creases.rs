@@ -32,7 +32,7 @@ const MAX_CELLS: usize = 1 << DEPTH;
 const MOST_VISITED: usize = 1 << 18;
 
 /// Least jump of the gradient, as a share of it, that is a crease: an angle of 0.6°, less than light and shadow show. A tenth and ten
-/// times change no figure on 60 random solids, products and powers of a thickness.
+/// times change no figure beyond scatter on 60 random solids, products and powers of a thickness.
 const LEAST_JUMP: f64 = 0.01;
 
 /// Distance from the tie at which the gradients are taken, and a hundred times the error of its place; as a share of the diagonal of

@@ -69,7 +69,7 @@ use serde::{Deserialize, Serialize};
 use solids::Solid;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so that the time that a typed character
-/// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of a thousand factors in nine.
+/// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of five hundred factors in nine.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
 /// Maximum nesting of brackets, calls, signs and exponents. So deep a formula takes less than 256 kB of stack, of the 1 MiB that there is in

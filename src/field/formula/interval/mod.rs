@@ -208,7 +208,7 @@ impl FactorProgram {
 
 /// Maximum number of factors. A product of more is taken as one function: each program holds the whole product too, for its domain, so
 /// that all of them grow with the square of the number. With 4, 16 and 32 products of 8, 14, 18 and 24 random planes take as long to
-/// 35 %, and have as many particles to 1 %.
+/// 40 %, and have as many particles to 1 %.
 const MAX_FACTORS: usize = 16;
 
 /// Programs for the [factors](Graph::factors) of `root`, or for `root` alone. A factor is simpler than the product, and it has a gradient
