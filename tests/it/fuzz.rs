@@ -94,7 +94,7 @@ fn mutated_files_are_read_or_refused() {
 #[test]
 fn mutated_requests_end_with_finite_particles_or_are_refused() {
     seeds("request").iter().for_each(|seed| harness::whole_request(seed));
-    fuzz("request", 8_000, harness::request);
+    fuzz("request", 4_000, harness::request);
 }
 
 /// A formula of the gallery in which some pieces are dropped, put in or taken from another formula.
@@ -105,7 +105,7 @@ fn damaged(random: &mut Pcg32, tokens: &[Vec<u8>]) -> String {
 
 #[test]
 fn runs_on_damaged_formulas_end_with_finite_particles() {
-    let (cases, tokens) = (200 * times(), tokens());
+    let (cases, tokens) = (100 * times(), tokens());
     let (mut ran, mut proven) = (0, 0);
     for seed in 0..cases {
         let mut random = Pcg32::seed_from_u64(seed);

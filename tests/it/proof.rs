@@ -1,7 +1,7 @@
 //! A property of random surfaces whose components are known: where the search says `proven`, every component holds particles
 //! or is named in the report, with its place and its size. Where it does not say so, the report says why.
 //!
-//! `PROOF_CASES` sets the number of cases of each family, 150 by default, fewer where a case takes long.
+//! `PROOF_CASES` sets the number of cases of each family, 75 by default, fewer where a case takes long.
 
 use crate::runs::session;
 use glam::DVec3;
@@ -210,7 +210,7 @@ fn holds(case: &Case, context: &str) -> bool {
 /// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must be proven. The search takes the
 /// factors of a formula one by one.
 fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>) {
-    family_of(name, share, (150, TINY_SHARE), |factors| factors.join("*"), make);
+    family_of(name, share, (75, TINY_SHARE), |factors| factors.join("*"), make);
 }
 
 /// The same, of formulas made from their factors by `join`; of so many cases by default, with tiny gaps for so large a share.
@@ -325,7 +325,7 @@ fn of_scattered_spheres_none_is_missing_without_a_word() {
 #[test]
 fn of_scattered_spheres_of_one_factor_none_is_missing_without_a_word() {
     let join = |factors: &[String]| format!("atan({})", factors.join("*"));
-    family_of("scattered spheres of one factor", 0.5, (100, 0.0), join, scattered);
+    family_of("scattered spheres of one factor", 0.5, (50, 0.0), join, scattered);
 }
 
 #[test]
