@@ -43,8 +43,8 @@ async function attack(p, { state, worker, death }) {
   };
 
   engine.setView({ draw: state === 'joining a mesh' ? 'mesh' : 'discs' });
-  // So much work that every phase is seen.
-  const relaxSteps = state === 'relaxation' ? 100 : 30;
+  // The worker tells of the relaxation only if it takes longer than a picture.
+  const relaxSteps = state === 'relaxation' ? 1000 : 30;
   const settings = { radius_share: 0.007, relax_steps: relaxSteps };
   if (state === 'writing a file') call('exportMesh before', engine.exportMesh('glb'));
   else if (state === 'opening a file') call('open before', p.open(cloud(2000)));
