@@ -19,6 +19,8 @@ for (const phase of /** @type {const} */ (['relaxation', 'quality'])) {
     const before = p.report();
     const old = p.state.view.camera;
     engine.setSetting('radius_share', 0.003);
+    // The worker tells of the relaxation only if it takes longer than a picture.
+    engine.setSetting('relax_steps', 100);
     engine.setFormula('x^2');
     await until(engine.progress, (now) => now.phase === phase && engine.field.value?.formula === 'x^2');
     engine.setFormula('x^2 + sqr(y) + z^2 = k');
