@@ -53,6 +53,8 @@ pub(super) fn follow<'a>(
             }
             points.reverse();
         }
+        // A crease that is met on the box begins twice there.
+        points.dedup();
         // At a corner two patches that have nothing else in common are met, too.
         let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         if !is_closed && length <= ONE_CORNER * step {
