@@ -43,7 +43,7 @@ fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
         let mut field = surface.field();
         let mut work = || {
             if let Some(parameter) = surface.parameters.first() {
-                field.set_parameter(parameter.name, parameter.max).expect("the gallery's own parameter");
+                field.set_parameter(&parameter.name, parameter.max).expect("the gallery's own parameter");
             }
             field.values(&points, &mut value);
             field.gradients(&points, &mut value, &mut gradient);

@@ -195,7 +195,7 @@ fn surfaces() -> Vec<SurfaceEntry> {
     let entries = |group: &'static SurfaceGroup| {
         group.surfaces.iter().map(|surface| SurfaceEntry {
             surface,
-            parameters: surface.declared(),
+            parameters: surface.parameters.to_vec(),
             group: group.name,
         })
     };

@@ -153,7 +153,7 @@ impl Session {
         Self {
             run: Run::idle(Source::Formula(surface.field()), surface.bounds),
             surface: Some(surface),
-            declared: surface.declared(),
+            declared: surface.parameters.to_vec(),
             own: surface.bounds,
             clip: surface.bounds,
             reach: None,
@@ -246,7 +246,7 @@ impl Session {
         // A declared parameter that the formula does not use stays declared: it may come back with the next key.
         let mut declared = surface.map_or_else(
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
-            Surface::declared,
+            |surface| surface.parameters.to_vec(),
         );
         // What a parameter stands for, and which values it can have, is known in the surface's own formula alone.
         if surface.is_some_and(|surface| surface.formula != text) {
@@ -280,7 +280,9 @@ impl Session {
             let values: Vec<(String, f64)> = field
                 .parameters()
                 .iter()
-                .map(|p| (p.name.clone(), usual(p).unwrap_or_else(|| Parameter::automatic(&p.name).value)))
+                .map(|p| {
+                    (p.name.to_string(), usual(p).unwrap_or_else(|| Parameter::automatic(&p.name).value))
+                })
                 .collect();
             for (name, value) in values {
                 field.set_parameter(&name, value)?;

@@ -85,7 +85,7 @@ impl Session {
         };
         // A map that is collected at once is sorted, which brings a stable sort of 3 kB.
         let mut values = BTreeMap::new();
-        values.extend(parameters.iter().map(|p| (p.name.clone(), p.value)));
+        values.extend(parameters.iter().map(|p| (p.name.to_string(), p.value)));
         FileRecord {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             digest: String::new(),

@@ -387,7 +387,7 @@ fn parameters_can_be_declared_and_changed_without_parsing_again() {
         Parameter::automatic("unused"),
     ];
     let mut field = Formula::as_written("x^2/a^2 - b", &declared).unwrap();
-    let names: Vec<&str> = field.parameters().iter().map(|p| p.name.as_str()).collect();
+    let names: Vec<&str> = field.parameters().iter().map(|p| &*p.name).collect();
     assert_eq!(names, ["a", "b"]);
     let point = [Vec3::new(3.0, 0.0, 0.0)];
     let mut value = [0.0];
@@ -435,7 +435,8 @@ fn an_exponent_may_be_a_parameter_of_any_value() {
 #[test]
 fn declarations_that_make_no_sense_are_refused() {
     let with = |name: &str, value: f64, min: f64, max: f64| {
-        let parameter = Parameter { name: name.into(), label: String::new(), value, min, max, step: 0.1 };
+        let parameter =
+            Parameter { name: name.to_owned().into(), label: "".into(), value, min, max, step: 0.1 };
         Formula::as_written("x", &[parameter]).map(|_| ()).map_err(|error| error.kind)
     };
     assert_eq!(with("a", 1.0, 0.0, 2.0), Ok(()));

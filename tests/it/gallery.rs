@@ -110,7 +110,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
             None => format!("{} + x^2 + 0.618034", surface.formula),
         };
-        let mut field = Formula::as_written(&text, &surface.declared()).expect("a formula");
+        let mut field = Formula::as_written(&text, surface.parameters).expect("a formula");
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));
@@ -164,8 +164,8 @@ fn every_parameter_is_used_and_starts_inside_its_range() {
     for surface in SURFACES.iter() {
         assert!(surface.bounds.is_valid(), "{}", surface.id);
         let field = surface.field();
-        let used: Vec<&str> = field.parameters().iter().map(|p| p.name.as_str()).collect();
-        let declared: Vec<&str> = surface.parameters.iter().map(|p| p.name).collect();
+        let used: Vec<&str> = field.parameters().iter().map(|p| &*p.name).collect();
+        let declared: Vec<&str> = surface.parameters.iter().map(|p| &*p.name).collect();
         assert_eq!(used, declared, "{}", surface.id);
         assert!(field.auto().is_empty(), "{}", surface.id);
         for p in surface.parameters {
@@ -201,7 +201,7 @@ fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_paramete
         for corner in 0..corners {
             for (k, p) in surface.parameters.iter().enumerate() {
                 let value = if corner >> k & 1 == 0 { p.min } else { p.max };
-                field.set_parameter(p.name, value).unwrap();
+                field.set_parameter(&p.name, value).unwrap();
             }
             for p in faces(surface, 40) {
                 let (value, _) = field.value_and_gradient(p);

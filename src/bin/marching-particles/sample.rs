@@ -267,7 +267,7 @@ pub(crate) fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen
     // A formula of the user's has neither the name nor the box of the surface that it replaces.
     let surface = named.filter(|surface| surface.formula == text);
     let own = surface.map(|surface| arguments.solid().own_box(surface));
-    let parameters = formula.parameters().iter().map(|p| (p.name.clone(), p.value)).collect();
+    let parameters = formula.parameters().iter().map(|p| (p.name.to_string(), p.value)).collect();
     let bounds = match arguments.bounds {
         Some(BoxChoice::Given(bounds)) => Some(bounds),
         Some(BoxChoice::Fixed) => {
@@ -336,14 +336,14 @@ fn formula(
     values: &[(String, f64)],
 ) -> Result<Formula, Failure> {
     let declared = match named {
-        Some(surface) => surface.declared(),
+        Some(surface) => surface.parameters.to_vec(),
         None => values.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
     };
     let wrong = |error: FormulaError| Failure::Formula { text: text.to_owned(), error: Box::new(error) };
     let mut formula = Formula::as_written(text, &declared).map_err(wrong)?.without_powers();
     for (name, value) in values {
         if !formula.parameters().iter().any(|parameter| parameter.name == *name) {
-            let known: Vec<&str> = formula.parameters().iter().map(|p| p.name.as_str()).collect();
+            let known: Vec<&str> = formula.parameters().iter().map(|p| &*p.name).collect();
             let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
             return Err(Failure::Usage(format!(
                 "the formula has no parameter `{name}`; its parameters: {known}"

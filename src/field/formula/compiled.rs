@@ -22,7 +22,8 @@ pub(super) struct Compiled {
     gradient: [Id; 3],
     /// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), once it is compiled.
     hessian: [Id; 6],
-    is_constant: bool,
+    /// Whether f is the same everywhere for any values of the parameters.
+    pub(super) is_constant: bool,
     pub(super) value_program: Program,
     pub(super) gradient_program: Program,
     hessian_program: Option<Program>,
@@ -40,24 +41,20 @@ impl Compiled {
     ///
     /// The errors of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex) beyond [`MAX_OPERATIONS`].
     pub(super) fn new(equation: &Equation, parameters: &[Parameter]) -> Result<Self, FormulaError> {
-        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let names: Vec<&str> = parameters.iter().map(|parameter| &*parameter.name).collect();
         let mut graph = Graph::default();
         let root = build::build(&mut graph, equation, &names)?;
-        let value_program = Program::compile(&graph, &[root]);
-        if value_program.operations() > MAX_OPERATIONS {
+        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+        let compiled = Self::from_graph(graph, root, &values);
+        if compiled.value_program.operations() > MAX_OPERATIONS {
             return Err(build::too_complex(&equation.left));
         }
-        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
-        Ok(Self::from_program(graph, root, value_program, &values))
+        Ok(compiled)
     }
 
     /// Compiles node `root` of `graph` and its gradient, with these values of the parameters.
-    pub(super) fn from_graph(graph: Graph, root: Id, values: &[f64]) -> Self {
+    pub(super) fn from_graph(mut graph: Graph, root: Id, values: &[f64]) -> Self {
         let value_program = Program::compile(&graph, &[root]);
-        Self::from_program(graph, root, value_program, values)
-    }
-
-    fn from_program(mut graph: Graph, root: Id, value_program: Program, values: &[f64]) -> Self {
         graph.let_zero_annihilate();
         let gradient = derivative::gradient(&mut graph, root);
         let gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
@@ -81,11 +78,6 @@ impl Compiled {
         };
         compiled.set_parameters(values);
         compiled
-    }
-
-    /// Whether f is the same everywhere for any values of the parameters.
-    pub(super) fn is_constant(&self) -> bool {
-        self.is_constant
     }
 
     /// Recomputes everything that depends on the parameters alone.
@@ -139,7 +131,8 @@ impl Compiled {
 
     /// f, ∇f and ∇∇f at `p`, as jets carried forward through the graph of f.
     pub(super) fn jet(&self, values: &[f64], p: DVec3, scratch: &mut scalar::JetScratch) -> Jet {
-        scalar::jet(&self.graph, self.root, values, p, scratch)
+        scalar::jets(&self.graph, self.root, values, p, scratch);
+        scratch[self.root as usize].second_order()
     }
 
     /// f and ∇f at `p`, the same as those of [`Compiled::jet`].

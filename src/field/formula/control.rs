@@ -266,7 +266,7 @@ impl Formula {
         {
             parameter.value = rounded(values[k]).clamp(control.ends[k][0], control.ends[k][1]);
             self.values[k] = parameter.value;
-            changed.insert(parameter.name.clone(), parameter.value);
+            changed.insert(parameter.name.to_string(), parameter.value);
         }
         self.compiled.set_parameters(&self.values);
         self.branches.set_parameters(&self.values);
@@ -296,7 +296,7 @@ fn idle(residuals: &Residuals, parameters: &[Parameter]) -> Vec<String> {
         |k: usize| residuals.rows.iter().map(|row| row[k].abs()).fold(0.0, |most: f64, own| most.max(own));
     let strongest = (0..parameters.len()).map(strength).fold(0.0, f64::max);
     let is_idle = |(k, _): &(usize, &Parameter)| strength(*k) <= IDLE * strongest;
-    parameters.iter().enumerate().filter(is_idle).map(|(_, parameter)| parameter.name.clone()).collect()
+    parameters.iter().enumerate().filter(is_idle).map(|(_, parameter)| parameter.name.to_string()).collect()
 }
 
 #[cfg(test)]
@@ -316,7 +316,7 @@ mod tests {
                 let mut slopes = vec![0.0; values.len()];
                 let f = by_parameters.slopes(&values, p, &mut slopes);
                 assert_eq!(f.to_bits(), field.value_and_gradient(p).0.to_bits(), "{}", surface.id);
-                for (k, parameter) in surface.declared().iter().enumerate() {
+                for (k, parameter) in surface.parameters.iter().enumerate() {
                     let step = 1e-6 * (1.0 + values[k].abs());
                     let [ahead, behind] = [step, -step].map(|by| {
                         field.set_parameter(&parameter.name, values[k] + by).unwrap();

@@ -63,8 +63,10 @@ fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit() || c == '_'
 }
 
-/// The syntax of names as a regular expression of JavaScript: a letter, then letters, digits and `_`.
-pub(super) fn name_pattern() -> String {
+/// The names that parameters may have, as a regular expression of JavaScript: a letter, then letters, digits and `_`. Names of
+/// coordinates, constants and functions match it, and are refused all the same.
+#[must_use]
+pub fn name_pattern() -> String {
     let letters: String = LETTERS.iter().map(|(first, last)| format!("{first}-{last}")).collect();
     format!("^[{letters}][{letters}0-9_]*$")
 }

