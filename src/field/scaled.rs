@@ -2,16 +2,16 @@
 //! single precision, whatever units a formula is in.
 
 use super::{Bounded, Enclosure, Field, Jet, UnitCell};
-use crate::math::{Bounds, Interval, Sym3, sort_numbers};
+use crate::math::{Bounds, Interval, Sym3, power_of_two, sort_numbers};
 use crate::slices::Work;
 use glam::{DVec3, Vec3};
 
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
 const SAMPLES: usize = 128;
 
-/// Largest |exponent| of a gradient that needs no scale. The square of such a gradient, and of a value a million times
-/// smaller or larger, is a normal number in single precision.
-const COMFORTABLE: i32 = 40;
+/// Largest gradient that needs no scale, and the inverse of the smallest. The square of such a gradient, and of a value a million
+/// times smaller or larger, is a normal number in single precision.
+const COMFORTABLE: f64 = (1_u64 << 40) as f64;
 
 /// A field times a positive power of two, which has the same surface. No digit is lost.
 pub(crate) struct Scaled<'a> {
@@ -44,8 +44,11 @@ pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIte
         gradient.iter().map(|g| g.abs().max_element()).filter(|s| s.is_finite() && *s > 0.0).collect();
     sort_numbers(&mut size);
     let Some(&median) = size.get(size.len() / 2) else { return 1.0 };
-    let exponent = exponent(median);
-    if exponent.abs() <= COMFORTABLE { 1.0 } else { power_of_two(-exponent) }
+    let size = power_of_two(median.into());
+    if (1.0 / COMFORTABLE..=COMFORTABLE).contains(&size) {
+        return 1.0;
+    }
+    (1.0 / size).clamp(f32::MIN_POSITIVE.into(), (1.0 / f32::MIN_POSITIVE).into()) as f32
 }
 
 /// Points of a coarse grid in a box, off its faces and its planes of symmetry.
@@ -53,16 +56,6 @@ pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
     /// 125 points fill one batch.
     const SIDE: usize = 5;
     bounds.spread(SIDE).map(|p| p.as_vec3())
-}
-
-/// Exponent of a positive number. A subnormal one counts as the smallest normal number.
-fn exponent(x: f32) -> i32 {
-    ((x.to_bits() >> 23 & 0xff) as i32).max(1) - 127
-}
-
-/// 2^`exponent`, for −126 ≤ `exponent` ≤ 127.
-fn power_of_two(exponent: i32) -> f32 {
-    f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
 }
 
 impl Field for Scaled<'_> {

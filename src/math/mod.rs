@@ -384,6 +384,13 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
     ([one + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y])
 }
 
+/// Largest power of two not above `x`, which must be positive, and at least the smallest normal number.
+pub(crate) fn power_of_two(x: f64) -> f64 {
+    /// Bits of the sign and the exponent.
+    const HEAD: u64 = 0xfff << 52;
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & HEAD)
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Bounds, grouped, shortest_text};

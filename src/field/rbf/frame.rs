@@ -1,6 +1,6 @@
 //! Local coordinates, in which the centres fill a box of about one unit.
 
-use crate::math::Bounds;
+use crate::math::{Bounds, power_of_two};
 use glam::DVec3;
 
 /// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points does not move it. Half and
@@ -61,11 +61,4 @@ impl CentredFrame {
     pub fn world(&self, p: DVec3) -> DVec3 {
         p / self.scale + self.origin
     }
-}
-
-/// Largest power of two not above `x`, which must be positive, and at least the smallest normal number.
-fn power_of_two(x: f64) -> f64 {
-    /// Bits of the sign and the exponent.
-    const HEAD: u64 = 0xfff << 52;
-    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & HEAD)
 }
