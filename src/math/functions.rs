@@ -1,9 +1,9 @@
 //! Elementary functions in single precision, with the same bits on every platform.
 //!
 //! Each function is straight-line code over additions, products, quotients, square roots, comparisons and shifts,
-//! so that a loop over a slice becomes SIMD code; no platform library and no fused multiply-add is involved. The
-//! `…_all` forms are such loops, in place. Errors are given in units in the last place (ulp) of the exact result,
-//! and are held to double-precision references in `tests/it/formula_functions.rs`.
+//! so that [`Lanes::map`](super::Lanes::map) of it becomes SIMD code; no platform library and no fused multiply-add is
+//! involved. Errors are given in units in the last place (ulp) of the exact result, and are held to double-precision
+//! references in `tests/it/formula_functions.rs`.
 //!
 //! Conventions: NaN in, NaN out, always; NaN where a function is undefined; ±∞ at poles.
 //!
@@ -410,52 +410,11 @@ pub fn pow(a: f32, b: f32) -> f32 {
     if a.is_nan() || b.is_nan() { f32::NAN } else { result }
 }
 
-macro_rules! loops {
-    ($($name:ident = $function:ident),* $(,)?) => {$(
-        #[doc = concat!("[`", stringify!($function), "`] of every value, in place.")]
-        pub fn $name(values: &mut [f32]) {
-            for value in values {
-                *value = $function(*value);
-            }
-        }
-    )*};
-}
-loops! {
-    exp_all = exp,
-    ln_all = ln,
-    log10_all = log10,
-    sin_all = sin,
-    cos_all = cos,
-    tan_all = tan,
-    asin_all = asin,
-    acos_all = acos,
-    atan_all = atan,
-    sinh_all = sinh,
-    cosh_all = cosh,
-    tanh_all = tanh,
-    cbrt_all = cbrt,
-}
-
-/// [`sin`] of every value, in place, and [`cos`] of it in `cosines`.
-pub fn sin_cos_all(values: &mut [f32], cosines: &mut [f32]) {
-    for (value, cosine) in values.iter_mut().zip(cosines) {
-        let (k, r) = quadrant(*value);
-        let (s, c) = (sine_polynomial(r), cosine_polynomial(r));
-        *value = turned(k, s, c);
-        *cosine = turned(k.wrapping_add(1), s, c);
-    }
-}
-
-/// [`pow`] of every pair, in place of the first.
-pub fn pow_all(values: &mut [f32], exponents: &[f32]) {
-    for (value, exponent) in values.iter_mut().zip(exponents) {
-        *value = pow(*value, *exponent);
-    }
-}
-
-/// [`atan2`] of every pair, in place of the first.
-pub fn atan2_all(values: &mut [f32], across: &[f32]) {
-    for (value, across) in values.iter_mut().zip(across) {
-        *value = atan2(*value, *across);
-    }
+/// [`sin`] and [`cos`] of the same angle.
+#[inline]
+#[must_use]
+pub fn sin_cos(a: f32) -> (f32, f32) {
+    let (k, r) = quadrant(a);
+    let (sine, cosine) = (sine_polynomial(r), cosine_polynomial(r));
+    (turned(k, sine, cosine), turned(k.wrapping_add(1), sine, cosine))
 }

@@ -3,7 +3,7 @@
 //! Every operation is the IEEE operation on each lane, written as a loop over an array: the result has the same
 //! bits on SSE2, AVX and wasm `simd128`, and nothing is contracted into fused multiply-adds.
 
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// Lanes in a [`Lanes`]: two SSE2 or wasm registers, one AVX register.
 pub const LANES: usize = 8;
@@ -89,12 +89,5 @@ impl AddAssign for Lanes {
     #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl SubAssign for Lanes {
-    #[inline]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }

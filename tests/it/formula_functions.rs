@@ -223,34 +223,9 @@ fn nan_is_never_lost() {
 
 #[test]
 fn sine_and_cosine_together_have_the_bits_of_each_alone() {
-    let mut sines = all_sizes();
-    let mut cosines = vec![0.0; sines.len()];
-    single::sin_cos_all(&mut sines, &mut cosines);
     let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
-    for (k, x) in all_sizes().into_iter().enumerate() {
-        assert!(same(sines[k], single::sin(x)) && same(cosines[k], single::cos(x)), "{x:e}");
-    }
-}
-
-#[test]
-fn the_loops_give_the_bits_of_the_single_calls_at_any_length() {
-    let numbers: Vec<f32> = all_sizes().into_iter().step_by(997).collect();
-    type Loop = fn(&mut [f32]);
-    type Single = fn(f32) -> f32;
-    let pairs: [(Loop, Single); 4] = [
-        (single::sin_all, single::sin),
-        (single::exp_all, single::exp),
-        (single::cbrt_all, single::cbrt),
-        (single::tanh_all, single::tanh),
-    ];
-    for (all, one) in pairs {
-        for length in [1, 3, 8, 13, 64] {
-            let mut values = numbers[..length].to_vec();
-            all(&mut values);
-            for (got, &x) in values.iter().zip(&numbers) {
-                let wanted = one(x);
-                assert!(got.to_bits() == wanted.to_bits() || got.is_nan() && wanted.is_nan(), "{x:e}");
-            }
-        }
+    for x in all_sizes() {
+        let (sine, cosine) = single::sin_cos(x);
+        assert!(same(sine, single::sin(x)) && same(cosine, single::cos(x)), "{x:e}");
     }
 }

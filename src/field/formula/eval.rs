@@ -9,6 +9,7 @@ use super::program::{Instruction, Op, Program};
 use crate::math::functions;
 use crate::math::{LANES, Lanes};
 use core::cell::Cell;
+use core::iter::repeat;
 use glam::Vec3;
 
 /// Maximum number of [`Lanes`], of eight points each, in a block.
@@ -78,22 +79,6 @@ impl<'a> RegisterCells<'a> {
     fn get(&self, register: u32) -> &'a [Cell<Lanes>] {
         &self.cells[register as usize * self.stride..][..self.groups]
     }
-
-    /// Sets a register to the numbers of a buffer.
-    fn set(&self, register: u32, buffer: &[f32; BLOCK * LANES]) {
-        for (out, chunk) in self.get(register).iter().zip(buffer.as_chunks().0) {
-            out.set(Lanes(*chunk));
-        }
-    }
-}
-
-/// A buffer that begins with the numbers of `lanes`.
-fn copied(lanes: impl Iterator<Item = Lanes>) -> [f32; BLOCK * LANES] {
-    let mut buffer = [0.0; BLOCK * LANES];
-    for (chunk, lanes) in buffer.as_chunks_mut().0.iter_mut().zip(lanes) {
-        *chunk = lanes.0;
-    }
-    buffer
 }
 
 fn unary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
@@ -102,42 +87,33 @@ fn unary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes) -> La
     }
 }
 
-fn binary(registers: &RegisterCells<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
-    for ((out, a), b) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.b)) {
-        out.set(f(a.get(), b.get()));
+/// Applies an operation to pairs of operands, group by group.
+fn binary(
+    operation: Binary,
+    out: &[Cell<Lanes>],
+    a: impl Iterator<Item = Lanes>,
+    b: impl Iterator<Item = Lanes>,
+) {
+    let groups = out.iter().zip(a.zip(b));
+    match operation {
+        Binary::Add => groups.for_each(|(out, (a, b))| out.set(a + b)),
+        Binary::Sub => groups.for_each(|(out, (a, b))| out.set(a - b)),
+        Binary::Mul => groups.for_each(|(out, (a, b))| out.set(a * b)),
+        Binary::Div => groups.for_each(|(out, (a, b))| out.set(a / b)),
+        Binary::Min => groups.for_each(|(out, (a, b))| out.set(a.zip(b, functions::min))),
+        Binary::Max => groups.for_each(|(out, (a, b))| out.set(a.zip(b, functions::max))),
+        Binary::Pow => groups.for_each(|(out, (a, b))| out.set(a.zip(b, functions::pow))),
+        Binary::Atan2 => groups.for_each(|(out, (a, b))| out.set(a.zip(b, functions::atan2))),
     }
-}
-
-/// Applies a long function `f` to a copy of the register, in one loop that the compiler vectorises. A function pointer,
-/// called once per register, keeps a single copy of this code.
-fn long(registers: &RegisterCells<'_>, i: &Instruction, f: fn(&mut [f32])) {
-    let mut buffer = copied(registers.get(i.a).iter().map(Cell::get));
-    f(&mut buffer[..registers.groups * LANES]);
-    registers.set(i.out, &buffer);
 }
 
 /// Computes sine and cosine together.
 fn sine_cosine(registers: &RegisterCells<'_>, i: &Instruction) {
-    let mut sine = copied(registers.get(i.a).iter().map(Cell::get));
-    let mut cosine = [0.0; BLOCK * LANES];
-    let length = registers.groups * LANES;
-    functions::sin_cos_all(&mut sine[..length], &mut cosine[..length]);
-    registers.set(i.out, &sine);
-    registers.set(i.b, &cosine);
-}
-
-/// Applies a long function of two operands; see [`long`].
-fn long_binary(
-    registers: &RegisterCells<'_>,
-    i: &Instruction,
-    b: &dyn Fn(usize) -> Lanes,
-    f: fn(&mut [f32], &[f32]),
-) {
-    let mut first = copied(registers.get(i.a).iter().map(Cell::get));
-    let second = copied((0..registers.groups).map(b));
-    let length = registers.groups * LANES;
-    f(&mut first[..length], &second[..length]);
-    registers.set(i.out, &first);
+    for ((sine, cosine), a) in registers.get(i.out).iter().zip(registers.get(i.b)).zip(registers.get(i.a)) {
+        let pairs = a.get().0.map(functions::sin_cos);
+        sine.set(Lanes(pairs.map(|(sine, _)| sine)));
+        cosine.set(Lanes(pairs.map(|(_, cosine)| cosine)));
+    }
 }
 
 /// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln a). They are as accurate: eight factors err by
@@ -166,43 +142,17 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
             registers.get(i.out).iter().for_each(|out| out.set(value));
         }
         Op::Unary(operation) => execute_unary(operation, i, registers),
-        Op::Reciprocal => unary(registers, i, |a| Lanes::splat(1.0) / a),
         Op::SineCosine => sine_cosine(registers, i),
-        Op::Binary(Binary::Add) => binary(registers, i, |a, b| a + b),
-        Op::Binary(Binary::Sub) => binary(registers, i, |a, b| a - b),
-        Op::Binary(Binary::Mul) => binary(registers, i, |a, b| a * b),
-        Op::Binary(Binary::Div) => binary(registers, i, |a, b| a / b),
-        Op::Binary(Binary::Min) => binary(registers, i, |a, b| a.zip(b, functions::min)),
-        Op::Binary(Binary::Max) => binary(registers, i, |a, b| a.zip(b, functions::max)),
-        Op::Binary(Binary::Pow) => {
-            let b = registers.get(i.b);
-            long_binary(registers, i, &|k| b[k].get(), functions::pow_all);
+        Op::Binary(operation) => {
+            let [out, a, b] = [i.out, i.a, i.b].map(|operand| registers.get(operand));
+            binary(operation, out, a.iter().map(Cell::get), b.iter().map(Cell::get));
         }
-        Op::Binary(Binary::Atan2) => {
-            let b = registers.get(i.b);
-            long_binary(registers, i, &|k| b[k].get(), functions::atan2_all);
+        Op::Uniform(Binary::Pow) if let Some(n) = small_integer(uniforms[i.b as usize]) => {
+            unary(registers, i, |a| integer_power(a, n));
         }
         Op::Uniform(operation) => {
-            let b = u(i.b);
-            match operation {
-                Binary::Add => unary(registers, i, |a| a + b),
-                Binary::Mul => unary(registers, i, |a| a * b),
-                Binary::Min => unary(registers, i, |a| a.zip(b, functions::min)),
-                Binary::Max => unary(registers, i, |a| a.zip(b, functions::max)),
-                Binary::Pow => match small_integer(uniforms[i.b as usize]) {
-                    Some(n) => unary(registers, i, |a| integer_power(a, n)),
-                    None => long_binary(registers, i, &|_| b, functions::pow_all),
-                },
-                Binary::Sub | Binary::Div | Binary::Atan2 => unreachable!("never compiled with a uniform"),
-            }
-        }
-        Op::Reversed(operation) => {
-            let b = u(i.b);
-            match operation {
-                Binary::Sub => unary(registers, i, |a| b - a),
-                Binary::Div => unary(registers, i, |a| b / a),
-                _ => unreachable!("only differences and quotients are compiled reversed"),
-            }
+            let [out, a] = [i.out, i.a].map(|operand| registers.get(operand));
+            binary(operation, out, a.iter().map(Cell::get), repeat(u(i.b)));
         }
         Op::If(at_most) => {
             let [a, b, c] = [i.a, i.b, i.c].map(|operand| registers.get(operand));
@@ -222,18 +172,18 @@ fn execute_unary(operation: Unary, i: &Instruction, registers: &RegisterCells<'_
         Unary::Abs => unary(registers, i, Lanes::abs),
         Unary::Sign => unary(registers, i, |a| a.map(functions::sign)),
         Unary::Floor => unary(registers, i, |a| a.map(functions::floor)),
-        Unary::Cbrt => long(registers, i, functions::cbrt_all),
-        Unary::Exp => long(registers, i, functions::exp_all),
-        Unary::Ln => long(registers, i, functions::ln_all),
-        Unary::Log10 => long(registers, i, functions::log10_all),
-        Unary::Sin => long(registers, i, functions::sin_all),
-        Unary::Cos => long(registers, i, functions::cos_all),
-        Unary::Tan => long(registers, i, functions::tan_all),
-        Unary::Asin => long(registers, i, functions::asin_all),
-        Unary::Acos => long(registers, i, functions::acos_all),
-        Unary::Atan => long(registers, i, functions::atan_all),
-        Unary::Sinh => long(registers, i, functions::sinh_all),
-        Unary::Cosh => long(registers, i, functions::cosh_all),
-        Unary::Tanh => long(registers, i, functions::tanh_all),
+        Unary::Cbrt => unary(registers, i, |a| a.map(functions::cbrt)),
+        Unary::Exp => unary(registers, i, |a| a.map(functions::exp)),
+        Unary::Ln => unary(registers, i, |a| a.map(functions::ln)),
+        Unary::Log10 => unary(registers, i, |a| a.map(functions::log10)),
+        Unary::Sin => unary(registers, i, |a| a.map(functions::sin)),
+        Unary::Cos => unary(registers, i, |a| a.map(functions::cos)),
+        Unary::Tan => unary(registers, i, |a| a.map(functions::tan)),
+        Unary::Asin => unary(registers, i, |a| a.map(functions::asin)),
+        Unary::Acos => unary(registers, i, |a| a.map(functions::acos)),
+        Unary::Atan => unary(registers, i, |a| a.map(functions::atan)),
+        Unary::Sinh => unary(registers, i, |a| a.map(functions::sinh)),
+        Unary::Cosh => unary(registers, i, |a| a.map(functions::cosh)),
+        Unary::Tanh => unary(registers, i, |a| a.map(functions::tanh)),
     }
 }

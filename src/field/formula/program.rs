@@ -15,16 +15,12 @@ pub(super) enum Op {
     Splat,
     /// f(R[a])
     Unary(Unary),
-    /// 1 / R[a]
-    Reciprocal,
     /// sin R[a]; register b receives cos R[a]
     SineCosine,
     /// R[a] ∘ R[b]
     Binary(Binary),
     /// R[a] ∘ U[b]
     Uniform(Binary),
-    /// U[b] ∘ R[a], for the operations that do not commute.
-    Reversed(Binary),
     /// R[c] where R[a] ≤ R[b], or, with `false`, where it is not; else 0
     If(bool),
 }
@@ -125,7 +121,7 @@ fn smooth_minimum(low: &mut Graph, a: Id, b: Id, k: Id) -> Id {
     low.sub(least, blend)
 }
 
-/// x^n, as products and a reciprocal (`Power(_, -1)`) if it varies.
+/// x^n, as products, of 1/x for negative n, if it varies.
 fn integer_power(low: &mut Graph, x: Id, n: i32) -> Id {
     /// x^n for n ≥ 1 by squaring: x^(2m) = (x^m)², x^(2m+1) = x · x^(2m).
     fn product(low: &mut Graph, x: Id, n: u32) -> Id {
@@ -139,7 +135,12 @@ fn integer_power(low: &mut Graph, x: Id, n: i32) -> Id {
     if low.is_uniform(x) {
         return low.intern(Node::Power(x, n));
     }
-    let base = if n < 0 { low.intern(Node::Power(x, -1)) } else { x };
+    let base = if n < 0 {
+        let one = low.constant(1.0);
+        low.intern(Node::Binary(Binary::Div, one, x))
+    } else {
+        x
+    };
     product(low, base, n.unsigned_abs())
 }
 
@@ -223,17 +224,13 @@ impl<'a> Compiler<'a> {
                 let a = self.operand(a);
                 self.push(Op::Unary(operation), [a, 0, 0])
             }
-            Node::Power(a, _) => {
-                let a = self.operand(a);
-                self.push(Op::Reciprocal, [a, 0, 0])
-            }
             Node::Binary(operation, a, b) => self.emit_binary(operation, a, b),
             Node::If(at_most, a, b, c) => {
                 let operands = [self.operand(a), self.operand(b), self.operand(c)];
                 self.push(Op::If(at_most), operands)
             }
-            Node::Constant(_) | Node::Parameter(_) | Node::Smin(_, _, _) => {
-                unreachable!("uniform nodes have no instruction, smooth minima were expanded")
+            Node::Constant(_) | Node::Parameter(_) | Node::Power(..) | Node::Smin(..) => {
+                unreachable!("uniform nodes have no instruction, powers and smooth minima were expanded")
             }
         }
     }
@@ -256,24 +253,14 @@ impl<'a> Compiler<'a> {
 
     fn emit_binary(&mut self, operation: Binary, a: Id, b: Id) -> u32 {
         let commutes = matches!(operation, Binary::Add | Binary::Mul | Binary::Min | Binary::Max);
-        match (self.graph.is_uniform(a), self.graph.is_uniform(b)) {
-            (false, true) if commutes || operation == Binary::Pow => {
-                let operands = [self.operand(a), self.uniform[b as usize], 0];
-                self.push(Op::Uniform(operation), operands)
-            }
-            (true, false) if commutes => {
-                let operands = [self.operand(b), self.uniform[a as usize], 0];
-                self.push(Op::Uniform(operation), operands)
-            }
-            (true, false) if matches!(operation, Binary::Sub | Binary::Div) => {
-                let operands = [self.operand(b), self.uniform[a as usize], 0];
-                self.push(Op::Reversed(operation), operands)
-            }
-            _ => {
-                let operands = [self.operand(a), self.operand(b), 0];
-                self.push(Op::Binary(operation), operands)
-            }
-        }
+        let (a, b) = if commutes && self.graph.is_uniform(a) { (b, a) } else { (a, b) };
+        let first = self.operand(a);
+        let (op, second) = if self.graph.is_uniform(b) {
+            (Op::Uniform(operation), self.uniform[b as usize])
+        } else {
+            (Op::Binary(operation), self.operand(b))
+        };
+        self.push(op, [first, second, 0])
     }
 
     /// Assigns real registers to virtual ones: each is free after the last use of its value.
@@ -330,9 +317,7 @@ fn index(length: usize) -> u32 {
 fn register_operands(op: Op) -> [bool; 3] {
     match op {
         Op::Splat => [false; 3],
-        Op::Unary(_) | Op::Reciprocal | Op::SineCosine | Op::Uniform(_) | Op::Reversed(_) => {
-            [true, false, false]
-        }
+        Op::Unary(_) | Op::SineCosine | Op::Uniform(_) => [true, false, false],
         Op::Binary(_) => [true, true, false],
         Op::If(_) => [true; 3],
     }
