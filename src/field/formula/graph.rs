@@ -321,10 +321,6 @@ impl Graph {
         if self.is(b, 0.0) {
             return a;
         }
-        if a == b {
-            let two = self.constant(2.0);
-            return self.mul(a, two);
-        }
         match (self.node(a), self.node(b)) {
             // A varying operand plus a negated uniform stays a sum: `sub` would turn it back into one.
             (_, Node::Unary(Unary::Neg, inner)) if !self.is_uniform(inner) || self.is_uniform(a) => {
@@ -409,19 +405,14 @@ impl Graph {
                 return self.neg(other);
             }
         }
-        if self.is_uniform(b) && !self.is_uniform(a) {
-            match self.node(a) {
-                // (v · u) · w = v · (u · w) for uniform u and w.
-                Node::Binary(Binary::Mul, v, u) if self.is_uniform(u) => {
-                    let product = self.mul(u, b);
-                    return self.mul(v, product);
-                }
-                Node::Unary(Unary::Neg, v) => {
-                    let negated = self.neg(b);
-                    return self.mul(v, negated);
-                }
-                _ => {}
-            }
+        // (v · u) · w = v · (u · w) for uniform u and w.
+        if self.is_uniform(b)
+            && let Node::Binary(Binary::Mul, v, u) = self.node(a)
+            && self.is_uniform(u)
+            && !self.is_uniform(v)
+        {
+            let product = self.mul(u, b);
+            return self.mul(v, product);
         }
         match (self.node(a), self.node(b)) {
             (Node::Unary(Unary::Neg, a), _) => {
