@@ -271,7 +271,7 @@ pub fn run(
         assert!(!error.to_string().is_empty(), "{}", context());
         return None;
     }
-    while session.fit(settings, false, budget).is_none() {}
+    while session.fit(&|_| *settings, false, budget).is_none() {}
     if let Err(error) = session.start(settings) {
         assert!(!error.to_string().is_empty(), "{}", context());
         return None;

@@ -25,8 +25,8 @@ const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
 const USUAL_HALF: f64 = 4.0;
 /// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter one the box shows two.
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
-/// Half-width of the box where there is no surface, or nothing is known of it: a unit sphere fills half of it.
-const FALLBACK_HALF: f64 = 2.0;
+/// The box where there is no surface, or nothing is known of it: a unit sphere fills half of its width.
+pub const FALLBACK: Bounds = Bounds::cube(2.0);
 /// Room around the bends of an endless surface, as a share of their box: how they go on is seen on all sides of them. So the bends fill two
 /// thirds of it.
 const ROOM: f64 = 0.25;
@@ -128,7 +128,7 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
             }
             Scan::Empty => {
                 return match before {
-                    None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Nowhere },
+                    None => Extent { bounds: FALLBACK, reach: Reach::Nowhere },
                     Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
                 };
             }

@@ -1,6 +1,6 @@
 //! The box of a surface whose field has no useful bounds, by the signs of f on grids.
 
-use super::{Extent, FALLBACK_HALF, HALVES, Reach, placeable};
+use super::{Extent, FALLBACK, HALVES, Reach, placeable};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::slices::pause;
@@ -34,7 +34,7 @@ pub(super) async fn find(field: &mut dyn Field) -> Extent {
     }
     match seen {
         Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
-        None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Unknown },
+        None => Extent { bounds: FALLBACK, reach: Reach::Unknown },
     }
 }
 

@@ -315,7 +315,7 @@ impl<F: Field> Run<F> {
     }
 
     /// Returns the reason if there is no particle.
-    fn check_not_empty(&self) -> Result<(), Error> {
+    pub(crate) fn check_not_empty(&self) -> Result<(), Error> {
         if self.count() > 0 {
             return Ok(());
         }

@@ -236,7 +236,7 @@ impl<F: Field> Run<F> {
     }
 
     /// The report without measurements.
-    pub(super) fn report_unmeasured(&mut self) -> Report {
+    pub(crate) fn report_unmeasured(&mut self) -> Report {
         self.measuring = Measuring::default();
         self.reported(0)
     }

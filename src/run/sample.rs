@@ -54,7 +54,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub(super) fn new<F: Field>(run: Run<F>, report: Report) -> Self {
+    pub(crate) fn new<F: Field>(run: Run<F>, report: Report) -> Self {
         Self {
             bounds: run.bounds(),
             known: run.sampler.triangles().to_vec(),

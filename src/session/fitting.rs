@@ -199,20 +199,28 @@ impl Session {
         Ok(())
     }
 
-    /// Finds the box of the next run with these settings and the creases of the surface in it, up to `budget` slices of either work of some
-    /// 10 to 50 microseconds each: the field with its clip box, once all is known. [`Session::start`] does what is left. A box that
-    /// `only_grows` holds the one before it as long as the formula stays the same: while a slider moves.
+    /// Finds the box of the next run and the creases of the surface in it, up to `budget` slices of either work of some 10 to 50
+    /// microseconds each: the field with its clip box, once all is known. [`Session::start`] does what is left. The settings may depend on
+    /// the box, as lengths do, which are shares of its diagonal there. A box that `only_grows` holds the one before it as long as the
+    /// formula stays the same: while a slider moves.
     ///
-    /// A solid that the clip box closes is sampled in a box around it: its faces are inside, and what they cut are creases.
-    pub fn fit(&mut self, settings: &Settings, only_grows: bool, budget: u32) -> Option<FieldAnswer> {
+    /// A solid that the clip box closes is sampled in the box of the settings, or in one that fits it: its faces are inside, and what they cut
+    /// are creases.
+    pub fn fit(
+        &mut self,
+        settings_in: &dyn Fn(&Bounds) -> Settings,
+        only_grows: bool,
+        budget: u32,
+    ) -> Option<FieldAnswer> {
         let choice = self.fitting.choice;
         let field = self.run.field().formula().filter(|field| !field.is_constant());
-        let (room, is_fitted) = (settings.largest_share(), field.is_some() && self.is_to_fit());
+        let share_in = |bounds: &Bounds| settings_in(bounds).largest_share();
+        let is_fitted = field.is_some() && self.is_to_fit();
         let (mut clip, mut reach) = (self.own_box(), None);
         if let Some(field) = field.filter(|_| is_fitted) {
             let found = self.fitting.unclosed.step(|| choice.made_of(field.clone(), None), budget)?;
             let before = (only_grows && self.fitting.is_fitted).then_some(self.clip);
-            (clip, reach) = (found.with_room(|_| room), Some(found.reach));
+            (clip, reach) = (found.with_room(share_in), Some(found.reach));
             clip = before.map_or(clip, |before| clip.joined(&before));
         }
         let closing = field.and_then(|field| choice.faces(field, clip, self.is_to_choose()));
@@ -229,8 +237,13 @@ impl Session {
             }
         }
         if let Some(solid) = self.run.field().formula().filter(|field| field.closing_box().is_some()) {
-            let found = self.fitting.closed.step(|| solid.clone(), budget)?;
-            (bounds, reach_in) = (found.with_room(|_| room), Some(found.reach));
+            (bounds, reach_in) = match settings_in(&clip).bounds {
+                Some(bounds) => (bounds, None),
+                None => {
+                    let found = self.fitting.closed.step(|| solid.clone(), budget)?;
+                    (found.with_room(share_in), Some(found.reach))
+                }
+            };
         }
         (self.clip, self.reach) = (clip, reach);
         self.run.set_bounds(bounds, reach_in);

@@ -22,7 +22,7 @@ use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
-use crate::run::{Report, Run, Start, Warning};
+use crate::run::{Error, Report, Run, Sample, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
 use core::ops::{Deref, DerefMut};
 use fitting::Fitting;
@@ -380,7 +380,7 @@ impl Session {
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
         while !self.fitting.is_settled {
-            self.fit(settings, false, u32::MAX);
+            self.fit(&|_| *settings, false, u32::MAX);
         }
         self.fitting.is_settled = false;
         self.made = Some(self.beginning(settings));
@@ -401,10 +401,13 @@ impl Session {
         can_follow
     }
 
-    /// [`Run::measure`]. Of a surface of the gallery or a model, whose box was chosen for it, no cause is told why particles lie at
-    /// the border.
+    /// [`Run::measure`], with what the session knows of the surface. Of one of the gallery or a model, whose box was chosen for it, no cause
+    /// is told why particles lie at the border.
     pub fn measure(&mut self, budget: u32) -> Option<Report> {
-        let mut report = self.run.measure(budget)?;
+        self.run.measure(budget).map(|report| self.completed(report))
+    }
+
+    fn completed(&self, mut report: Report) -> Report {
         let has_own_box = self.run.reach().is_none() && self.surface.is_some() && !self.fitting.is_given;
         if has_own_box || self.source().formula().is_none_or(Formula::is_constant) {
             report.cut = None;
@@ -415,16 +418,25 @@ impl Session {
             let differs = Warning::of_file(info, &report);
             report.warnings.extend(differs);
         }
-        Some(report)
+        report
     }
 
-    /// Calls [`Session::measure`] until the report is complete.
+    /// Measures the particles at once: [`Session::measure`].
     pub fn report(&mut self) -> Report {
-        loop {
-            if let Some(report) = self.measure(u32::MAX) {
-                return report;
-            }
-        }
+        let report = self.run.report();
+        self.completed(report)
+    }
+
+    /// [`Run::finish`] or, where nothing is to be measured, [`Run::finish_unmeasured`], with the report of the session.
+    ///
+    /// # Errors
+    ///
+    /// The error of [`Run::finish`].
+    pub fn finish(mut self, is_measured: bool) -> Result<Sample, Error> {
+        self.run.check_not_empty()?;
+        let report = if is_measured { self.run.report() } else { self.run.report_unmeasured() };
+        let report = self.completed(report);
+        Ok(Sample::new(self.run, report))
     }
 }
 

@@ -94,7 +94,7 @@ impl Core {
         budget: u32,
     ) -> Option<JsValue> {
         let field = match self.read_settings(settings) {
-            Ok(settings) => Ok(self.session.fit(&settings, only_grows, budget)?),
+            Ok(settings) => Ok(self.session.fit(&|_| settings, only_grows, budget)?),
             Err(fault) => Err(fault),
         };
         Some(answer(field))

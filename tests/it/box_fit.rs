@@ -22,7 +22,7 @@ fn set(session: &mut Session, formula: &str) -> FieldAnswer {
 
 fn fit(session: &mut Session, settings: &Settings, only_grows: bool) -> FieldAnswer {
     loop {
-        if let Some(answer) = session.fit(settings, only_grows, 64) {
+        if let Some(answer) = session.fit(&|_| *settings, only_grows, 64) {
             return answer;
         }
     }
@@ -168,7 +168,7 @@ fn the_same_box_is_not_searched_or_surveyed_again() {
     let first = run(&mut session, &coarse());
     // The next run with another number of steps begins at once: one slice is enough to know the box.
     set(&mut session, "x^2+y^2+z^2=1");
-    assert!(session.fit(&coarse(), false, 1).is_some());
+    assert!(session.fit(&|_| coarse(), false, 1).is_some());
     assert_eq!(run(&mut session, &coarse()).digest, first.digest);
 }
 
@@ -188,7 +188,7 @@ fn a_heavy_formula_is_searched_in_short_slices() {
     set(&mut session, &format!("x^2 + y^2 + z^2 + {} = 1", terms.join(" + ")));
     let mut slices = 0;
     let answer = loop {
-        if let Some(answer) = session.fit(&coarse(), false, 1) {
+        if let Some(answer) = session.fit(&|_| coarse(), false, 1) {
             break answer;
         }
         slices += 1;
@@ -209,13 +209,13 @@ fn creases_are_found_slice_by_slice_before_the_start() {
     let given = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
     set(&mut session, CUBE);
     session.set_field(&given).expect("a good box");
-    assert!((0..500).all(|_| session.fit(&coarse(), false, 1).is_none()));
+    assert!((0..500).all(|_| session.fit(&|_| coarse(), false, 1).is_none()));
     set(&mut session, CUBE);
     let mut slices = 0;
-    while session.fit(&coarse(), false, 1).is_none() {
+    while session.fit(&|_| coarse(), false, 1).is_none() {
         slices += 1;
     }
     assert!(slices > 3_000, "{slices}");
     assert_eq!(run(&mut session, &coarse()).digest, at_once);
-    assert!(session.fit(&coarse(), false, 1).is_some());
+    assert!(session.fit(&|_| coarse(), false, 1).is_some());
 }

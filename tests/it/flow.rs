@@ -285,7 +285,7 @@ impl Drag {
 
     fn take(&mut self, q: f64) {
         self.session.set_field(&ellipsoid(q)).expect("a formula");
-        while self.session.fit(&self.settings, true, u32::MAX).is_none() {}
+        while self.session.fit(&|_| self.settings, true, u32::MAX).is_none() {}
     }
 
     fn follow(&mut self, q: f64, is_closed: bool) {

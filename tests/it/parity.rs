@@ -71,7 +71,7 @@ fn run(case: &Run) -> (usize, String) {
     for parameters in &case.moves {
         let request = FieldRequest { parameters: parameters.clone(), ..FieldRequest::default() };
         session.set_field(&request).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        while session.fit(&settings, true, BUDGET).is_none() {}
+        while session.fit(&|_| settings, true, BUDGET).is_none() {}
         assert!(
             session.follow(&settings, false),
             "{}: the particles cannot follow to {parameters:?}",

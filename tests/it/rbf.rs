@@ -453,7 +453,7 @@ fn the_particles_of_a_model_follow_a_pull_and_come_back() {
     for step in (0..=10).chain((0..10).rev()) {
         let part = pulls.map(|pull| Pull { by: pull.by.map(|x| x * f64::from(step) / 10.0), ..pull });
         set(&mut session, &part[..1]);
-        while session.fit(&settings, true, 100_000).is_none() {}
+        while session.fit(&|_| settings, true, 100_000).is_none() {}
         assert!(session.follow(&settings, false), "step {step}");
         finish(&mut session);
         if step == 10 {

@@ -579,7 +579,7 @@ mod solids {
         session.set_field(&request(field)).expect("a field");
         session.choose(choice).expect("a solid");
         let answer = loop {
-            if let Some(answer) = session.fit(settings, false, 3) {
+            if let Some(answer) = session.fit(&|_| *settings, false, 3) {
                 break answer;
             }
         };
@@ -684,7 +684,7 @@ mod solids {
         assert_eq!(heights(&session), (-1.0, 3.0));
         // While a slider moves, the box stays.
         session.set_field(&request(r#"{"parameters":{"a":2}}"#)).expect("a field");
-        assert_eq!(session.fit(&settings, true, u32::MAX).expect("a box").bounds, bounds);
+        assert_eq!(session.fit(&|_| settings, true, u32::MAX).expect("a box").bounds, bounds);
         run(&mut session, &settings, u32::MAX);
         assert_eq!(heights(&session), (-1.0, 3.0));
         let widest =

@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
-use marching_particles::session::{BoxCell, BoxFaces, FileRecord, SolidSettings};
+use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
 use marching_particles::{Format, Placement, Unit, UpAxis, gallery};
 use std::path::PathBuf;
 
@@ -225,9 +225,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, requires = "closed", help_heading = "Surface")]
     pub(crate) periodic: bool,
 
-    /// The box that closes the solid, where the solid and its box were read from a file.
+    /// The box that is sampled around a solid that a box closes, read from a file.
     #[arg(skip)]
-    pub(crate) faces: Option<Bounds>,
+    pub(crate) sampled: Option<Bounds>,
 
     /// Pulls on the surface of a model, read from a file.
     #[arg(skip)]
@@ -256,8 +256,8 @@ impl SampleArguments {
         if surface.surface.is_none() && surface.formula.is_none() && surface.points.is_none() {
             let own = record.surface.as_deref().and_then(gallery::find).map(|own| record.solid.own_box(own));
             if surface.bounds.is_none() && own != Some(record.bounds) {
-                surface.bounds = Some(BoxChoice::Given(record.bounds));
-                surface.faces = record.faces;
+                surface.bounds = Some(BoxChoice::Given(record.faces.unwrap_or(record.bounds)));
+                surface.sampled = record.faces.map(|_| record.bounds);
             }
             surface.surface = record.surface;
             surface.formula = Some(record.formula);
@@ -287,11 +287,12 @@ fn one_of<T: Copy + Send + Sync>(
 impl SurfaceArguments {
     /// The solid that is to be made of the surface.
     pub(crate) fn solid(&self) -> SolidSettings {
+        let is_fixed = self.bounds == Some(BoxChoice::Fixed);
         SolidSettings {
+            box_mode: if is_fixed { BoxMode::Fixed } else { BoxMode::Fit },
             box_faces: if self.closed { BoxFaces::Closed } else { BoxFaces::Open },
             box_cell: if self.periodic { BoxCell::Periodic } else { BoxCell::Lone },
             thickness: self.thickness.unwrap_or(0.0),
-            ..SolidSettings::default()
         }
     }
 }

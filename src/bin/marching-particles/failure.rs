@@ -1,6 +1,9 @@
 //! Errors of the tool, with their messages and exit codes.
 
-use marching_particles::field::formula::{FormulaError, FormulaErrorKind, Mended};
+use crate::options::refusal;
+use marching_particles::field::formula::Mended;
+use marching_particles::session::{Fault, FaultKind};
+use marching_particles::{FormulaErrorKind, SettingsError};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,7 +21,7 @@ pub(crate) const LIMIT: u8 = 4;
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The formula is invalid.
-    Formula { text: String, error: Box<FormulaError> },
+    Formula { text: String, fault: Box<Fault> },
     /// An argument other than the formula is invalid.
     Usage(String),
     /// No particle could be placed.
@@ -42,6 +45,13 @@ impl Failure {
     }
 }
 
+impl From<SettingsError> for Failure {
+    /// By the names of the options.
+    fn from(error: SettingsError) -> Self {
+        Self::Usage(refusal(&error))
+    }
+}
+
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         if error.kind() == std::io::ErrorKind::BrokenPipe {
@@ -55,7 +65,7 @@ impl From<std::io::Error> for Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Formula { text, error } => formula(f, text, error),
+            Self::Formula { text, fault } => formula(f, text, fault),
             Self::Usage(message) | Self::Nothing(message) => write!(f, "error: {message}"),
             Self::Unreadable { path, error } => {
                 write!(f, "error: {} could not be read: {error}", path.display())
@@ -69,25 +79,28 @@ impl fmt::Display for Failure {
 }
 
 /// Writes the message, the formula with carets under the span, and suggestions.
-fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt::Result {
-    write!(f, "error: {}", error.message)?;
+fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result {
+    write!(f, "error: {}", fault.message)?;
     // A formula of more than three lines of a terminal breaks, and the carets are not below it; an error in --param has no span.
     const LONGEST: usize = 240;
-    let has_span = error.kind != FormulaErrorKind::BadParameter;
-    if has_span && !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
+    let has_span = fault.kind != FaultKind::Formula(FormulaErrorKind::BadParameter);
+    if has_span && !text.is_empty() && text.len() <= LONGEST {
         // Line breaks and tabs would shift the carets, so each takes one column.
         let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let before = text[..error.span.start].chars().count();
-        let marked = text.get(error.span.clone()).map_or(1, |span| span.chars().count().max(1));
+        // The span counts in UTF-16 code units, columns are characters.
+        let units: Vec<u16> = text.encode_utf16().collect();
+        let column = |unit: u32| String::from_utf16_lossy(&units[..unit as usize]).chars().count();
+        let (before, end) = (column(fault.start), column(fault.end));
+        let marked = end.saturating_sub(before).max(1);
         write!(f, "\n\n  {line}\n  {:before$}{}", "", "^".repeat(marked))?;
     }
-    if let Some(suggestion) = &error.suggestion {
+    if let Some(suggestion) = &fault.suggestion {
         write!(f, "\n\nhelp: try `{suggestion}` there")?;
     }
-    if let Some(Mended { text, places }) = error.mended.as_deref() {
+    if let Some(Mended { text, places }) = fault.mended.as_deref() {
         write!(f, "\n\nhelp: mended in all {places} places: {text}")?;
     }
-    if let Some(name) = &error.name {
+    if let Some(name) = &fault.name {
         write!(f, "\n\nhelp: to make it a parameter, add --param {name}=1")?;
     }
     Ok(())

@@ -2,7 +2,6 @@
 
 use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
-use crate::options::refusal;
 use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::OutputFile;
 use crate::{points, summary};
@@ -13,12 +12,13 @@ use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{BoxFaces, FileRecord, SolidSettings};
-use marching_particles::{
-    Bounds, Error, Field, Format, Formula, FormulaError, MeshFile, MeshFormat, Method, Parameter,
-    ParticleFile, Phase, Reach, RecordText, Run, Settings, StopReason, Warning, gallery,
+use marching_particles::session::{
+    BoxFaces, BoxMode, Fault, FaultKind, FieldRequest, FileRecord, Session, Source,
 };
-use std::collections::BTreeMap;
+use marching_particles::{
+    Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
+    RecordText, Run, Settings, StopReason, gallery,
+};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -26,26 +26,6 @@ use std::time::{Duration, Instant};
 
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
 const BUDGET: u32 = 256;
-/// Fixed box of a formula.
-const FORMULA_BOX: Bounds = Bounds::cube(2.0);
-
-/// The surface that was asked for.
-pub(crate) struct Chosen {
-    pub(crate) field: Box<dyn Field>,
-    /// Name of the surface, if it has one.
-    name: Option<String>,
-    formula: String,
-    parameters: BTreeMap<String, f64>,
-    /// Report of the fit, for a surface near points.
-    model: Option<ModelInfo>,
-    /// The box to sample in, where it is not to be fitted.
-    pub(crate) bounds: Option<Bounds>,
-    /// Whether that box was chosen for the surface, so that it may cut it.
-    has_own_box: bool,
-    /// The box whose faces close the solid.
-    faces: Option<Bounds>,
-}
-
 /// The record of what a file was made from.
 fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
@@ -80,53 +60,48 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
     let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
-    let chosen = timed(&mut seconds.points, || choose(&arguments.surface, arguments.quiet))?;
-    let Chosen { field, name, formula, parameters, model, bounds, has_own_box, faces } = chosen;
+    let mut session = Session::new();
+    let model = timed(&mut seconds.points, || choose(&mut session, &arguments.surface, arguments.quiet))?;
     if model.is_none() {
         seconds.points = 0.0;
     }
-    let settings_in = |fitted: &Bounds| {
-        let mut settings = arguments.sampling.settings(&bounds.unwrap_or(*fitted));
-        settings.bounds = bounds;
+    let settings_in = |bounds: &Bounds| {
+        let mut settings = arguments.sampling.settings(bounds);
+        settings.bounds = arguments.surface.sampled;
         if !arguments.mesh.is_empty() && arguments.sampling.leaves_method_open() {
             settings.method = Method::Refined;
         }
         settings
     };
-    let mut run = timed(&mut seconds.seeding, || Run::start_with(field, settings_in)).map_err(refused)?;
-    let settings = settings_in(&run.bounds());
-    let predicted_count = run.start_report().predicted_count;
+    let (settings, start) = timed(&mut seconds.seeding, || {
+        let settings = fit(&mut session, &settings_in, false)?;
+        Ok::<_, Failure>((settings, session.start(&settings)?))
+    })?;
+    let predicted_count = start.predicted_count;
     let bar = bar(arguments.quiet);
-    step_to_end(&mut run, &mut seconds, &bar);
+    step_to_end(&mut session.run, &mut seconds, &bar);
     bar.finish_and_clear();
     let peak_sampling_mb = peak_mb();
-    let reach = run.reach();
-    let is_joined = !mesh_formats.is_empty() && run.count() > 0;
+    let reach = session.run.reach();
+    let is_joined = !mesh_formats.is_empty() && session.run.count() > 0;
     if is_joined {
-        timed(&mut seconds.mesh, || run.join(u32::MAX));
+        timed(&mut seconds.mesh, || session.run.join(u32::MAX));
     }
-    let finish = if arguments.no_report { Run::finish_unmeasured } else { Run::finish };
-    let sample = timed(&mut seconds.quality, || finish(run)).map_err(|error| match error {
+    let made = session.record(None);
+    let sample = timed(&mut seconds.quality, || session.finish(!arguments.no_report));
+    let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }
         error => Failure::Nothing(error.to_string()),
     })?;
     let mesh = is_joined.then(|| MeshCounts::new(&sample));
-    let made = FileRecord {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        digest: sample.report().digest.clone(),
-        link: None,
-        surface: name,
-        model: model.as_ref().map(|model| model.name.clone()),
-        pulls: arguments.surface.pulls.clone(),
-        formula,
-        parameters,
-        bounds: sample.bounds(),
-        faces,
-        solid: arguments.surface.solid(),
-        settings,
-    };
+    let mut made = made.expect("a run has a record");
+    // The steps that were asked for, though an even surface takes fewer.
+    made.settings = settings;
+    if model.is_some() {
+        made.surface.clone_from(&arguments.surface.surface);
+    }
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
     timed(&mut seconds.writing, || {
         for (format, output) in formats.into_iter().zip(outputs.by_ref()) {
@@ -140,12 +115,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         Ok::<_, Failure>(())
     })?;
 
-    let mut report = sample.report().clone();
-    let differs = model.as_ref().and_then(|model| Warning::of_file(model, &report));
-    report.warnings.extend(differs);
-    if has_own_box {
-        report.cut = None;
-    }
+    let report = sample.report().clone();
     let capped = report.stop_reason == Some(StopReason::Cap);
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
@@ -211,7 +181,7 @@ fn formats<T>(
 }
 
 /// Fit to a file of points or a built-in model, if one is requested.
-fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure> {
+fn fit_points(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure> {
     let model = arguments.surface.as_deref().and_then(model::find);
     let bar = bar(quiet || arguments.points.is_none() && model.is_none());
     let centres = arguments.centres.unwrap_or(DEFAULT_CENTRES);
@@ -235,81 +205,67 @@ fn fit(arguments: &SurfaceArguments, quiet: bool) -> Result<Option<Fit>, Failure
     Ok(fit)
 }
 
-/// The surface that the arguments name.
-pub(crate) fn choose(arguments: &SurfaceArguments, quiet: bool) -> Result<Chosen, Failure> {
-    let given = arguments.bounds.and_then(BoxChoice::given);
-    if let Some(fit) = fit(arguments, quiet)? {
-        if arguments.solid() != SolidSettings::default() {
+/// Has the session take the surface that the arguments name. Returns the report of the fit, for a surface near points.
+pub(crate) fn choose(
+    session: &mut Session,
+    arguments: &SurfaceArguments,
+    quiet: bool,
+) -> Result<Option<ModelInfo>, Failure> {
+    let (solid, given) = (arguments.solid(), arguments.bounds.and_then(BoxChoice::given));
+    let refused = |fault| refused_field(arguments, fault);
+    let mut request =
+        FieldRequest { bounds: given, pulls: arguments.pulls.clone(), ..FieldRequest::default() };
+    session.choose(solid).map_err(|error| Failure::Usage(error.to_string()))?;
+    if let Some(fit) = fit_points(arguments, quiet)? {
+        if solid.box_faces == BoxFaces::Closed || solid.thickness > 0.0 {
             return Err(Failure::Usage(
                 "--closed and --thickness are for formulas, not for models from points".into(),
             ));
         }
-        let mut field = fit.field();
-        field.pull(&arguments.pulls).map_err(|error| Failure::Usage(error.to_string()))?;
-        return Ok(Chosen {
-            field: Box::new(field),
-            name: arguments.surface.clone(),
-            formula: String::new(),
-            parameters: BTreeMap::new(),
-            bounds: given.or(Some(fit.bounds)),
-            model: Some(fit.info),
-            has_own_box: true,
-            faces: None,
-        });
+        session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
+        return Ok(Some(fit.info));
     }
-    let named = match (&arguments.surface, &arguments.formula) {
-        (Some(id), _) => Some(gallery::find(id).ok_or_else(|| Failure::Usage(unknown_surface(id)))?),
-        (None, Some(_)) => None,
-        (None, None) => gallery::SURFACES.first(),
-    };
-    let text = arguments.formula.as_deref().or(named.map(|surface| surface.formula)).unwrap_or_default();
-    let formula = formula(text, named, &arguments.parameters)?;
-    // A formula of the user's has neither the name nor the box of the surface that it replaces.
-    let surface = named.filter(|surface| surface.formula == text);
-    let own = surface.map(|surface| arguments.solid().own_box(surface));
-    let parameters = formula.parameters().iter().map(|p| (p.name.to_string(), p.value)).collect();
-    let bounds = match arguments.bounds {
-        Some(BoxChoice::Given(bounds)) => Some(bounds),
-        Some(BoxChoice::Fixed) => {
-            Some(named.map_or(FORMULA_BOX, |surface| arguments.solid().own_box(surface)))
+    let named = arguments.surface.as_deref().and_then(gallery::find);
+    if arguments.formula.is_some() && arguments.surface.is_none() {
+        // A formula of the user's has no name and no box, even if it is that of the surface on which a session begins.
+        let unnamed = FieldRequest { formula: Some("x".to_owned()), ..FieldRequest::default() };
+        session.set_field(&unnamed).map_err(refused)?;
+        if solid.box_mode == BoxMode::Fixed {
+            request.bounds = Some(extent::FALLBACK);
         }
-        Some(BoxChoice::Fit) | None => own,
-    };
-    let (formula, bounds, faces) = solid(formula, arguments, bounds)?;
-    Ok(Chosen {
-        name: surface.map(|surface| surface.id.to_owned()),
-        formula: text.to_owned(),
-        parameters,
-        field: Box::new(formula),
-        model: None,
-        bounds,
-        has_own_box: own.is_some() && given.is_none(),
-        faces,
-    })
+    }
+    request.surface.clone_from(&arguments.surface);
+    request.formula.clone_from(&arguments.formula);
+    // In another formula the values of the surface's parameters stay what they are.
+    let own = named.iter().flat_map(|surface| surface.parameters).map(|p| (p.name.to_string(), p.value));
+    request.parameters = own.chain(arguments.parameters.iter().cloned()).collect();
+    request.declare = arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect();
+    let answer = session.set_field(&request).map_err(refused)?;
+    for (name, _) in &arguments.parameters {
+        if !answer.parameters.iter().any(|parameter| parameter.name == *name) {
+            let known: Vec<&str> = answer.parameters.iter().map(|p| p.name.as_str()).collect();
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            return Err(Failure::Usage(format!(
+                "the formula has no parameter `{name}`; its parameters: {known}"
+            )));
+        }
+    }
+    Ok(None)
 }
 
-/// The formula with what the arguments make of its surface, the box to sample it in, and the box that closes it. Around a solid that a box
-/// closes there has to be some room, so that its own box is fitted.
-fn solid(
-    formula: Formula,
-    arguments: &SurfaceArguments,
-    bounds: Option<Bounds>,
-) -> Result<(Formula, Option<Bounds>, Option<Bounds>), Failure> {
-    let solid = arguments.solid();
-    let mut formula = solid.made_of(formula, None);
-    if solid.box_faces == BoxFaces::Open {
-        return Ok((formula, bounds, None));
+/// Finds the box of the next run: the settings in it.
+pub(crate) fn fit(
+    session: &mut Session,
+    settings_in: &dyn Fn(&Bounds) -> Settings,
+    only_grows: bool,
+) -> Result<Settings, Failure> {
+    while session.fit(settings_in, only_grows, u32::MAX).is_none() {}
+    if let Source::Formula(formula) = session.run.field()
+        && formula.unit_cell().is_some_and(|cell| cell.repeats == [false; 3])
+    {
+        return Err(Failure::Usage(not_periodic(formula.surface_periods())));
     }
-    let is_like = arguments.faces.is_some();
-    let around = arguments.faces.or(bounds).unwrap_or_else(|| extent::find(&mut formula).bounds);
-    let periods = formula.surface_periods();
-    let is_free = !is_like && !matches!(arguments.bounds, Some(BoxChoice::Fixed | BoxChoice::Given(_)));
-    let faces = solid.faces(&formula, around, is_free);
-    let formula = solid.made_of(formula, faces.as_ref());
-    if formula.unit_cell().is_some_and(|cell| cell.repeats == [false; 3]) {
-        return Err(Failure::Usage(not_periodic(periods)));
-    }
-    Ok((formula, bounds.filter(|_| is_like), faces))
+    Ok(settings_in(&session.run.bounds()))
 }
 
 /// Why no two faces of a box are the same, for a surface of these periods.
@@ -329,36 +285,14 @@ fn not_periodic(periods: [Option<f64>; 3]) -> String {
     )
 }
 
-/// The field of a formula, whose parameters are those of the named surface, if there is one, with these values.
-fn formula(
-    text: &str,
-    named: Option<&gallery::Surface>,
-    values: &[(String, f64)],
-) -> Result<Formula, Failure> {
-    let declared = match named {
-        Some(surface) => surface.parameters.to_vec(),
-        None => values.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
-    };
-    let wrong = |error: FormulaError| Failure::Formula { text: text.to_owned(), error: Box::new(error) };
-    let mut formula = Formula::as_written(text, &declared).map_err(wrong)?.without_powers();
-    for (name, value) in values {
-        if !formula.parameters().iter().any(|parameter| parameter.name == *name) {
-            let known: Vec<&str> = formula.parameters().iter().map(|p| &*p.name).collect();
-            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-            return Err(Failure::Usage(format!(
-                "the formula has no parameter `{name}`; its parameters: {known}"
-            )));
+/// Why a surface was refused.
+fn refused_field(arguments: &SurfaceArguments, fault: Fault) -> Failure {
+    match (&fault.kind, &arguments.surface) {
+        (FaultKind::UnknownSurface, Some(id)) => Failure::Usage(unknown_surface(id)),
+        (FaultKind::Formula(_), _) => {
+            Failure::Formula { text: arguments.formula.clone().unwrap_or_default(), fault: Box::new(fault) }
         }
-        formula = formula.with(name, *value).map_err(wrong)?;
-    }
-    Ok(formula)
-}
-
-/// Why a run was refused, by the names of the options.
-pub(crate) fn refused(error: Error) -> Failure {
-    match error {
-        Error::Settings(error) => Failure::Usage(refusal(&error)),
-        error => Failure::Nothing(error.to_string()),
+        _ => Failure::Usage(fault.message),
     }
 }
 
@@ -369,7 +303,7 @@ fn unknown_surface(id: &str) -> String {
 }
 
 /// Steps a run to its end and adds the times of the phases to `seconds`.
-fn step_to_end(run: &mut Run<Box<dyn Field>>, seconds: &mut Seconds, bar: &ProgressBar) {
+fn step_to_end(run: &mut Run<Source>, seconds: &mut Seconds, bar: &ProgressBar) {
     /// Steps of [`BUDGET`] units between two updates of the progress bar: some 6 ms.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;

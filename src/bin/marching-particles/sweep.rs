@@ -1,12 +1,12 @@
 //! Subcommand `sweep`: a surface that moves, as numbered files of the particles that follow it.
 
-use crate::arguments::{SurfaceArguments, Sweep, SweepArguments};
+use crate::arguments::{Sweep, SweepArguments};
 use crate::failure::Failure;
 use crate::output::OutputFile;
-use crate::sample::{Chosen, bar, choose, refused};
-use marching_particles::extent;
+use crate::sample::{bar, choose, fit};
 use marching_particles::quality::Measurements;
-use marching_particles::{Bounds, Field, Run, export};
+use marching_particles::session::{FieldRequest, Session};
+use marching_particles::{Bounds, export};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -19,25 +19,30 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     let (extension, format) = arguments.format;
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
-    let bounds = box_of(&mut arguments)?;
-    let settings = arguments.sampling.settings(&bounds).in_box(bounds);
+    let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
+    let mut session = Session::new();
+    // The parameter has to be there.
+    arguments.surface.parameters.retain(|(name, _)| *name != sweep.name);
+    arguments.surface.parameters.push((sweep.name.clone(), sweep.from));
+    choose(&mut session, &arguments.surface, arguments.quiet)?;
+    for k in 0..FITTED {
+        set_at(&mut session, &sweep, f64::from(k) / f64::from(FITTED - 1), None)?;
+        fit(&mut session, &settings_in, k > 0)?;
+    }
+    // A solid is closed anew in every frame.
+    let bounds = Some(session.run.bounds()).filter(|_| !arguments.surface.closed);
     let bar = bar(arguments.quiet);
     bar.set_length(u64::from(frames) + 1);
     let digits = frames.to_string().len();
-    let mut counted = Counted::default();
-    let mut moved: Option<Run<Box<dyn Field>>> = None;
+    let mut counted = Counted { least: usize::MAX, ..Counted::default() };
     for frame in 0..=frames {
-        let field = at(&mut arguments.surface, &sweep, f64::from(frame) / f64::from(frames))?.field;
-        let mut run = match moved.take() {
-            None => Run::start(field, &settings).map_err(refused)?,
-            Some(mut run) => {
-                if !run.follow(field) {
-                    run.restart(&settings).map_err(refused)?;
-                    counted.begin_anew();
-                }
-                run
-            }
-        };
+        set_at(&mut session, &sweep, f64::from(frame) / f64::from(frames), bounds)?;
+        let settings = fit(&mut session, &settings_in, false)?;
+        if !session.follow(&settings, false) {
+            session.start(&settings)?;
+            counted.begin_anew();
+        }
+        let run = &mut session.run;
         while run.step(u32::MAX).stop_reason.is_none() {}
         let mut particles = run.particles().clone();
         let count = particles.len();
@@ -48,7 +53,6 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         }
         counted.note(run.count());
         bar.set_position(u64::from(frame) + 1);
-        moved = Some(run);
     }
     bar.finish_and_clear();
     let Counted { least, most, next, runs, .. } = counted;
@@ -94,33 +98,14 @@ impl Counted {
     }
 
     fn note(&mut self, count: usize) {
-        if self.runs == 0 {
-            (self.runs, self.least) = (1, count);
-        }
         (self.least, self.most) = (self.least.min(count), self.most.max(count));
     }
 }
 
-/// The surface at a share of the way of the sweep.
-fn at(surface: &mut SurfaceArguments, sweep: &Sweep, share: f64) -> Result<Chosen, Failure> {
+/// Has the session take the surface at a share of the way of the sweep.
+fn set_at(session: &mut Session, sweep: &Sweep, share: f64, bounds: Option<Bounds>) -> Result<(), Failure> {
     let value = sweep.from + (sweep.to - sweep.from) * share;
-    surface.parameters.retain(|(name, _)| *name != sweep.name);
-    surface.parameters.push((sweep.name.clone(), value));
-    choose(surface, true)
-}
-
-/// The box of all frames: the one given, the surface's own, or one around the surfaces of the sweep.
-fn box_of(arguments: &mut SweepArguments) -> Result<Bounds, Failure> {
-    let mut all: Option<Bounds> = None;
-    for k in 0..FITTED {
-        let share = f64::from(k) / f64::from(FITTED - 1);
-        let mut chosen = at(&mut arguments.surface, &arguments.sweep, share)?;
-        if let Some(bounds) = chosen.bounds {
-            return Ok(bounds);
-        }
-        let extent = extent::find(&mut chosen.field);
-        let fitted = extent.with_room(|bounds| arguments.sampling.settings(bounds).largest_share());
-        all = Some(all.map_or(fitted, |all| all.joined(&fitted)));
-    }
-    Ok(all.unwrap_or(Bounds::cube(1.0)))
+    let parameters = [(sweep.name.clone(), value)].into();
+    let request = FieldRequest { parameters, bounds, ..FieldRequest::default() };
+    session.set_field(&request).map(drop).map_err(|fault| Failure::Usage(fault.message))
 }
