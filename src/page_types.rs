@@ -86,7 +86,6 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<MeshAnswer>();
     declarations.add::<SolvedModel>();
     declarations.add::<job::PointsProgress>();
-    declarations.add::<job::PointsFault>();
     declarations.add::<LessonField>();
     declarations.add::<lesson::LessonSettings>();
     declarations.add::<lesson::LessonProgress>();

@@ -20,30 +20,11 @@ use std::rc::Rc;
 /// it, single precision, in which the surface is sampled, resolves a millionth of the diagonal.
 const FAR: f64 = 10.0;
 
-/// The stage of a job, as the page shows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-#[serde(rename_all = "snake_case")]
-pub enum JobStage {
-    /// The file is read.
-    Reading,
-    /// Normals are taken from the faces, or estimated.
-    Normals,
-    /// Equal points are merged, and few of many are chosen.
-    Thinning,
-    /// The system is set up and solved, and the distances of the points from the surface are measured.
-    Solving,
-    /// The field is complete.
-    Done,
-}
-
 /// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct PointsProgress {
-    /// Current stage.
-    pub stage: JobStage,
-    /// Current stage in words.
+    /// The stage of the job in words.
     pub label: &'static str,
     /// Fraction of the whole work, from 0 to 1. It never decreases.
     pub fraction: f64,
@@ -78,46 +59,6 @@ pub enum JobError {
     },
 }
 
-impl JobError {
-    /// Kind of error as a word in snake case, for programs.
-    #[must_use]
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Read(error) => error.kind(),
-            Self::Cloud(_) | Self::Fit(_) => "points",
-            Self::UnknownModel { .. } => "unknown_model",
-            Self::Centres { .. } => "centres",
-        }
-    }
-
-    /// Number, from 1, of the line of a text file that is in error.
-    #[must_use]
-    pub fn line(&self) -> Option<u64> {
-        match self {
-            Self::Read(ReadError::Line { line, .. }) => Some(*line),
-            _ => None,
-        }
-    }
-}
-
-/// Error of a job, as the page shows it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PointsFault"))]
-pub struct PointsFault {
-    /// Kind of error as a word in snake case.
-    pub kind: &'static str,
-    /// The error as a sentence for the user, in plain text.
-    pub message: String,
-    /// Number, from 1, of the line of a text file that is in error.
-    pub line: Option<u64>,
-}
-
-impl From<&JobError> for PointsFault {
-    fn from(error: &JobError) -> Self {
-        Self { kind: error.kind(), message: error.to_string(), line: error.line() }
-    }
-}
-
 /// Identifiers of the built-in models.
 fn names() -> String {
     let names: Vec<&str> = model::MODELS.iter().map(|model| model.id).collect();
@@ -127,26 +68,25 @@ fn names() -> String {
 /// A stage of a job in words, with its begin and length as shares of the whole time for a file of some megabytes. A smaller one is done
 /// at once.
 struct JobPart {
-    stage: JobStage,
     label: &'static str,
     begins: f64,
     length: f64,
 }
 
-const fn part(stage: JobStage, label: &'static str, begins: f64, length: f64) -> JobPart {
-    JobPart { stage, label, begins, length }
+const fn part(label: &'static str, begins: f64, length: f64) -> JobPart {
+    JobPart { label, begins, length }
 }
 
-const READING: JobPart = part(JobStage::Reading, "Reading the file", 0.0, 0.4);
-const FACING: JobPart = part(JobStage::Normals, "Finding normals from the faces", 0.4, 0.05);
-const MERGING: JobPart = part(JobStage::Thinning, "Joining equal points", 0.45, 0.15);
+const READING: JobPart = part("Reading the file", 0.0, 0.4);
+const FACING: JobPart = part("Finding normals from the faces", 0.4, 0.05);
+const MERGING: JobPart = part("Joining equal points", 0.45, 0.15);
 /// The number of grids that thinning takes is not known, so its fraction stands still.
-const THINNING: JobPart = part(JobStage::Thinning, "Thinning out", 0.6, 0.05);
-const ESTIMATING: JobPart = part(JobStage::Normals, "Estimating normals", 0.65, 0.1);
-const COMPARING: JobPart = part(JobStage::Normals, "Comparing normals", 0.65, 0.1);
-const SPREADING: JobPart = part(JobStage::Thinning, "Choosing centres", 0.75, 0.05);
-const SOLVING: JobPart = part(JobStage::Solving, "Solving for the surface", 0.8, 0.2);
-const DONE: JobPart = part(JobStage::Done, "Done", 1.0, 0.0);
+const THINNING: JobPart = part("Thinning out", 0.6, 0.05);
+const ESTIMATING: JobPart = part("Estimating normals", 0.65, 0.1);
+const COMPARING: JobPart = part("Comparing normals", 0.65, 0.1);
+const SPREADING: JobPart = part("Choosing centres", 0.75, 0.05);
+const SOLVING: JobPart = part("Solving for the surface", 0.8, 0.2);
+const DONE: JobPart = part("Done", 1.0, 0.0);
 
 /// Status of a job, which its work updates while it runs.
 struct JobStatus {
@@ -169,7 +109,7 @@ impl JobStatus {
 impl JobPart {
     fn at(&self, share: f64) -> PointsProgress {
         let fraction = self.begins + share * self.length;
-        PointsProgress { stage: self.stage, label: self.label, fraction, done: self.stage == JobStage::Done }
+        PointsProgress { label: self.label, fraction, done: self.begins == DONE.begins }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::values::answer;
 use crate::field::model::SolvedModel;
-use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, PointsFault};
+use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -10,7 +10,6 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = r"import type {
   Answer,
-  PointsFault,
   PointsProgress,
   SolvedModel,
 } from '../../engine/core-types.js';";
@@ -33,23 +32,23 @@ impl Points {
 
     /// Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
     /// of them.
-    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
         self.begin(|| Job::model(id, wanted(centres)))
     }
 
     /// Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
     /// default number of them.
-    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
         self.begin(|| Job::file(name, bytes, wanted(centres)))
     }
 
     /// Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
-    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, string>")]
     pub fn step(&mut self, budget: u32) -> JsValue {
-        let job = self.job.as_mut().ok_or_else(|| nothing("no model and no file was begun"));
-        answer(job.and_then(|job| job.step(budget).map_err(|error| PointsFault::from(&error))))
+        let job = self.job.as_mut().ok_or_else(|| "no model and no file was begun".to_owned());
+        answer(job.and_then(|job| job.step(budget).map_err(|error| error.to_string())))
     }
 
     /// The field as `Core.set_points` takes it; nothing before it is there.
@@ -58,9 +57,9 @@ impl Points {
     }
 
     /// The report on the model: an `Answer` with `SolvedModel`.
-    #[wasm_bindgen(unchecked_return_type = "Answer<SolvedModel, PointsFault>")]
+    #[wasm_bindgen(unchecked_return_type = "Answer<SolvedModel, string>")]
     pub fn info(&self) -> JsValue {
-        let fit = self.job.as_ref().and_then(Job::fit).ok_or_else(|| nothing("there is no field yet"));
+        let fit = self.job.as_ref().and_then(Job::fit).ok_or("there is no field yet");
         answer(fit.map(|fit| SolvedModel { info: fit.info.clone(), bounds: fit.bounds }))
     }
 
@@ -74,15 +73,11 @@ impl Points {
         // Room for the old one's points goes before that for the new one's is taken.
         self.job = None;
         let begun = job().map(|job| self.job.insert(job).progress());
-        answer(begun.map_err(|error| PointsFault::from(&error)))
+        answer(begun.map_err(|error| error.to_string()))
     }
 }
 
 /// The number of centres that is asked for: 0 is the default number.
 fn wanted(centres: u32) -> u32 {
     if centres == 0 { DEFAULT_CENTRES } else { centres }
-}
-
-fn nothing(message: &str) -> PointsFault {
-    PointsFault { kind: "nothing", message: message.to_owned(), line: None }
 }

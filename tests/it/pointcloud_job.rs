@@ -12,7 +12,7 @@ use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
 use marching_particles::pointcloud::fit::Fit;
-use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, JobStage};
+use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError};
 use marching_particles::pointcloud::thin::KEPT;
 use marching_particles::sampler::Settings;
 use proptest::prelude::*;
@@ -30,7 +30,6 @@ fn run(mut job: Job, budget: u32) -> Result<Fit, JobError> {
             progress.fraction >= before.fraction && progress.fraction <= 1.0,
             "{progress:?} after {before:?}"
         );
-        assert_eq!(progress.done, progress.stage == JobStage::Done);
         before = progress;
         if let Some(fit) = job.fit() {
             assert!(progress.done && progress.fraction == 1.0, "{progress:?}");
@@ -260,7 +259,7 @@ fn a_failed_job_returns_its_error_in_every_later_step() {
     let mut job = Job::file("points.xyz", b"1 2 3\n4 5 x\n".to_vec(), 200).expect("a good beginning");
     for _ in 0..2 {
         let error = job.step(10).expect_err("a mistake");
-        assert_eq!((error.kind(), error.line()), ("line", Some(2)));
+        assert!(error.to_string().starts_with("line 2: "), "{error}");
         assert!(job.fit().is_none() && !job.progress().done);
     }
 }

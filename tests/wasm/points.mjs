@@ -102,22 +102,19 @@ claim(known.info.normals === 'from_mesh' && known.info.centres > 4, JSON.stringi
 claim(sampled(points, known, 'a tetrahedron') > 100, 'a tetrahedron has too few particles');
 console.log('same  a binary mesh is read, solved and sampled');
 
-/** @param {any} answer @param {string} kind @param {RegExp} words @param {number | null} line */
-function refused({ ok, error }, kind, words, line) {
-  claim(
-    ok === false && error.kind === kind && words.test(error.message) && error.line === line,
-    `${JSON.stringify(error)} for ${kind}`,
-  );
+/** @param {any} answer @param {RegExp} words */
+function refused({ ok, error }, words) {
+  claim(ok === false && words.test(error), JSON.stringify(error));
 }
 const text = (/** @type {string} */ words) => new TextEncoder().encode(words);
-refused(new Points().step(1), 'nothing', /no model and no file/, null);
-refused(points.model('teapot'), 'unknown_model', /known are bunny/, null);
-refused(points.file('a.xyz', new Uint8Array(0), 0), 'empty', /the file is empty/, null);
-refused(points.file('a.xyz', text('1 2 3\n'), 20), 'centres', /choose 100 to 800/, null);
+refused(new Points().step(1), /no model and no file/);
+refused(points.model('teapot'), /known are bunny/);
+refused(points.file('a.xyz', new Uint8Array(0), 0), /the file is empty/);
+refused(points.file('a.xyz', text('1 2 3\n'), 20), /choose 100 to 800/);
 accepted(points.file('a.ply', ply.slice(0, header.length + 4), 0), 'a file that is cut off');
-refused(points.step(1), 'claim', /promises 4 vertex rows/, null);
+refused(points.step(1), /promises 4 vertex rows/);
 accepted(points.file('a.xyz', text('1 2 3\n4 nan 6\n'), 0), 'a file with a mistake in its second line');
-refused(points.step(1000), 'line', /^line 2: y is not a finite number/, 2);
-refused(points.step(1), 'line', /^line 2/, 2);
+refused(points.step(1000), /^line 2: y is not a finite number/);
+refused(points.step(1), /^line 2/);
 console.log('same  mistakes are refused in words');
 process.exitCode = failures > 0 ? 1 : 0;

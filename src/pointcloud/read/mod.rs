@@ -93,23 +93,6 @@ pub enum ReadError {
     },
 }
 
-impl ReadError {
-    /// Kind of error as a word in snake case, for programs.
-    #[must_use]
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Empty => "empty",
-            Self::TooLarge { .. } => "too_large",
-            Self::Unknown { .. } => "unknown_format",
-            Self::Line { .. } => "line",
-            Self::Row { .. } => "row",
-            Self::Claim { .. } => "claim",
-            Self::Memory => "memory",
-            Self::NoPoints { .. } => "no_points",
-        }
-    }
-}
-
 /// Checks the size of a file, before its content is loaded.
 ///
 /// # Errors

@@ -383,9 +383,6 @@ export type Hole = {
   ratio: number,
 };
 
-/** The stage of a job, as the page shows it. */
-export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
-
 /** A part of a run, before which a snapshot is taken. */
 export type LessonChapter = {
   /** Number of the first event of the chapter in the run. */
@@ -476,7 +473,7 @@ parent: number,
 slot: number,
 /** Position. */
 position: [number, number, number],
-/** Unit normal there. */
+/** Unit normal at `position`. */
 normal: [number, number, number],
 /** Distance to the parent: 2r on the circle. */
 distance: number, } | { "type": "gathered",
@@ -530,7 +527,7 @@ parent: number,
 before: number | null,
 /** The particle behind the free space, in the direction of growing angles. */
 behind: number | null,
-/** Directions of these two particles in the frame. */
+/** Directions of the particles `before` and `behind` in the frame. */
 angles_rad: [number, number], } | { "type": "start",
 /** The particle that places the child. */
 parent: number,
@@ -540,7 +537,7 @@ slot: number,
 tangent: [number, number, number] | null,
 /** The point s, in the tangent plane. */
 position: [number, number, number],
-/** Repulsion radius there. */
+/** Repulsion radius at `position`. */
 radius: number, } | { "type": "push",
 /** The particle that places the child. */
 parent: number,
@@ -548,7 +545,7 @@ parent: number,
 slot: number,
 /** Place after the push. */
 position: [number, number, number],
-/** Repulsion radius there. */
+/** Repulsion radius at `position`. */
 radius: number, } | { "type": "push_on_circle",
 /** The particle that places the child. */
 parent: number,
@@ -556,7 +553,7 @@ parent: number,
 slot: number,
 /** Place after the push. */
 position: [number, number, number],
-/** Repulsion radius there. */
+/** Repulsion radius at `position`. */
 radius: number,
 /** Largest overlap with another particle, as a share of r_i + r_j; negative if there is none. */
 overlap: number, } | { "type": "room",
@@ -588,11 +585,11 @@ force: [number, number, number],
 target: [number, number, number],
 /** The place on the surface. */
 position: [number, number, number],
-/** Unit normal there. */
+/** Unit normal at `position`. */
 normal: [number, number, number],
-/** Repulsion radius there. */
+/** Repulsion radius at `position`. */
 radius: number,
-/** Whether it stayed where it was, because the move leads out of the box, off the surface or around a fold. */
+/** Whether the particle stayed where it was, because the move leads out of the box, off the surface or around a fold. */
 is_kept: boolean, } | { "type": "step_ends",
 /** Number of the step, from 1. */
 step: number,
@@ -920,7 +917,7 @@ export type ModelInfo = {
   mesh: GivenMesh | null,
   /** Origin of the normals. */
   normals: NormalSource,
-  /** Warnings for the user. */
+  /** Warnings for the user, as sentences: they go from the bundle that fits a model to the one that samples it. */
   warnings: Array<string>,
 };
 
@@ -974,21 +971,9 @@ export type Places = {
   holes: Array<Hole>,
 };
 
-/** Error of a job, as the page shows it. */
-export type PointsFault = {
-  /** Kind of error as a word in snake case. */
-  kind: string,
-  /** The error as a sentence for the user, in plain text. */
-  message: string,
-  /** Number, from 1, of the line of a text file that is in error. */
-  line: number | null,
-};
-
 /** Progress of a job. */
 export type PointsProgress = {
-  /** Current stage. */
-  stage: JobStage,
-  /** Current stage in words. */
+  /** The stage of the job in words. */
   label: string,
   /** Fraction of the whole work, from 0 to 1. It never decreases. */
   fraction: number,
@@ -1020,7 +1005,7 @@ export type Progress = {
   fraction: number,
   /** Set once the run has ended. */
   stop_reason: StopReason | null,
-  /** A sentence for the user where the reason needs one. */
+  /** A sentence for the user where the reason needs one. It may name places, which the reason does not hold. */
   message: string | null,
   /** Repulsion radius. */
   radius: number,

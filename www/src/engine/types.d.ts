@@ -2,7 +2,7 @@
 // Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
 // otherwise.
 import type { Columns, MEASURED } from './columns.js';
-import type { Answer, Phase as CorePhase, PointsFault, PointsProgress, Start } from './core-types.js';
+import type { Answer, Phase as CorePhase, PointsProgress, Start } from './core-types.js';
 import type { LessonClientOptions, Surface } from './lesson/types.js';
 
 export type Signal<T> = import('@preact/signals-core').Signal<T>;
@@ -58,9 +58,8 @@ export type FieldAnswer = CoreAnswer<import('./core-types.js').FieldAnswer>;
 /** `surface` is of a model its id, of a file {@link FILE_SURFACE} */
 export type FieldOk = Extract<FieldAnswer, { ok: true }>;
 export type StartAnswer = CoreAnswer<Start>;
-export type SolverAnswer<T> = Answer<T, PointsFault>;
-export type PointsAnswer = SolverAnswer<PointsProgress>;
-export type SolvedAnswer = SolverAnswer<SolvedModel>;
+export type PointsAnswer = Answer<PointsProgress, string>;
+export type SolvedAnswer = Answer<SolvedModel, string>;
 
 // ---- what the page adds to it
 
@@ -233,7 +232,6 @@ export interface Loading {
   /** of the model, or {@link FILE_SURFACE} */
   id: string;
   name: string;
-  stage: 'starting' | 'reading' | 'thinning' | 'normals' | 'solving';
   label: string;
   /** 0 … 1 of the whole process */
   fraction: number;
@@ -242,12 +240,10 @@ export interface Loading {
 export interface LoadingError {
   id: string;
   name: string;
-  /** the core's kind of error, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle` */
+  /** `refused` by the core, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle` */
   kind: string;
   /** with the line number, if there is one */
   message: string;
-  /** from 1 */
-  line: number | null;
 }
 export type Trial = 'none' | 'shown' | 'back';
 export interface EngineSignals {

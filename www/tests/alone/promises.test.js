@@ -50,7 +50,7 @@ async function attack(p, { state, worker, death }) {
   else if (state === 'opening a file') call('open before', p.open(cloud(2000)));
   else if (state !== 'at rest') call('set before', p.set({ surface: 'torus', settings }));
   const rests = ['at rest', 'joining a mesh', 'writing a file'].includes(state);
-  if (worker === 'points') await until(engine.loading, (loading) => loading?.stage === 'solving');
+  if (worker === 'points') await until(engine.loading, (loading) => loading?.label === 'Solving for the surface');
   else await until(engine.progress, ({ phase }) => phase === (rests ? 'done' : state));
 
   if (death === 'panic') p.debug.panic();

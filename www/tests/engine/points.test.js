@@ -35,9 +35,8 @@ const solved = () =>
   /** @type {Solved} */ ({ field: Uint8Array.of(1, 2, 3), info: { info, bounds }, centres: Float32Array.of(0, 0, 1) });
 const settle = () => new Promise((resolve) => setTimeout(resolve));
 
-/** @type {('reading' | 'thinning' | 'solving')[]} */
-const stages = ['reading', 'thinning', 'solving'];
-const begun = { stage: stages[0], label: 'x', fraction: 0, done: false };
+const stages = ['Thinning out', 'Choosing centres', 'Solving'];
+const begun = { label: stages[0], fraction: 0, done: false };
 
 /**
  * A solver in three stages that refuses names with “broken” in them.
@@ -48,20 +47,17 @@ function fakePoints() {
   let broken = false;
   return {
     model: (/** @type {string} */ id) =>
-      id === 'bunny'
-        ? { ok: true, ...begun }
-        : { ok: false, error: { kind: 'unknown', message: 'no such model', line: null } },
+      id === 'bunny' ? { ok: true, ...begun } : { ok: false, error: 'no such model' },
     file: (/** @type {string} */ name) => {
       broken = name.includes('broken');
       return { ok: true, ...begun };
     },
     step: () => {
       steps += 1;
-      if (broken) return { ok: false, error: { kind: 'format', message: 'line 17: a number is missing', line: 17 } };
+      if (broken) return { ok: false, error: 'line 17: a number is missing' };
       return {
         ok: true,
-        stage: stages[steps - 1] ?? 'done',
-        label: 'x',
+        label: stages[steps - 1] ?? 'Done',
         fraction: steps / 4,
         done: steps === 4,
       };
@@ -82,12 +78,7 @@ async function answers(order) {
 describe('solving', () => {
   test('tells its stages and ends with the system, what is known of it and the centres', async () => {
     const posted = await answers({ model: 'bunny', centres: null });
-    expect(posted.filter((m) => m.type === 'progress').map((m) => m.stage)).toEqual([
-      'reading',
-      'reading',
-      'thinning',
-      'solving',
-    ]);
+    expect(posted.filter((m) => m.type === 'progress').map((m) => m.label)).toEqual(['Reading', ...stages]);
     expect(posted.at(-1)).toEqual({
       type: 'solved',
       solved: { field: Uint8Array.of(1, 2, 3), centres: Float32Array.of(0, 0, 1), info: { info, bounds } },
@@ -95,13 +86,15 @@ describe('solving', () => {
   });
 
   test('of what is no model, no file or broken is refused in the core’s words', async () => {
-    expect((await answers({ model: 'cow', centres: null })).at(-1)).toMatchObject({ type: 'refused', kind: 'unknown' });
+    expect((await answers({ model: 'cow', centres: null })).at(-1)).toMatchObject({
+      type: 'refused',
+      message: 'no such model',
+    });
     const file = (/** @type {string} */ name, read = async () => new ArrayBuffer(8)) =>
       /** @type {File} */ (/** @type {unknown} */ ({ name, size: 8, arrayBuffer: read }));
     expect((await answers({ file: file('broken.ply'), centres: null })).at(-1)).toMatchObject({
       type: 'refused',
       message: 'line 17: a number is missing',
-      line: 17,
     });
     expect(
       (
@@ -231,9 +224,9 @@ describe('a wish for a model', () => {
     expect(loader.ready()).toBe(true);
     const loading = wish('bunny');
     expect(loader.ready()).toBe(false);
-    expect(store.loading.value).toMatchObject({ id: 'bunny', name: 'Bunny', stage: 'starting' });
-    workers[0].say({ type: 'progress', stage: 'solving', label: 'Solving', fraction: 0.5 });
-    expect(store.loading.value).toMatchObject({ stage: 'solving', fraction: 0.5 });
+    expect(store.loading.value).toMatchObject({ id: 'bunny', name: 'Bunny', label: 'Starting' });
+    workers[0].say({ type: 'progress', label: 'Solving', fraction: 0.5 });
+    expect(store.loading.value).toMatchObject({ label: 'Solving', fraction: 0.5 });
     expect(sample).not.toHaveBeenCalled();
     workers[0].say({ type: 'solved', solved: solved() });
     await loading;
@@ -332,10 +325,10 @@ describe('a wish for a model', () => {
     expect(sample).toHaveBeenCalledTimes(1);
     const first = loader.key();
     const again = loader.openFile(file('dog.ply'));
-    workers[1].say({ type: 'refused', kind: 'format', message: 'line 3: NaN', line: 3 });
+    workers[1].say({ type: 'refused', kind: 'refused', message: 'line 3: NaN' });
     await again;
     expect(loader.key()).toBe(first);
-    expect(store.loadingError.value).toMatchObject({ name: 'dog.ply', line: 3 });
+    expect(store.loadingError.value).toMatchObject({ name: 'dog.ply', message: 'line 3: NaN' });
   });
 
   test('from a file that is too large is not even read', async () => {

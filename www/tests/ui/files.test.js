@@ -36,22 +36,19 @@ describe('a file of points', () => {
     expect(carriesFiles(null)).toBe(false);
   });
 
-  it('is refused in whole sentences, with the line once and what to do', () => {
+  it('is refused in whole sentences, with what to do', () => {
     const error = {
       id: FILE_SURFACE,
       name: 'a.xyz',
-      kind: 'line',
+      kind: 'refused',
       message: 'line 7: the second number is missing',
-      line: 7,
     };
     expect(describeLoadingError(error)).toEqual({
       title: 'a.xyz could not be used',
       text: 'Line 7: the second number is missing.',
-      line: '',
       advice: '',
     });
-    expect(describeLoadingError({ ...error, message: 'the second number is missing.' }).line).toBe('Line 7');
-    expect(describeLoadingError({ ...error, kind: 'too_large', line: null }).advice).toContain('Thin the points out');
+    expect(describeLoadingError({ ...error, kind: 'too_large' }).advice).toContain('Thin the points out');
   });
 });
 

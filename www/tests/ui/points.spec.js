@@ -87,7 +87,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
     await afresh(page, { width: 1440, height: 900 });
     await page.evaluate(() => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
-      engine.loading.value = { id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.42 };
+      engine.loading.value = { id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.42 };
     });
     const bar = page.getByRole('progressbar', { name: 'Loading Bunny' });
     await expect(bar).toHaveAttribute('aria-valuenow', '42');

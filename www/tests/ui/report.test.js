@@ -243,7 +243,7 @@ describe('the caption', () => {
   });
 
   it('tells how far a model on its way is', () => {
-    expect(loadingOf({ id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.416 })).toBe(
+    expect(loadingOf({ id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.416 })).toBe(
       'Bunny · Solving · 42%',
     );
   });

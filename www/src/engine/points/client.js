@@ -66,12 +66,8 @@ export class PointsClient {
         if ('solved' in ending) this.#solved.set(key, ending.solved);
         resolve(ending);
       };
-      const refuse = (
-        /** @type {string} */ kind,
-        /** @type {string} */ message,
-        /** @type {string} */ details = '',
-        /** @type {number | null} */ line = null,
-      ) => end({ refusal: { kind, message, details, line } });
+      const refuse = (/** @type {string} */ kind, /** @type {string} */ message, /** @type {string} */ details = '') =>
+        end({ refusal: { kind, message, details } });
       const silent = () => refuse('silent', 'the solver fell silent and was stopped');
       const listen = (/** @type {number} */ ms) => {
         this.#clock.clearTimeout(timer);
@@ -89,7 +85,7 @@ export class PointsClient {
             end({ solved: data.solved });
             break;
           case 'refused':
-            refuse(data.kind, data.message, '', data.line);
+            refuse(data.kind, data.message);
             break;
           case 'crashed':
             refuse('crashed', 'the solver stopped on an error', `${data.message}\n${data.stack}`);

@@ -55,9 +55,9 @@ export class ModelLoader {
     this.#sample = sample;
     this.client = new PointsClient({
       spawn,
-      onProgress: ({ stage, label, fraction }) => {
+      onProgress: ({ label, fraction }) => {
         const { loading } = store;
-        if (loading.value) loading.value = { ...loading.value, stage, label, fraction };
+        if (loading.value) loading.value = { ...loading.value, label, fraction };
       },
     });
     this.#opened = null;
@@ -142,7 +142,6 @@ export class ModelLoader {
       this.#refused(FILE_SURFACE, file.name, {
         kind: 'too_large',
         message: `the file has ${mb(file.size)} MB; up to ${mb(most)} MB are read`,
-        line: null,
       });
       return;
     }
@@ -169,7 +168,7 @@ export class ModelLoader {
     this.orderKey = key;
     batch(() => {
       loadingError.value = null;
-      loading.value = { id, name, stage: 'starting', label: 'Starting', fraction: 0 };
+      loading.value = { id, name, label: 'Starting', fraction: 0 };
     });
     const outcome = await this.client.load(key, order);
     if (this.#orderId !== mine) return false;
@@ -184,9 +183,9 @@ export class ModelLoader {
   }
 
   /** @param {string} id @param {string} name @param {Refusal} refusal */
-  #refused(id, name, { kind, message, line, details }) {
+  #refused(id, name, { kind, message, details }) {
     const { loadingError, notice } = this.#store;
-    loadingError.value = { id, name, kind, message, line };
+    loadingError.value = { id, name, kind, message };
     notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
   }
 

@@ -24,9 +24,8 @@ const USUAL_CENTRES = 0;
  * @param {WorkerEnv<FromPoints>} env
  */
 export async function solve(points, order, env) {
-  /** @param {{kind: string, message: string, line?: number | null}} error */
-  const refuse = ({ kind, message, line }) => env.post({ type: 'refused', kind, message, line: line ?? null });
-  env.post({ type: 'progress', stage: 'reading', label: 'Reading', fraction: 0 });
+  const refuse = (/** @type {string} */ message, kind = 'refused') => env.post({ type: 'refused', kind, message });
+  env.post({ type: 'progress', label: 'Reading', fraction: 0 });
   let begun;
   if ('model' in order) {
     begun = points.model(order.model, order.centres ?? USUAL_CENTRES);
@@ -35,7 +34,7 @@ export async function solve(points, order, env) {
     try {
       bytes = new Uint8Array(await order.file.arrayBuffer());
     } catch (error) {
-      return refuse({ kind: 'unreadable', message: `the file cannot be read: ${words(error)}` });
+      return refuse(`the file cannot be read: ${words(error)}`, 'unreadable');
     }
     begun = points.file(order.file.name, bytes, order.centres ?? USUAL_CENTRES);
   }
@@ -44,9 +43,9 @@ export async function solve(points, order, env) {
     const before = env.nowMs();
     const step = points.step(budget);
     if (!step.ok) return refuse(step.error);
-    if (step.stage === 'done') break;
+    if (step.done) break;
     budget = nextBudget(budget, env.nowMs() - before, STEP_MS);
-    env.post({ type: 'progress', stage: step.stage, label: step.label, fraction: step.fraction });
+    env.post({ type: 'progress', label: step.label, fraction: step.fraction });
     await env.pause();
   }
   const info = points.info();

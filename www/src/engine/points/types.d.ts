@@ -3,10 +3,10 @@
 // also how an order is cancelled.
 import type { Timers } from '../bundle/types.js';
 import type { Store } from '../store.js';
-import type { Bounds, Loading, ModelInfo, PointsAnswer, SolvedAnswer } from '../types.js';
+import type { Bounds, ModelInfo, PointsAnswer, SolvedAnswer } from '../types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<Order, FromPoints>;
-export type Refusal = { kind: string; message: string; line: number | null; details?: string };
+export type Refusal = { kind: string; message: string; details?: string };
 /**
  * A request for a built-in model, by its id, or for a file, of whose points so many are to be fitted; null for the
  * default number.
@@ -18,10 +18,10 @@ export type Wanted = { id: string; name: string; order: Order };
 export type Solved = { field: Uint8Array; info: { info: ModelInfo; bounds: Bounds }; centres: Float32Array };
 /** `failed`: the bundle did not load */
 export type FromPoints =
-  | { type: 'progress'; stage: Loading['stage']; label: string; fraction: number }
+  | { type: 'progress'; label: string; fraction: number }
   | { type: 'beat' }
   | { type: 'solved'; solved: Solved }
-  | { type: 'refused'; kind: string; message: string; line: number | null }
+  | { type: 'refused'; kind: string; message: string }
   | { type: 'crashed'; message: string; stack: string }
   | { type: 'failed'; message: string };
 /** The part of the bundle's class that the loop uses. */

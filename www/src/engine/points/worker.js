@@ -20,7 +20,7 @@ const crashOf = crashWords();
 self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
   // The bundle and the file may take long to come. The page sees that the worker is alive.
   setInterval(() => post({ type: 'beat' }), BEAT_MS);
-  post({ type: 'progress', stage: 'starting', label: 'Starting', fraction: 0 });
+  post({ type: 'progress', label: 'Starting', fraction: 0 });
   let points;
   try {
     await init({ module_or_path: await loadModule(wasmUrl, 'solver for points') });

@@ -34,12 +34,11 @@ const ADVICE = {
  * Describes an error in loading for the user.
  * @param {LoadingError} error
  */
-export function describeLoadingError({ name, kind, message, line }) {
+export function describeLoadingError({ name, kind, message }) {
   const text = message.trim();
   return {
     title: `${name} could not be used`,
     text: `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!?]$/.test(text) ? '' : '.'}`,
-    line: line !== null && !text.includes(`line ${line}`) ? `Line ${line}` : '',
     advice: ADVICE[kind] ?? '',
   };
 }

@@ -39,8 +39,8 @@ export function createLoading(engine) {
       return `${loading.name}: ${loading.label}, ${formatShare(share, 0)}`;
     }
     if (!error) return '';
-    const { title, line, text } = describeLoadingError(error);
-    return [title, line, text].filter(Boolean).join('. ');
+    const { title, text } = describeLoadingError(error);
+    return `${title}. ${text}`;
   });
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' }, () => heard.value);
   return [working, createRefusal(engine.loadingError), spoken];
@@ -86,7 +86,7 @@ function createRefusal(error) {
     () =>
       told.value && [
         h('h2', null, told.value.title),
-        h('p', null, told.value.line && h('strong', null, `${told.value.line}: `), told.value.text),
+        h('p', null, told.value.text),
         h('p', { class: 'quiet' }, told.value.advice, told.value.advice ? ' ' : '', 'The surface before it stays.'),
         h(
           'div',
