@@ -243,9 +243,7 @@ describe('the caption', () => {
   });
 
   it('tells how far a model on its way is', () => {
-    expect(loadingOf({ id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.416 })).toBe(
-      'Bunny · Solving · 42%',
-    );
+    expect(loadingOf({ id: 'bunny', name: 'Bunny', label: 'Solving', fraction: 0.416 })).toBe('Bunny · Solving · 42%');
   });
 
   it('says so when a run was stopped or met its limit', () => {
