@@ -1,8 +1,8 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
 use crate::field::Field;
-use crate::math::{sort_pairs, unkey};
-use crate::mesh::build::{MeshOptions, particles_in_slices};
+use crate::math::{Bounds, sort_pairs, unkey};
+use crate::mesh::build;
 use crate::particles::Particles;
 use crate::spatial::tree::Tree;
 use core::ops::Range;
@@ -194,7 +194,7 @@ impl CreaseRows {
         tree: &Tree,
         normal: &[Vec3],
         rows: &Particles,
-        options: &MeshOptions<'_>,
+        bounds: Option<&Bounds>,
     ) -> Vec<[u32; 3]> {
         let count = rows.patch.len();
         // Rows that are left out have no position.
@@ -206,7 +206,7 @@ impl CreaseRows {
             (particles.position[row], particles.normal[row]) = (tree.position[k], normal[k]);
             place[row] = k as u32;
         }
-        let mesh = particles_in_slices(&particles, options).await;
+        let mesh = build::in_slices(&particles, bounds).await;
         mesh.triangles.into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 }

@@ -7,7 +7,6 @@ use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
 use crate::math::{Bounds, IndexTable, hash};
-use crate::mesh::build::MeshOptions;
 use crate::slices::pause;
 use glam::Vec3;
 
@@ -54,8 +53,7 @@ impl Prepared {
             let spacing = spacing_of(&points).await;
             let patched = rows.filter(|_| !points.creases.is_empty());
             let (triangles, mesh) = if let Some(rows) = patched {
-                let options = MeshOptions { bounds, ..MeshOptions::default() };
-                let mesh = points.creases.mesh(&points.tree, &points.normal, rows, &options).await;
+                let mesh = points.creases.mesh(&points.tree, &points.normal, rows, bounds).await;
                 points.creases.find_edges(&mesh);
                 (Triangles::seen(&points.rings, &mesh), mesh)
             } else {

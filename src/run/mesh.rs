@@ -4,16 +4,13 @@ use super::Run;
 use crate::export::{File, MeshFile};
 use crate::field::Field;
 use crate::math::{Bounds, sort_few};
-use crate::mesh::build::{self, MeshOptions, Triangulation};
+use crate::mesh::build::{self, Triangulation};
 use crate::particles::Particles;
 use crate::quality::Measurements;
-use crate::slices::{self, Work};
+use crate::slices::{self, MEDIUM, Work};
 use crate::topology::Component;
 use serde::Serialize;
 use std::io;
-
-/// Rows of a file that are written in one slice of work, at up to a microsecond each.
-const ROWS: usize = 1_000;
 
 /// Counts and sizes of a mesh: triangles, components, borders and volume.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -86,8 +83,7 @@ impl Meshing {
 /// Joins particles to triangles, or takes those that are `known`. `bounds` is the clip box, counted from the origin of the particles.
 pub(super) async fn joined(particles: &Particles, known: &[[u32; 3]], bounds: &Bounds) -> Triangulation {
     if known.is_empty() {
-        let options = MeshOptions { bounds: Some(bounds), ..MeshOptions::default() };
-        build::particles_in_slices(particles, &options).await
+        build::in_slices(particles, Some(bounds)).await
     } else {
         Triangulation::known(known.to_vec(), particles).await
     }
@@ -152,7 +148,7 @@ impl<F: Field> Run<F> {
         self.meshing.joined().map_or(&[], |mesh| &mesh.triangles)
     }
 
-    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of a thousand rows each; the
+    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of [`MEDIUM`] rows each; the
     /// file, once it is complete. Another wish, or a change of the particles, begins a file anew.
     ///
     /// # Errors
@@ -170,7 +166,7 @@ impl<F: Field> Run<F> {
         let (particles, measured) = begun.placed.as_ref().map_or(own, |(p, m)| (p, m));
         let file = File { wish, particles, measured, triangles: self.triangles() };
         let all = file.rows();
-        let end = all.min(begun.next.saturating_add(ROWS.saturating_mul(budget as usize)));
+        let end = all.min(begun.next.saturating_add(MEDIUM.saturating_mul(budget as usize)));
         file.write_rows(begun.next..end, &mut begun.bytes)?;
         if end == all {
             return Ok(Some(begun.bytes));

@@ -5,7 +5,7 @@ use glam::Vec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
+use marching_particles::mesh::build::{Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Settings, SizeMode};
 use marching_particles::topology::Topology;
@@ -21,8 +21,7 @@ fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
 }
 
 fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
-    let options = MeshOptions { bounds: Some(bounds), ..MeshOptions::default() };
-    triangulate(&particles.position, &particles.normal, &options)
+    triangulate(particles, Some(bounds))
 }
 
 fn assert_inside(particles: &Particles, bounds: &Bounds) {

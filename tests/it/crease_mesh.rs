@@ -2,7 +2,7 @@
 
 use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::DVec3;
-use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate_particles};
+use marching_particles::mesh::build::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
 use marching_particles::{Bounds, Formula, Settings, sample};
 
@@ -11,7 +11,7 @@ use marching_particles::{Bounds, Formula, Settings, sample};
 #[track_caller]
 fn assert_closed(name: &str, solid: &Creased, euler: i64, flatness: f64) {
     let particles = solid.particles();
-    let mesh = triangulate_particles(&particles, &MeshOptions::default());
+    let mesh = triangulate(&particles, None);
     let told = format!("{name}, {} particles", particles.count());
     assert!(mesh.left_out.is_empty() && mesh.unfilled.is_empty(), "{told}: {mesh:?}");
     assert!(mesh.topology.is_closed(), "{told}: {:?}", mesh.topology.borders);

@@ -5,7 +5,8 @@ use crate::runs::of_gallery;
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{MeshOptions, Triangulation, triangulate};
+use marching_particles::mesh::build::{Triangulation, triangulate};
+use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Settings, SizeMode};
 use marching_particles::topology::Component;
 
@@ -16,8 +17,8 @@ fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Se
 /// The triangles of a set of points, held to what is promised of every set.
 #[track_caller]
 fn mesh(position: &[Vec3], normal: &[Vec3], bounds: Option<&Bounds>) -> Triangulation {
-    let options = MeshOptions { bounds, ..MeshOptions::default() };
-    let mesh = triangulate(position, normal, &options);
+    let points = Particles { position: position.to_vec(), normal: normal.to_vec(), ..Particles::default() };
+    let mesh = triangulate(&points, bounds);
     assert!(mesh.topology.is_manifold(), "{:?}", mesh.topology);
     let mut is_used = vec![false; position.len()];
     for &[a, b, c] in &mesh.triangles {

@@ -4,7 +4,7 @@ use crate::runs::of_gallery;
 use glam::Vec3;
 use marching_particles::export::{MeshFile, MeshFormat, Placement, Unit, UpAxis, write_mesh};
 use marching_particles::field::gallery;
-use marching_particles::mesh::build::{MeshOptions, triangulate};
+use marching_particles::mesh::build::triangulate;
 use marching_particles::particles::Particles;
 use marching_particles::quality;
 use marching_particles::sampler::Settings;
@@ -15,8 +15,7 @@ use std::path::PathBuf;
 fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
     let surface = gallery::find(id).expect("a surface of the gallery");
     let particles = of_gallery(id, &settings!(radius_share; ..Settings::default())).particles().clone();
-    let options = MeshOptions { bounds: Some(&surface.bounds), ..MeshOptions::default() };
-    let mesh = triangulate(&particles.position, &particles.normal, &options);
+    let mesh = triangulate(&particles, Some(&surface.bounds));
     assert!(mesh.triangles.len() > 1000);
     (particles, mesh.triangles)
 }

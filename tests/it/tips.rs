@@ -4,7 +4,7 @@ use crate::runs::finished;
 use glam::Vec3;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{MeshOptions, triangulate_particles};
+use marching_particles::mesh::build::triangulate;
 use marching_particles::sampler::{Method, Sampling, Settings};
 use marching_particles::{Formula, Refusal, Warning, sample};
 
@@ -86,8 +86,7 @@ fn one_particle_stands_at_a_tip_and_the_sheets_close_around_it() {
             let firsts = at_tips.iter().filter(|&&i| particles.first_row(i) == i);
             assert_eq!(firsts.count(), tips, "{name}");
             let bounds = session.run.bounds();
-            let options = MeshOptions { bounds: Some(&bounds), ..MeshOptions::default() };
-            let mesh = triangulate_particles(particles, &options);
+            let mesh = triangulate(particles, Some(&bounds));
             assert_eq!(
                 (mesh.topology.components.len(), mesh.topology.euler()),
                 (components, euler),

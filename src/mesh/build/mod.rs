@@ -37,20 +37,6 @@ use patch::Patch;
 use rim::Rim;
 use stars::Stars;
 
-/// Options of the triangulation.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MeshOptions<'a> {
-    /// The box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be
-    /// filled.
-    pub bounds: Option<&'a Bounds>,
-    /// Edges along which the surface is known to end, as pairs of indices with the surface on the left, seen from outside. No
-    /// triangle lies beyond them, and what is open on their left is a hole.
-    pub rim: &'a [[u32; 2]],
-    /// Points, in ascending order, at the apex of a cone of the surface, each with the mean normal of the cone. Several may be at one place if
-    /// they face different ways.
-    pub tips: &'a [u32],
-}
-
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
@@ -148,42 +134,29 @@ impl Joined {
     }
 }
 
-/// Joins points with outward normals to triangles.
+/// Joins particles to triangles of their rows; where the surface has creases, each patch by itself up to its creases, which are edges of the
+/// mesh. The topology is counted over particles, each once, so that it is that of the patches together.
 ///
-/// `normal` is as long as `position`; its vectors need not have unit length. The points should be dense enough that the normals
-/// of neighbours are well within 90° of each other and sheets are farther apart than neighbours; where they are not,
-/// holes remain and are listed. Cost: linear, below a microsecond per point natively. Any input is met without a panic, and the work is
-/// bounded. The result depends on the points alone and has the same bits natively and in WebAssembly.
+/// `bounds` is the box that cuts the surface: loops along its faces are borders, however short. Without it a small one may be filled.
+///
+/// Positions and outward normals are enough, which need not have unit length. The particles should be dense enough that the normals of
+/// neighbours are well within 90° of each other and sheets are farther apart than neighbours; where they are not, holes remain and are
+/// listed. Cost: linear, below a microsecond per particle natively. Any input is met without a panic, and the work is bounded. The result
+/// depends on the particles alone and has the same bits natively and in WebAssembly.
 ///
 /// # Panics
 ///
-/// If the slices differ in length, or there are 2³¹ points or more.
+/// If the columns differ in length, or there are 2³¹ rows or more.
 #[must_use]
-pub fn triangulate(position: &[Vec3], normal: &[Vec3], options: &MeshOptions) -> Triangulation {
-    slices::complete(in_slices(position, normal, options))
+pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
+    slices::complete(in_slices(particles, bounds))
 }
 
-/// [`triangulate`] in slices of work. The last few look at all points and triangles, for some 50 ns each.
-pub(crate) async fn in_slices(
-    position: &[Vec3],
-    normal: &[Vec3],
-    options: &MeshOptions<'_>,
-) -> Triangulation {
-    join(position, normal, options).await.counted(position.len(), &[]).await
-}
-
-/// Joins particles to triangles of their rows: as [`triangulate`] does, and where the surface has creases, each patch by itself up to
-/// its creases, which are edges of the mesh. The topology is counted over particles, each once, so that it is that of the patches
-/// together.
-#[must_use]
-pub fn triangulate_particles(particles: &Particles, options: &MeshOptions) -> Triangulation {
-    slices::complete(particles_in_slices(particles, options))
-}
-
-/// [`triangulate_particles`] in slices of work.
-pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOptions<'_>) -> Triangulation {
+/// [`triangulate`] in slices of work. The last few look at all rows and triangles, for some 50 ns each.
+pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
+    let Particles { position, normal, .. } = particles;
     if particles.patch.is_empty() {
-        return in_slices(&particles.position, &particles.normal, options).await;
+        return join(position, normal, bounds, &[], &[]).await.counted(position.len(), &[]).await;
     }
     let mut whole = Joined::default();
     let tips = particles.tips();
@@ -192,11 +165,11 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
     };
     for Sheet { rows, border } in Sheet::all(particles).into_iter().filter(|sheet| !is_image(sheet.rows[0])) {
         pause().await;
-        let [position, normal] = [&particles.position, &particles.normal]
-            .map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
+        let [position, normal] =
+            [position, normal].map(|column| rows.iter().map(|&row| column[row as usize]).collect::<Vec<_>>());
         let tips: Vec<u32> =
             (0..).zip(&rows).filter(|(_, row)| tips.binary_search(row).is_ok()).map(|(v, _)| v).collect();
-        let joined = join(&position, &normal, &MeshOptions { rim: &border, tips: &tips, ..*options }).await;
+        let joined = join(&position, &normal, bounds, &border, &tips).await;
         let row = |v: u32| rows[v as usize];
         whole.triangles.extend(joined.triangles.iter().map(|triangle| triangle.map(row)));
         whole.unfilled.extend(joined.unfilled.iter().map(|hole| hole.iter().map(|&v| row(v)).collect()));
@@ -210,7 +183,17 @@ pub(crate) async fn particles_in_slices(particles: &Particles, options: &MeshOpt
     whole.counted(particles.len(), &particles.joints()).await
 }
 
-async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> Joined {
+/// Joins points in the box that cuts their surface. The `rim` has the edges along which the surface is known to end, as pairs of indices with
+/// the surface on the left, seen from outside: no triangle lies beyond them, and what is open on their left is a hole. The points `tips`, in
+/// ascending order, are at the apex of a cone of the surface, each with the mean normal of the cone; several may be at one place if they face
+/// different ways.
+async fn join(
+    position: &[Vec3],
+    normal: &[Vec3],
+    bounds: Option<&Bounds>,
+    rim: &[[u32; 2]],
+    tips: &[u32],
+) -> Joined {
     assert_eq!(position.len(), normal.len(), "every point has a normal");
     assert!(position.len() < 1 << 31, "indices of points have 31 bits");
     let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
@@ -219,12 +202,12 @@ async fn join(position: &[Vec3], normal: &[Vec3], options: &MeshOptions<'_>) -> 
         let points = JoinablePoints::new(position, normal, &usable).await;
         let tips: Vec<u32> = (0..)
             .zip(&points.tree.origin)
-            .filter(|&(_, i)| options.tips.binary_search(i).is_ok())
+            .filter(|&(_, i)| tips.binary_search(i).is_ok())
             .map(|(k, _)| k)
             .collect();
         let stars = Stars::new(&points.tree, &points.normal, &tips).await;
         if stars.twins.is_empty() {
-            return points.join(&stars, options).await;
+            return points.join(&stars, bounds, rim).await;
         }
         // They would be neighbours of everything that the first one is a neighbour of.
         for &twin in &stars.twins {
@@ -261,10 +244,10 @@ impl JoinablePoints {
         Rim::new(edges.collect(), &self.tree.position, &self.normal)
     }
 
-    async fn join(&self, stars: &Stars, options: &MeshOptions<'_>) -> Joined {
-        let rim = self.rim(options.rim);
+    async fn join(&self, stars: &Stars, bounds: Option<&Bounds>, rim: &[[u32; 2]]) -> Joined {
+        let rim = self.rim(rim);
         let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
-        let borders = Borders { bounds: options.bounds, rim: &rim };
+        let borders = Borders { bounds, rim: &rim };
         settle::settle(&mut patch).await;
         rim.clear(&mut patch).await;
         holes::fill(&mut patch, &borders).await;

@@ -4,7 +4,7 @@
 //! neighbours in the Delaunay triangulation there are found one after the other, from the nearest one on: the next
 //! neighbour is the point to the left whose circle through the centre and the last neighbour is the smallest on that side.
 
-use super::ball::{Ball, BallPoints};
+use super::ball::{Ball, BallPoints, MOST};
 use crate::math::sort_few;
 use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{Leaf, Tree};
@@ -14,8 +14,6 @@ use glam::Vec3;
 /// Radius of the first ball that is searched, over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d
 /// spans 3 to 5 d, so the ball reaches 1.4 to 2.2 d, and few stars need a second one.
 const BALL: f32 = 0.45;
-/// Largest number of neighbours of a point: half of the points that a ball may hold. A point with more of them gets an empty star.
-const MOST_NEIGHBOURS: usize = 32;
 /// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336 instead of 154 particles of 46
 /// unrelaxed random runs are in no triangle; with twice as much gaps of the surface are closed: 8 of 91 borders go.
 pub(super) const WIDEST: f32 = 2.0;
@@ -45,17 +43,16 @@ struct StarBuffers {
 }
 
 /// A neighbour, and the square of the diameter of the circle through it, the centre and the next one.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Ray {
     point: usize,
     width_sq: f32,
 }
 
-/// A star under construction.
+/// A star under construction; empty where its rays do not close up.
 #[derive(Default)]
 struct Star {
-    count: usize,
-    rays: [Ray; MOST_NEIGHBOURS],
+    rays: Vec<Ray>,
 }
 
 /// The points of a mesh.
@@ -125,7 +122,7 @@ impl Stars {
         ball.level(tips, normal[i], is_tip);
         star.make(ball, normal[i], twin_sq(known_sq));
         let mut widest_sq = star.widest_sq(ball);
-        if star.count == 0 || known_sq < widest_sq && !star.is_certain(known_sq) {
+        if star.rays.is_empty() || known_sq < widest_sq && !star.is_certain(known_sq) {
             known_sq = ball.search(tree, normal, i as u32, widest_sq.sqrt());
             ball.level(tips, normal[i], is_tip);
             star.make(ball, normal[i], twin_sq(known_sq));
@@ -134,8 +131,8 @@ impl Stars {
         if !is_tip && ball.has_earlier_twin(i as u32, twin_sq(known_sq)) {
             self.twins.push(i as u32);
         }
-        let mut is_open = star.count == 0;
-        for ray in &star.rays[..star.count] {
+        let mut is_open = star.rays.is_empty();
+        for ray in &star.rays {
             let is_narrow = ray.width_sq <= widest_sq;
             is_open |= !is_narrow;
             self.entry.push(ball.index(ray.point) | if is_narrow { WEDGE } else { 0 });
@@ -183,7 +180,7 @@ impl Star {
     /// Finds the neighbours of the centre among the points of the ball, which are given the tangent plane.
     fn make(&mut self, ball: &mut Ball, normal: Vec3, twin_sq: f32) {
         ball.unroll(normal, twin_sq);
-        self.count = 0;
+        self.rays.clear();
         let Some(first) = ball.nearest() else { return };
         let mut point = first;
         loop {
@@ -191,12 +188,11 @@ impl Star {
             if point != first && next.is_some_and(|next| ball.is_between(point, first, next)) {
                 next = Some(first); // Rounding has led past the first one.
             }
-            if self.count == MOST_NEIGHBOURS {
-                self.count = 0;
+            if self.rays.len() == MOST {
+                self.rays.clear();
                 return;
             }
-            self.rays[self.count] = Ray { point, width_sq };
-            self.count += 1;
+            self.rays.push(Ray { point, width_sq });
             match next {
                 Some(next) if next == first => return,
                 Some(next) => point = next,
@@ -204,35 +200,34 @@ impl Star {
             }
         }
         // Nothing follows the last one: go on at the other side of the first.
-        let left = self.count;
+        let left = self.rays.len();
         point = first;
         while let (Some(next), width_sq) = ball.next(point, -1.0) {
-            if self.count == MOST_NEIGHBOURS {
-                self.count = 0;
+            if self.rays.len() == MOST {
+                self.rays.clear();
                 return;
             }
-            self.rays[self.count] = Ray { point: next, width_sq };
-            self.count += 1;
+            self.rays.push(Ray { point: next, width_sq });
             point = next;
         }
-        self.rays[left..self.count].reverse();
-        self.rays[..self.count].rotate_left(left);
+        self.rays[left..].reverse();
+        self.rays.rotate_left(left);
     }
 
     /// Whether no point farther than √`known_sq` can matter.
     fn is_certain(&self, known_sq: f32) -> bool {
-        self.rays[..self.count].iter().all(|ray| ray.width_sq <= known_sq)
+        self.rays.iter().all(|ray| ray.width_sq <= known_sq)
     }
 
     /// The square of the largest width of a wedge, in units of the median distance of the neighbours.
     fn widest_sq(&self, ball: &Ball) -> f32 {
-        let mut lengths_sq = [0.0; MOST_NEIGHBOURS];
-        for (length_sq, ray) in lengths_sq.iter_mut().zip(&self.rays[..self.count]) {
+        let mut lengths_sq = [0.0; MOST];
+        for (length_sq, ray) in lengths_sq.iter_mut().zip(&self.rays) {
             *length_sq = ball.distance_sq(ray.point);
         }
-        let lengths_sq = &mut lengths_sq[..self.count];
+        let lengths_sq = &mut lengths_sq[..self.rays.len()];
         sort_few(lengths_sq, |a, b| a < b);
-        let median_sq = lengths_sq.get(self.count.saturating_sub(1) / 2).copied().unwrap_or(0.0);
+        let median_sq = lengths_sq.get(self.rays.len().saturating_sub(1) / 2).copied().unwrap_or(0.0);
         4.0 * WIDEST * WIDEST * median_sq
     }
 }

@@ -8,7 +8,7 @@ use super::{LEAST_PARTICLES, SurfaceFacts};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::{Bounds, Forest};
-use crate::mesh::build::{MeshOptions, Triangulation, triangulate_particles};
+use crate::mesh::build::{Triangulation, triangulate};
 use crate::mesh::half_edge::{HalfEdges, NONE};
 use crate::particles::Particles;
 use crate::sampler::constraint::CreaseLadder;
@@ -58,8 +58,7 @@ pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
 pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u32; 3]>, Refusal> {
     let radius = particles.radius.iter().copied().fold(0.0, f32::max);
     let grown = border::grown(bounds, f64::from(radius));
-    let options = MeshOptions { bounds: Some(&grown), ..MeshOptions::default() };
-    let joined = triangulate_particles(particles, &options);
+    let joined = triangulate(particles, Some(&grown));
     judge_triangles(&joined, particles, bounds)?;
     Ok(joined.triangles)
 }

@@ -12,7 +12,7 @@ use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target};
 use crate::math::{Bounds, Forest};
-use crate::mesh::build::{MeshOptions, triangulate};
+use crate::mesh::build::triangulate;
 use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
 use crate::sampler::constraint::CreaseLadder;
@@ -254,7 +254,7 @@ fn split(particles: &Particles) -> Vec<Particles> {
     // A child is on the component of its parent, which comes before it.
     let links = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i));
     let mut components = Forest::with_links(links.collect());
-    let joined = triangulate(&particles.position, &particles.normal, &MeshOptions::default());
+    let joined = triangulate(particles, None);
     for [a, b, c] in joined.triangles {
         for other in [b, c] {
             components.join(a, other);

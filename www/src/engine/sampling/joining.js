@@ -12,20 +12,18 @@ import { BEAT_MS } from './protocol.js';
  * @import { Mesh, SliceEnv } from './types.js'
  */
 
-/** First budgets, in slices of up to a tenth of a millisecond, and of a millisecond for files. */
-const FIRST_SLICES = 32;
-const FIRST_ROWS = 4;
+/** First budget, in slices of up to a tenth of a millisecond. */
+const FIRST_BUDGET = 32;
 
 /**
  * Returns what the slices lead to, or null if another job replaces the particles before they are done.
  * @template T
  * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
- * @param {number} slices  the first budget
  * @param {SliceEnv} env
  * @returns {Promise<T | null>}
  */
-async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
-  let budget = slices;
+async function inSlices(step, { nowMs, pause, post, interrupt }) {
+  let budget = FIRST_BUDGET;
   let beatMs = nowMs();
   for (;;) {
     await pause();
@@ -48,7 +46,7 @@ async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
  * @returns {Promise<Mesh | null>}
  */
 export async function join(core, env) {
-  const about = await inSlices((budget) => core.join(budget), FIRST_SLICES, env);
+  const about = await inSlices((budget) => core.join(budget), env);
   return about && { about, triangles: core.triangles() };
 }
 
@@ -60,11 +58,7 @@ export async function join(core, env) {
  * @param {SliceEnv} env
  */
 export const write = (core, request, env) =>
-  inSlices(
-    (budget) => {
-      const bytes = core.mesh_file(request, budget);
-      return bytes === undefined ? undefined : { bytes };
-    },
-    FIRST_ROWS,
-    env,
-  );
+  inSlices((budget) => {
+    const bytes = core.mesh_file(request, budget);
+    return bytes === undefined ? undefined : { bytes };
+  }, env);
