@@ -64,10 +64,15 @@ impl PointPair {
         (0.5 * self.offset.dot(self.normal + self.other)).abs()
     }
 
-    /// Whether the two points face the same way: their normals are within 90°.
+    /// Whether the two points [face the same way](face_one_way).
     pub(crate) fn faces_one_way(self) -> bool {
-        self.normal.dot(self.other) > 0.0
+        face_one_way(self.normal, self.other)
     }
+}
+
+/// Whether two points of the surface with these normals face the same way: the normals are within 90°.
+pub(crate) fn face_one_way(one: Vec3, other: Vec3) -> bool {
+    one.dot(other) > 0.0
 }
 
 /// A point of the surface farther than this many radii from every particle of its sheet is not covered: a closed cover has no hole
@@ -79,7 +84,7 @@ pub(crate) const UNCOVERED: f32 = 2.0;
 pub(crate) fn is_cover(particles: &Particles, near: &Neighbour, normal: Vec3) -> bool {
     let j = near.index as usize;
     let reach = UNCOVERED * particles.radius[j];
-    particles.normal[j].dot(normal) > 0.0 && near.distance_sq <= reach * reach
+    face_one_way(particles.normal[j], normal) && near.distance_sq <= reach * reach
 }
 
 /// sin² 45°: the steepest direction from a point to one on its sheet, above the tangent plane. A sheet that bends by 45° over the

@@ -7,6 +7,7 @@
 
 use crate::particles::Particles;
 use crate::sampler::neighbours::packed::PackedNeighbours;
+use crate::sampler::sheet::face_one_way;
 use core::ops::Range;
 
 /// Grades the near pairs of the particles of `range`. Returns whether a radius was lowered.
@@ -34,12 +35,11 @@ pub(super) fn grade_far(slope: f32, pairs: &PackedNeighbours, particles: &mut Pa
     particles.share_radii() || has_lowered
 }
 
-/// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles are on one sheet
-/// (normals within 90°). Returns whether it was lowered.
+/// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles face the same way. Returns whether it was lowered.
 fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
     let rise = slope * (particles.position[i] - particles.position[j]).length();
     let (a, b) = (particles.radius[i], particles.radius[j]);
-    let is_steep = (a > b + rise || b > a + rise) && particles.normal[i].dot(particles.normal[j]) > 0.0;
+    let is_steep = (a > b + rise || b > a + rise) && face_one_way(particles.normal[i], particles.normal[j]);
     if is_steep && a > b {
         particles.radius[i] = b + rise;
     } else if is_steep {

@@ -12,6 +12,7 @@ use crate::particles::{SlotFate, Slots};
 use crate::sampler::front::level::{FrontContext, FrontLevel, Placing};
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN};
 use crate::sampler::projection::{ChildCircle, CircleLanding};
+use crate::sampler::sheet::face_one_way;
 use crate::spatial::Neighbour;
 use glam::Vec2;
 
@@ -68,7 +69,7 @@ impl UniformPlacing {
             let j = near.index as usize;
             let flat = Vec2::new(near.offset.dot(u), near.offset.dot(w));
             let length = flat.length();
-            if j != i && count < CAPACITY && particles.normal[j].dot(n) > 0.0 && length > 0.0 {
+            if j != i && count < CAPACITY && face_one_way(particles.normal[j], n) && length > 0.0 {
                 plane[count] = flat * (near.distance_sq.sqrt() / (length * spacing));
                 count += 1;
             }
@@ -81,11 +82,11 @@ impl UniformPlacing {
         probe.land_on_circles(&[circle], self.tolerance, &mut self.landings);
         let CircleLanding::On { position, normal } = self.landings[0] else { return };
         let is_inside = level.bounds.contains(position) && probe.is_on_patch(position, patch);
-        if !is_inside || normal.dot(n) <= 0.0 {
+        if !is_inside || !face_one_way(normal, n) {
             return;
         }
         level.gather(particles, patch, position, |_| reach);
-        let same_sheet = |near: &&Neighbour| particles.normal[near.index as usize].dot(normal) > 0.0;
+        let same_sheet = |near: &&Neighbour| face_one_way(particles.normal[near.index as usize], normal);
         let clear = GAP * spacing;
         if level.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
             return;
