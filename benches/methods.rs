@@ -14,7 +14,7 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::field::{Field, gallery, model};
 use marching_particles::math::Bounds;
-use marching_particles::pointcloud::models;
+use marching_particles::pointcloud::fit_model;
 use marching_particles::{Figures, Method, Run, Sampling, Settings, SizeMode, Warning};
 use std::io::{self, Write};
 use std::time::Instant;
@@ -166,7 +166,7 @@ fn sources(plan: &Plan) -> Vec<Source> {
         (surface.id, make, surface.bounds)
     });
     let models = model::MODELS.iter().filter(|model| plan.has(model.id)).map(|model| {
-        let fit = models::fit(model);
+        let fit = fit_model(model);
         let data = fit.data.clone();
         let make: Box<dyn Fn() -> Box<dyn Field>> =
             Box::new(move || Box::new(RbfField::new(data.clone()).expect("a solved system is a field")));

@@ -24,7 +24,7 @@ use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
-use marching_particles::pointcloud::models;
+use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{MeasureOptions, measure};
 use marching_particles::{Phase, Run, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
@@ -289,7 +289,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
 /// later ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
 fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
-    let fit = models::fit(model);
+    let fit = fit_model(model);
     let mut field = RbfField::new(fit.data.clone()).expect("a field");
     let ellipsoid = Job::new(count);
     for sampling in [Sampling::Uniform, Sampling::Adaptive] {

@@ -8,7 +8,7 @@ use marching_particles::field::rbf::RbfField;
 use marching_particles::lesson::{self, ChapterKind, Lesson};
 use marching_particles::math::Bounds;
 use marching_particles::paper::Particle;
-use marching_particles::pointcloud::models;
+use marching_particles::pointcloud::fit_model;
 use marching_particles::quality::{self, Figures};
 use marching_particles::{LawKind, Phase, Run, Sampling, Settings, SizeMode};
 use std::time::Instant;
@@ -27,7 +27,7 @@ impl Surface {
             return Self { make: Box::new(move || Box::new(field.clone())), bounds: surface.bounds };
         }
         let model = model::find(id).expect("a surface or a model");
-        let fit = models::fit(model);
+        let fit = fit_model(model);
         let data = fit.data;
         let make =
             move || Box::new(RbfField::new(data.clone()).expect("a solved system is a field")) as Box<_>;

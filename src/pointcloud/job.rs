@@ -184,6 +184,20 @@ impl Job {
         }
     }
 
+    /// Does all that is left of the work and returns the field.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Job::step`].
+    pub fn complete(mut self) -> Result<Fit, JobError> {
+        loop {
+            self.step(u32::MAX)?;
+            if let JobState::Done(fit) = self.state {
+                return Ok(*fit);
+            }
+        }
+    }
+
     /// The field, once it is complete.
     #[must_use]
     pub fn fit(&self) -> Option<&Fit> {

@@ -16,6 +16,7 @@ pub mod thin;
 
 pub use crate::field::model::{ModelInfo, NormalSource};
 
+use crate::field::model::{DEFAULT_CENTRES, Model};
 use fit::Fit;
 use glam::DVec3;
 use job::{Job, JobError};
@@ -28,13 +29,19 @@ use job::{Job, JobError};
 ///
 /// If the file cannot be read or its points lead to no surface: what is wrong, where, and what to do.
 pub fn fit_points(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Fit, JobError> {
-    let mut job = Job::file(name, bytes, centres)?;
-    loop {
-        job.step(u32::MAX)?;
-        if let Some(fit) = job.fit() {
-            return Ok(fit.clone());
-        }
-    }
+    Job::file(name, bytes, centres)?.complete()
+}
+
+/// Fit of a built-in model, all of whose points are centres.
+///
+/// # Panics
+///
+/// Never: a test calls it for every model.
+#[doc(hidden)]
+#[must_use]
+pub fn fit_model(model: &Model) -> Fit {
+    let fit = Job::model(model.id, DEFAULT_CENTRES).and_then(Job::complete);
+    fit.unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
 }
 
 /// Points, with unit normals that point outward.

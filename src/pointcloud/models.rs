@@ -4,10 +4,8 @@
 //! follow for each point: its position in the cube, and its normal in the octahedral encoding (Q. Meyer et al., "On
 //! Floating-Point Normal Vectors", 2010). `tests/it/models.rs` makes the files and states where the points come from.
 
-use super::fit::{Fit, approximate};
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
-use crate::slices::complete;
 use glam::{DVec2, DVec3};
 
 /// Largest 16-bit integer.
@@ -28,19 +26,6 @@ pub fn cloud(id: &str) -> Option<Cloud> {
         _ => return None,
     };
     Some(Cloud { source, ..decode(bytes) })
-}
-
-/// Fit of a built-in model, all of whose points are centres.
-///
-/// # Panics
-///
-/// Never: a test calls it for every model.
-#[must_use]
-pub fn fit(model: &Model) -> Fit {
-    let points = cloud(model.id).unwrap_or_default();
-    let all: Vec<u32> = (0..points.len() as u32).collect();
-    complete(approximate(&points, &all, &points.position, info(model), |_| {}))
-        .unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
 }
 
 /// Report of a built-in model before it is solved.

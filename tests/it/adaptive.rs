@@ -131,9 +131,9 @@ fn ten_steps_even_the_sizes_out() {
 #[test]
 fn the_bunny_is_even_after_ten_steps() {
     use marching_particles::field::{model, rbf::RbfField};
-    use marching_particles::pointcloud::models;
+    use marching_particles::pointcloud::fit_model;
     let bunny = model::find("bunny").expect("a built-in model");
-    let fit = models::fit(bunny);
+    let fit = fit_model(bunny);
     let mut field = RbfField::new(fit.data).expect("the data is whole");
     let settings = settings!(sampling: Sampling::Adaptive, chord_error: 1e-4; ..Settings::default());
     let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);

@@ -7,7 +7,7 @@
 use crate::golden;
 use marching_particles::field::model;
 use marching_particles::field::rbf::Pull;
-use marching_particles::pointcloud::models;
+use marching_particles::pointcloud::fit_model;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
@@ -54,7 +54,7 @@ fn run(case: &Run) -> (usize, String) {
     }
     if let Some(model) = &case.model {
         let model = model::find(model).unwrap_or_else(|| panic!("{}: no such model", case.name));
-        let fit = models::fit(model);
+        let fit = fit_model(model);
         session
             .set_points(
                 fit.data,

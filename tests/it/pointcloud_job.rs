@@ -452,7 +452,7 @@ fn noise_is_smoothed_by_all_points() {
 /// With noise of 1 % and no normals, what the 200 points gave had 3 components and the Euler number −65.
 #[test]
 fn a_noisy_bunny_keeps_its_form() {
-    let bunny = marching_particles::pointcloud::models::fit(&MODELS[0]);
+    let bunny = marching_particles::pointcloud::fit_model(&MODELS[0]);
     let mut field = bunny.field();
     let (session, _) = sampled(bunny, &Settings::with_count(5000));
     let true_points: Vec<(DVec3, DVec3)> = session

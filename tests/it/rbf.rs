@@ -8,8 +8,8 @@ use marching_particles::field::model::{self, MODELS};
 use marching_particles::field::rbf::{DataError, Pull, RbfData, RbfField};
 use marching_particles::math::Sym3;
 use marching_particles::pointcloud::fit::{Fit, FitError, approximate};
-use marching_particles::pointcloud::models;
 use marching_particles::pointcloud::{Cloud, CloudError, ModelInfo};
+use marching_particles::pointcloud::{fit_model, models};
 use marching_particles::sampler::{Settings, StopReason};
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::slices::complete;
@@ -18,7 +18,7 @@ use rand_pcg::Pcg64Mcg;
 
 fn of_model(id: &str) -> Fit {
     let model = model::find(id).expect("a built-in model");
-    models::fit(model)
+    fit_model(model)
 }
 
 /// Points of an ellipsoid along a spiral, evenly spread.
@@ -369,7 +369,7 @@ fn bytes_hold_a_field_and_other_bytes_are_refused() {
 
 /// The bunny, and two pulls on it that meet: the second one moves what the first one has moved.
 fn pulled_bunny() -> (Fit, [Pull; 2]) {
-    let fit = models::fit(model::find("bunny").expect("a model"));
+    let fit = fit_model(model::find("bunny").expect("a model"));
     let size = fit.bounds.diagonal();
     let at = DVec3::from(fit.data.centres[7]);
     let out = DVec3::new(0.03, 0.05, -0.02) * size;

@@ -381,8 +381,7 @@ fn thin_necks_and_ears_stay() {
     #[cfg(feature = "points")]
     for (count, seed) in [(5_000, 1), (4_000, 4)] {
         use marching_particles::field::{model, rbf::RbfField};
-        let fit =
-            marching_particles::pointcloud::models::fit(model::find("bunny").expect("a built-in model"));
+        let fit = marching_particles::pointcloud::fit_model(model::find("bunny").expect("a built-in model"));
         let mut field = RbfField::new(fit.data).expect("the data is whole");
         let settings = settings!(sampling: Sampling::Adaptive; ..refined(count, seed));
         let sampler = sampled(&mut field, &fit.bounds, &settings, 10_000);

@@ -1,7 +1,7 @@
 //! Contents of a file: positions, normals and faces.
 
 use super::{ReadError, push};
-use crate::field::model::{GivenMesh, GivenTopology};
+use crate::field::model::{DEFAULT_CENTRES, GivenMesh, GivenTopology};
 use crate::math::IndexTable;
 use crate::pointcloud::thin::find_or_add;
 use crate::pointcloud::{Cloud, NormalSource};
@@ -9,8 +9,9 @@ use crate::slices::{MEDIUM, pause};
 use crate::topology::Topology;
 use glam::DVec3;
 
-/// Points on the faces of a mesh of large ones: five for each of 200 centres.
-const ON_FACES: f64 = 1_000.0;
+/// Points on the faces of a mesh of large ones: five for each centre. With half of them the areas of four coarse balls are off by up to 4 %,
+/// with these and four times as many by 2 %; those of eight boxes and prisms differ by a tenth.
+const ON_FACES: f64 = 5.0 * DEFAULT_CENTRES as f64;
 
 /// Points and faces as they are in a file.
 #[derive(Clone, Debug, Default)]

@@ -174,13 +174,13 @@ mod tests {
     use crate::field::Field;
     use crate::field::model::MODELS;
     use crate::field::rbf::RbfField;
-    use crate::pointcloud::models;
+    use crate::pointcloud::fit_model;
     use crate::sampler::probe::ProbeMemory;
 
     #[test]
     fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
         for model in MODELS {
-            let fit = models::fit(model);
+            let fit = fit_model(model);
             let mut field = RbfField::new(fit.data).expect("a field");
             let n = [65, 49, 57];
             let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
