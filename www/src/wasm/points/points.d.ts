@@ -26,16 +26,16 @@ export class Points {
      * Begins a file, and gives up what was begun before: an `Answer` with `PointsProgress`. `name` is for reports. 0 centres are the
      * default number of them.
      */
-    file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, PointsFault>;
+    file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, string>;
     /**
      * The report on the model: an `Answer` with `SolvedModel`.
      */
-    info(): Answer<SolvedModel, PointsFault>;
+    info(): Answer<SolvedModel, string>;
     /**
      * Begins a built-in model, and gives up what was begun before: an `Answer` with `PointsProgress`. 0 centres are the default number
      * of them.
      */
-    model(id: string, centres: number): Answer<PointsProgress, PointsFault>;
+    model(id: string, centres: number): Answer<PointsProgress, string>;
     /**
      * A solver without a job.
      */
@@ -43,7 +43,7 @@ export class Points {
     /**
      * Does up to `budget` slices of work: an `Answer` with `PointsProgress`.
      */
-    step(budget: number): Answer<PointsProgress, PointsFault>;
+    step(budget: number): Answer<PointsProgress, string>;
 }
 
 export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;
