@@ -2,7 +2,6 @@
 /* eslint-disable */
 import type {
     Answer,
-    PointsFault,
     PointsProgress,
     SolvedModel,
 } from '../../engine/core-types.js';
