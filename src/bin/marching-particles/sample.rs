@@ -87,7 +87,12 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     if is_joined {
         timed(&mut seconds.mesh, || session.run.join(u32::MAX));
     }
-    let made = session.record(None);
+    let mut made = session.record(None).expect("a run that has started has a record");
+    // The steps that were asked for, though an even surface takes fewer.
+    made.settings = settings;
+    if model.is_some() {
+        made.surface.clone_from(&arguments.surface.surface);
+    }
     let sample = timed(&mut seconds.quality, || session.finish(!arguments.no_report));
     let sample = sample.map_err(|error| match error {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
@@ -96,12 +101,6 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         error => Failure::Nothing(error.to_string()),
     })?;
     let mesh = is_joined.then(|| MeshCounts::new(&sample));
-    let mut made = made.expect("a run has a record");
-    // The steps that were asked for, though an even surface takes fewer.
-    made.settings = settings;
-    if model.is_some() {
-        made.surface.clone_from(&arguments.surface.surface);
-    }
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
     timed(&mut seconds.writing, || {
         for (format, output) in formats.into_iter().zip(outputs.by_ref()) {

@@ -28,6 +28,10 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     for k in 0..FITTED {
         set_at(&mut session, &sweep, f64::from(k) / f64::from(FITTED - 1), None)?;
         fit(&mut session, &settings_in, k > 0)?;
+        if session.answer().reach.is_none() {
+            // The box is given, or the surface's own.
+            break;
+        }
     }
     // A solid is closed anew in every frame.
     let bounds = Some(session.run.bounds()).filter(|_| !arguments.surface.closed);
