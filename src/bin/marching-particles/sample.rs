@@ -242,7 +242,7 @@ pub(crate) fn choose(
     let answer = session.set_field(&request).map_err(refused)?;
     for (name, _) in &arguments.parameters {
         if !answer.parameters.iter().any(|parameter| parameter.name == *name) {
-            let known: Vec<&str> = answer.parameters.iter().map(|p| p.name.as_str()).collect();
+            let known: Vec<&str> = answer.parameters.iter().map(|p| &*p.name).collect();
             let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
             return Err(Failure::Usage(format!(
                 "the formula has no parameter `{name}`; its parameters: {known}"
