@@ -2,7 +2,7 @@
 
 use super::cell::{FacePair, Image};
 use super::ladder::CreaseLadder;
-use super::meeting::{FADED, Meeting};
+use super::meeting::{ASIDE, FADED, Meeting};
 use super::{Crease, Creases};
 use crate::math::Bounds;
 use crate::particles::Particles;
@@ -20,6 +20,15 @@ pub(in super::super) struct CreaseParticle {
     pub(in super::super) tangent: Vec3,
     /// The patches that meet there.
     pub(in super::super) patches: Vec<u32>,
+}
+
+impl CreaseParticle {
+    /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that beside the particle, along the crease.
+    fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
+        let aside = ASIDE as f32 * self.radius * self.tangent;
+        let places = [self.position, self.position + aside, self.position - aside];
+        places.into_iter().find_map(|place| probe.gradient(place).1.try_normalize())
+    }
 }
 
 /// The particles on creases, and the pairs of them that follow each other along one.
@@ -217,8 +226,7 @@ impl CreaseParticles {
                     continue;
                 }
                 let row = particles.len() as u32;
-                let (_, gradient) = probe.gradient(particle.position);
-                let normal = gradient.normalize_or_zero();
+                let normal = particle.normal(probe).unwrap_or_default();
                 particles.push_seed(particle.position, normal, particle.radius, Some(patch));
                 particles.twins.push(*first.get_or_insert(row));
                 along.push(particle.tangent);

@@ -17,7 +17,7 @@ pub(super) const SHARP: f64 = 0.0175;
 pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// Distance from a crease, as a share of the reach, at which it is asked which branch gives f: by [`FADED`] times as much the branches
 /// differ there, which is far above rounding. Half and double change the particles of 4 of 24 random solids, but not their number.
-const ASIDE: f64 = 1e-4;
+pub(super) const ASIDE: f64 = 1e-4;
 
 /// A point where two patches meet.
 #[derive(Clone, Copy, Debug)]
