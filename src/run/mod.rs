@@ -126,29 +126,17 @@ impl<F: Field> Run<F> {
     /// # Errors
     ///
     /// If a setting or the box is out of its range, or the memory does not hold the particles to expect.
-    pub fn start(field: F, settings: &Settings) -> Result<Self, Error> {
+    pub fn start(mut field: F, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
-        Self::start_with(field, |_| *settings)
-    }
-
-    /// [`Run::start`] with settings that depend on the box, as lengths in the units of the coordinates do, which are shares of its
-    /// diagonal in the settings.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Run::start`].
-    pub fn start_with(mut field: F, settings_in: impl Fn(&Bounds) -> Settings) -> Result<Self, Error> {
-        let anywhere = Bounds::cube(1.0);
-        let (bounds, reach) = match settings_in(&anywhere).bounds {
+        let (bounds, reach) = match settings.bounds {
             Some(bounds) => (bounds, None),
             None => {
                 let extent = extent::find(&mut field);
-                let bounds = extent.with_room(|bounds| settings_in(bounds).largest_share());
-                (bounds, Some(extent.reach))
+                (extent.with_room(|_| settings.largest_share()), Some(extent.reach))
             }
         };
         let mut run = Self { reach, ..Self::idle(field, bounds) };
-        run.begin(&settings_in(&bounds))?;
+        run.begin(settings)?;
         Ok(run)
     }
 
