@@ -187,6 +187,14 @@ pub trait Field: Send {
         Box::pin(ready(Vec::new()))
     }
 
+    /// Cells of another box, as those of [`Field::find_creases`], outside of which none of the branches meet in creases. The branches
+    /// keep their numbers. By default there is none.
+    #[doc(hidden)]
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        let _ = (bounds, width);
+        Box::pin(ready(Vec::new()))
+    }
+
     /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
     /// on which f depends. Equal numbers are equal functions. A field that is smooth has the one branch 0, which is the default.
     #[doc(hidden)]
@@ -306,6 +314,10 @@ impl<P: DerefMut<Target: Field> + Send> Field for P {
 
     fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         (**self).find_creases(bounds, width)
+    }
+
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        (**self).crease_cells(bounds, width)
     }
 
     fn branch_at(&mut self, p: DVec3) -> u32 {

@@ -138,6 +138,10 @@ impl Field for Scaled<'_> {
         self.field.find_creases(bounds, width)
     }
 
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        self.field.crease_cells(bounds, width)
+    }
+
     fn branch_at(&mut self, p: DVec3) -> u32 {
         self.field.branch_at(p)
     }

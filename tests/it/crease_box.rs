@@ -151,3 +151,15 @@ fn random_roofs_are_refined_up_to_the_box() {
     }
     assert!(refined >= 12 && told >= 8 && refused.len() <= MOST_REFUSED, "{refined}, {told}, {refused:#?}");
 }
+
+#[test]
+fn where_creases_beyond_the_box_are_of_no_use_the_front_stands_on_those_within() {
+    let (ball, cone) = ("x^2 + (y - 0.5)^2 + (z - 0.5)^2 - 1", "max(hypot(x, y) - (1.5 - z), -(z - 0.5))");
+    let cut = "smin(max(hypot(x + 0.5, y + 0.5) - (1.5 - z), -(z - 0.5)), 1 - x + y, 0.25)";
+    let field = Formula::parse(&format!("max(min({ball}, 2x - 1)*({cone}), {cut})")).expect("a formula");
+    let settings = settings!(radius_share: 0.01, bounds: Some(Bounds::cube(1.0)); ..Settings::default());
+    let [front, refined] =
+        [settings, settings.refined()].map(|settings| sample(field.clone(), &settings).expect("a sample"));
+    assert_eq!(refined.report().growth.refined_levels, None);
+    assert_eq!(refined.report().digest, front.report().digest);
+}

@@ -78,17 +78,36 @@ impl Branches {
     ) -> Vec<Bounds> {
         if let Some(of_factors) = Self::of_factors(f, values) {
             *self = of_factors;
-            let cells = self.search_creases(values, bounds, width).await;
+            let cells = self.begin_at_creases(values, bounds, width).await;
             if !cells.is_empty() {
                 return cells;
             }
         }
         *self = Self::new(f, values);
-        self.search_creases(values, bounds, width).await
+        self.begin_at_creases(values, bounds, width).await
     }
 
-    async fn search_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        let Some(part) = self.parts.first().filter(|part| part.number.is_none()) else { return Vec::new() };
+    /// Cells of another box, as those of [`Branches::find_creases`]. The branches stay what they are.
+    pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        self.search_creases(values, bounds, width).await.map_or_else(Vec::new, |found| found.cells)
+    }
+
+    async fn begin_at_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
+        let Some(FoundCreases { cells, are_there, smooth }) =
+            self.search_creases(values, bounds, width).await
+        else {
+            return Vec::new();
+        };
+        self.begin_again(values, &smooth);
+        if are_there {
+            self.crease(values, bounds);
+        }
+        cells
+    }
+
+    /// Searches a box for creases; none if f has no choices, or is a product whose factors do not cross there.
+    async fn search_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Option<FoundCreases> {
+        let part = self.parts.first().filter(|part| part.number.is_none())?;
         let is_choice = |id: &Id| matches!(self.base.roles[*id as usize], NodeRole::Choice(_));
         let choices: Vec<Id> = part.nodes.iter().copied().filter(is_choice).collect();
         let ties = ties_of(&mut self.base, part, &choices, values);
@@ -98,19 +117,24 @@ impl Branches {
         if self.products.iter().any(|&id| kinds[id as usize] == Some(TieKind::Crease)) {
             self.products.iter().for_each(|&id| kinds[id as usize] = Some(TieKind::Crease));
         } else if !self.products.is_empty() {
-            return Vec::new();
+            return None;
         }
         let creasing: Vec<Id> =
             (0..).zip(&kinds).filter(|(_, kind)| **kind == Some(TieKind::Crease)).map(|(id, _)| id).collect();
         let cells = search.cells(&creasing, width).await;
         let smooth = |id: &Id| creasing.is_empty() || kinds[*id as usize] == Some(TieKind::Seam);
-        let smooth: Vec<Id> = choices.into_iter().filter(smooth).collect();
-        self.begin_again(values, &smooth);
-        if !creasing.is_empty() {
-            self.crease(values, bounds);
-        }
-        cells
+        let smooth = choices.into_iter().filter(smooth).collect();
+        Some(FoundCreases { cells, are_there: !creasing.is_empty(), smooth })
     }
+}
+
+/// What a search of a box for creases has found.
+struct FoundCreases {
+    /// Cells outside of which there are none.
+    cells: Vec<Bounds>,
+    are_there: bool,
+    /// Choices that make no crease in the box.
+    smooth: Vec<Id>,
 }
 
 /// f where a choice is tied: functions that are f where the choice is taken and its operands are equal. Their bounds are closer than those of

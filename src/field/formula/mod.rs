@@ -640,11 +640,16 @@ impl Field for Formula {
     fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
         let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
         Box::pin(async move {
-            let mut cells = self.branches.find_creases(&self.compiled, &self.values, &bounds, width).await;
-            for cell in &mut cells {
-                *cell = Bounds::new(cell.lo() - self.origin, cell.hi() - self.origin);
-            }
-            cells
+            let cells = self.branches.find_creases(&self.compiled, &self.values, &bounds, width).await;
+            cells.iter().map(|cell| cell.relative_to(self.origin)).collect()
+        })
+    }
+
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+        let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
+        Box::pin(async move {
+            let cells = self.branches.crease_cells(&self.values, &bounds, width).await;
+            cells.iter().map(|cell| cell.relative_to(self.origin)).collect()
         })
     }
 

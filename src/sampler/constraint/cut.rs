@@ -15,7 +15,7 @@ impl Creases {
         self.at_box()?;
         probe.select(None);
         let width = Self::width(wide);
-        let cells = complete(probe.field.find_creases(wide, width));
+        let cells = complete(probe.field.crease_cells(wide, width));
         let mut creases = complete(Self::find(probe, wide, &cells));
         let [lo, hi] = bounds.single().map(|corner| corner.as_dvec3());
         for axis in 0..3 {
