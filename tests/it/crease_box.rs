@@ -163,3 +163,17 @@ fn where_creases_beyond_the_box_are_of_no_use_the_front_stands_on_those_within()
     assert_eq!(refined.report().growth.refined_levels, None);
     assert_eq!(refined.report().digest, front.report().digest);
 }
+
+#[test]
+fn a_crease_of_patches_beyond_the_box_has_no_rows() {
+    let cone = "min((y + 0.5)^2 + (z + 0.5)^2 - (x + 0.5)^2, x + 2y - 2)";
+    let torus = "hypot(hypot(z - 1, y) - 1, x) - 0.5";
+    let field = Formula::parse(&format!("({cone})*({torus})")).expect("a formula");
+    let settings = settings!(radius_share: 0.01, max_particles: 3_000; ..Settings::default()).refined();
+    let sample = sample(field, &settings).expect("a sample");
+    assert_eq!(sample.report().growth.refined_levels, Some(1));
+    let particles = sample.particles();
+    let on_creases = particles.twins.len() as u32;
+    assert!(!particles.segments.is_empty());
+    assert!(particles.segments.as_flattened().iter().all(|&row| row < on_creases));
+}
