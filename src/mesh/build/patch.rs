@@ -220,9 +220,10 @@ impl<'a> Patch<'a> {
             if corners.clone().any(|(_, previous)| previous == first) {
                 continue;
             }
-            // A fan starts here; it is followed to its end.
+            // A fan starts here; it is followed to its end, which there is not where two triangles lie on one side of an edge.
             let mut last = first;
-            while let Some((_, previous)) = corners.clone().find(|&(next, _)| next == last) {
+            for _ in corners.clone() {
+                let Some((_, previous)) = corners.clone().find(|&(next, _)| next == last) else { break };
                 last = previous;
             }
             gaps.push(Gap { vertex: v, to: last, from: first });
