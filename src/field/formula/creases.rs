@@ -78,13 +78,13 @@ impl Branches {
     ) -> Vec<Bounds> {
         if let Some(of_factors) = Self::of_factors(f, values) {
             *self = of_factors;
-            let cells = self.begin_at_creases(values, bounds, width).await;
+            let cells = self.take_creases(values, bounds, width).await;
             if !cells.is_empty() {
                 return cells;
             }
         }
         *self = Self::new(f, values);
-        self.begin_at_creases(values, bounds, width).await
+        self.take_creases(values, bounds, width).await
     }
 
     /// Cells of another box, as those of [`Branches::find_creases`]. The branches stay what they are.
@@ -92,7 +92,7 @@ impl Branches {
         self.search_creases(values, bounds, width).await.map_or_else(Vec::new, |found| found.cells)
     }
 
-    async fn begin_at_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
+    async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
         let Some(FoundCreases { cells, are_there, smooth }) =
             self.search_creases(values, bounds, width).await
         else {
@@ -128,7 +128,7 @@ impl Branches {
     }
 }
 
-/// What a search of a box for creases has found.
+/// The creases of f in a box, as [`Branches::search_creases`] finds them.
 struct FoundCreases {
     /// Cells outside of which there are none.
     cells: Vec<Bounds>,

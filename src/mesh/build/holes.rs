@@ -235,6 +235,18 @@ mod tests {
     }
 
     #[test]
+    fn a_fan_that_leads_back_into_itself_is_left() {
+        let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NEG_X];
+        // The second and the third triangle run in a ring around the first point, and so the first one enters it.
+        let gaps = with_plane(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 2]], |patch, _, in_tree| {
+            let mut gaps = Vec::new();
+            patch.gaps(in_tree[0], &mut gaps);
+            gaps.iter().map(|gap| (gap.vertex, gap.from)).eq([(in_tree[0], in_tree[1])])
+        });
+        assert!(gaps);
+    }
+
+    #[test]
     fn a_hole_is_cut_into_the_triangles_of_the_least_circumradii() {
         for (case, n) in (4..10).flat_map(|n| (0..4).map(move |case| (case, n))) {
             // Corners that are spread unevenly over an ellipse.

@@ -220,7 +220,7 @@ impl<'a> Patch<'a> {
             if corners.clone().any(|(_, previous)| previous == first) {
                 continue;
             }
-            // A fan starts here; it is followed to its end, which there is not where two triangles lie on one side of an edge.
+            // A fan starts here; it is followed to its end. Where two triangles lie on one side of an edge, a fan may lead back into itself.
             let mut last = first;
             for _ in corners.clone() {
                 let Some((_, previous)) = corners.clone().find(|&(next, _)| next == last) else { break };

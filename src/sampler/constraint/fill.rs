@@ -25,7 +25,7 @@ pub(in super::super) struct CreaseParticle {
 impl CreaseParticle {
     /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that beside the particle, along the crease if
     /// possible.
-    fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
+    pub(super) fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
         let ways = [Vec3::ZERO, self.tangent, -self.tangent, Vec3::X, Vec3::Y, Vec3::Z];
         let mut places = ways.into_iter().map(|way| self.position + ASIDE as f32 * self.radius * way);
         places.find_map(|place| probe.gradient(place).1.try_normalize())
