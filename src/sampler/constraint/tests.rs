@@ -160,7 +160,7 @@ fn a_corner_at_the_tip_of_a_cone_has_a_normal() {
     let mut field = Formula::as_written("hypot(x, y) + z - 1", &[]).expect("a formula");
     let mut memory = ProbeMemory::default();
     let probe = &mut Probe::new(&mut field, &mut memory);
-    let ray = Vec3::new(1.0, 0.0, -1.0).normalize();
+    let ray = Vec3::new(1.0, 0.0, -1.0).normalize_or_zero();
     for (tangent, normal) in [
         (ray, Vec3::new(1.0, 0.0, 1.0)),
         (-ray, Vec3::new(-1.0, 0.0, 1.0)),
@@ -168,6 +168,6 @@ fn a_corner_at_the_tip_of_a_cone_has_a_normal() {
     ] {
         let corner = fill::CreaseParticle { position: Vec3::Z, radius: 0.1, tangent, patches: Vec::new() };
         let found = corner.normal(probe).expect("a normal beside the tip");
-        assert!(found.distance(normal.normalize()) < 1e-6, "{found} along {tangent}");
+        assert!(found.distance(normal.normalize_or_zero()) < 1e-6, "{found} along {tangent}");
     }
 }
