@@ -173,14 +173,13 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
         Formula::parse(&sweep.formula).and_then(|formula| formula.with("q", q)).expect("a formula")
     };
     // A uniform run has one radius for all of the sweep: that with the wanted count in the middle.
-    let settings = match sampling {
-        Sampling::Uniform => {
-            let mut middle = Run::start(field(FRAMES / 2), &by_count).expect("a run");
-            finish(&mut middle);
-            let radius_share = middle.progress().map_or(0.0, |progress| progress.radius) / bounds.diagonal();
-            settings!(size_mode: SizeMode::Radius, radius_share; ..by_count)
-        }
-        Sampling::Adaptive => by_count,
+    let settings = if sampling == Sampling::Uniform {
+        let mut middle = Run::start(field(FRAMES / 2), &by_count).expect("a run");
+        finish(&mut middle);
+        let radius_share = middle.progress().map_or(0.0, |progress| progress.radius) / bounds.diagonal();
+        settings!(size_mode: SizeMode::Radius, radius_share; ..by_count)
+    } else {
+        by_count
     };
     let mut run = Run::start(field(0), &settings).expect("a run");
     finish(&mut run);

@@ -300,13 +300,12 @@ fn bunny(count: u32, rounds: usize) {
             let run = finished(field, &settings.in_box(fit.bounds));
             (processor_seconds(start) - before, radius(&run), run.count())
         };
-        let settings = match sampling {
+        let settings = if sampling == Sampling::Uniform {
             // A run that meets a count does the front twice, so the timed runs are given the radius.
-            Sampling::Uniform => {
-                let radius_share = run(&mut field, &by_count).1 / fit.bounds.diagonal();
-                settings!(radius_share; ..Settings::default())
-            }
-            Sampling::Adaptive => settings!(sampling; ..Settings::default()),
+            let radius_share = run(&mut field, &by_count).1 / fit.bounds.diagonal();
+            settings!(radius_share; ..Settings::default())
+        } else {
+            settings!(sampling; ..Settings::default())
         };
         let mut times: Vec<[f64; 3]> = Vec::new();
         let mut particles = 0;

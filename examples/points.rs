@@ -26,6 +26,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("a surface from {} centres near {} points", fit.info.centres, fit.info.points);
 
     let sample = sample(fit.field(), &Settings::with_count(3_000).in_box(fit.bounds))?;
-    println!("{} particles, {} component", sample.particles().len(), sample.report().proof.components);
+    println!("{} particles, {} component", sample.report().count, sample.report().proof.components);
     Ok(())
 }

@@ -128,8 +128,7 @@ pub mod pointcloud;
 pub mod quality;
 #[doc(hidden)]
 pub mod render;
-#[doc(hidden)]
-pub mod run;
+mod run;
 #[doc(hidden)]
 pub mod sampler;
 #[doc(hidden)]

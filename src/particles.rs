@@ -1,12 +1,14 @@
-//! The particles of a run as a structure of arrays: one column for each attribute, all of the same length. Particles
-//! are in the order in which the front placed them, so generation levels are contiguous; particles that fill gaps come
-//! last.
+//! The particles of a run as a structure of arrays: a column for each attribute. Rows are in the order in which the front placed the
+//! particles, so generation levels are contiguous; particles that fill gaps come last.
 
 use crate::math::Bounds;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
-/// Particle columns. Index `i` of every column belongs to particle `i`.
+/// Particle columns. A particle has one row; one on a crease, or at the tip of a cone, has several, with one position and a normal each:
+/// see [`Particles::twins`]. On a surface that is smooth everywhere row `i` is particle `i`.
+///
+/// The columns up to `slots` have a value for each row. The others say themselves what theirs belong to.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
     /// The point from which positions are counted, in the coordinates of the formula. See [`Bounds::local_origin`].
@@ -17,13 +19,13 @@ pub struct Particles {
     pub normal: Vec<Vec3>,
     /// Repulsion radius.
     pub radius: Vec<f32>,
-    /// Index of the particle that placed this one; [`Particles::NO_PARENT`] for a seed.
+    /// Row of the particle that placed this one; [`Particles::NO_PARENT`] for a seed.
     pub parent: Vec<u32>,
     /// Generation level: 0 for a seed, the parent's level + 1 otherwise.
     pub level: Vec<u32>,
     /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
-    /// Patch of the surface on which the row lies, by the number of its branch: see [`Field::branch_at`]. Empty if the surface has neither
+    /// For each row, the patch of the surface on which it lies, by the number of its branch: see [`Field::branch_at`]. Empty if the surface has neither
     /// creases nor particles at tips.
     ///
     /// [`Field::branch_at`]: crate::field::Field::branch_at
@@ -161,13 +163,15 @@ impl Particles {
     /// Parent index of a seed.
     pub const NO_PARENT: u32 = u32::MAX;
 
-    /// Returns the number of particles.
+    /// Returns the number of rows: of particles, on a surface that is smooth everywhere. [`Report::count`] is the number of particles on any.
+    ///
+    /// [`Report::count`]: crate::Report::count
     #[must_use]
     pub fn len(&self) -> usize {
         self.position.len()
     }
 
-    /// Returns the position of particle `i` in the coordinates of the formula.
+    /// Returns the position of row `i` in the coordinates of the formula.
     #[must_use]
     pub fn place(&self, i: usize) -> DVec3 {
         self.origin + self.position[i].as_dvec3()

@@ -3,6 +3,9 @@
 //! A computation is an `async` function that awaits [`pause`] wherever it may be interrupted, so the compiler makes its
 //! state machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time
 //! for, and cancels the computation by dropping it. The result does not depend on how slices were grouped.
+//!
+//! The phases of the sampler do not stand on this: a caller hands them the field anew at each step, and a computation under way would have to
+//! keep it borrowed. Each of them keeps its place as a value.
 
 use core::future::poll_fn;
 use core::ops::Range;

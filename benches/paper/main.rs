@@ -177,9 +177,10 @@ fn run_line(line: &Line, plan: &Plan) -> Runs {
 
 /// Name of the method that the paper compares with.
 fn other_method(line: &Line) -> (&'static str, LessonMethod) {
-    match line.sampling {
-        Sampling::Uniform => ("Witkin–Heckbert", LessonMethod::WitkinHeckbert),
-        Sampling::Adaptive => ("Forces", LessonMethod::Forces),
+    if line.sampling == Sampling::Uniform {
+        ("Witkin–Heckbert", LessonMethod::WitkinHeckbert)
+    } else {
+        ("Forces", LessonMethod::Forces)
     }
 }
 
@@ -190,10 +191,8 @@ fn table_1(out: &mut dyn Write, plan: &Plan, shown: &mut Shown) -> io::Result<()
         write_line(out, line, &runs)?;
         // The smaller of the two jobs of each kind comes first.
         if line.id == "bunny-joined" {
-            let shown = match line.sampling {
-                Sampling::Uniform => &mut shown.bunny_uniform,
-                Sampling::Adaptive => &mut shown.bunny_adaptive,
-            };
+            let is_uniform = line.sampling == Sampling::Uniform;
+            let shown = if is_uniform { &mut shown.bunny_uniform } else { &mut shown.bunny_adaptive };
             shown.get_or_insert(runs.ours.set);
         }
     }
@@ -203,10 +202,7 @@ fn table_1(out: &mut dyn Write, plan: &Plan, shown: &mut Shown) -> io::Result<()
 /// A line of Table 1 as a table of its own: what was measured in rows, who in columns.
 fn write_line(out: &mut dyn Write, line: &Line, runs: &Runs) -> io::Result<()> {
     let name = other_method(line).0;
-    let kind = match line.sampling {
-        Sampling::Uniform => "uniform",
-        Sampling::Adaptive => "non-uniform",
-    };
+    let kind = if line.sampling == Sampling::Uniform { "uniform" } else { "non-uniform" };
     writeln!(out, "\n### {}, {kind}, {} particles\n", line.model, grouped(line.count as usize))?;
     writeln!(
         out,

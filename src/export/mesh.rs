@@ -8,6 +8,7 @@ use std::io::{self, Write};
 
 /// A file format for triangles over particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MeshFormat {
     /// Binary glTF 2.0: triangles, normals, and generation levels as colours.
     Glb,

@@ -23,6 +23,7 @@ use std::io::{self, Write};
 
 /// A file format for particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// Binary little-endian PLY with the [`COLUMNS`].
     Ply,

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Unit of length of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
+#[non_exhaustive]
 pub enum Unit {
     /// Millimetre.
     #[serde(rename = "mm")]

@@ -7,7 +7,9 @@
 //! * `sampler::constraint::tips` moves a direction along a sphere, and `sampler::projection` an angle along a circle.
 //! * `sampler::refine` moves a particle along planes of the box, and `sampler::sheet` asks after each step whether there is one sheet;
 //!   both take the [`step`] of this file.
-//! * `quality::sheets` takes one step at a time on its way along a surface, and `sampler::discovery::sheets` takes turns with a box.
+//! * `quality::sheets` takes one step at a time on its way along a surface, `sampler::discovery::sheets` takes turns with a box, and
+//!   `sampler::discovery::audit` stays in a plane on its way.
+//! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases` for one of two functions at once.
 
 use super::Field;
 use glam::Vec3;

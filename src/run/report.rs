@@ -255,7 +255,7 @@ impl<F: Field> Run<F> {
             distance,
             spacing: 2.0 * f64::from(particles.radius[particle]),
         }));
-        warnings.extend(self.meshing.joined().and_then(|mesh| Warning::of_mesh(measured, mesh)));
+        warnings.extend(self.meshing.joined().into_iter().flat_map(|mesh| Warning::of_mesh(measured, mesh)));
         warnings.extend(is_overflowing.then_some(Warning::Overflow));
         Report {
             count,

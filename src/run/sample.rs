@@ -97,9 +97,10 @@ impl Sample {
         self.mesh.get_or_init(|| slices::complete(joined(&self.particles, &self.known, &bounds())))
     }
 
-    /// The warning about the [mesh](Sample::mesh) if it has another topology than the particles as they were measured.
+    /// The warnings about the [mesh](Sample::mesh): another topology than that of the particles as they were measured, holes, and particles
+    /// in no triangle.
     #[must_use]
-    pub fn mesh_warning(&self) -> Option<Warning> {
+    pub fn mesh_warnings(&self) -> Vec<Warning> {
         Warning::of_mesh(&self.measured, self.mesh())
     }
 

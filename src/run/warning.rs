@@ -146,6 +146,16 @@ pub enum Warning {
         /// Euler numbers of the mesh and of the sample.
         euler: [i64; 2],
     },
+    /// The mesh has border loops where no manifold could be had.
+    MeshHoles {
+        /// Number of border loops.
+        count: usize,
+    },
+    /// Particles are in no triangle of the mesh.
+    MeshLeavesOut {
+        /// Number of particles.
+        count: usize,
+    },
     /// The surface that was fitted to a mesh has another topology or area than the mesh.
     FileDiffers {
         /// The mesh of the file.
@@ -189,15 +199,25 @@ impl Serialize for Warning {
 }
 
 impl Warning {
-    /// The warning about a mesh, if its topology is another one than that of the particles as they were measured. Where a box cuts the
+    /// The warnings about a mesh. Its topology is compared with that of the particles, if they were measured. Where a box cuts the
     /// surface, the two end in different ways beside its faces, and only the components are compared.
-    pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Option<Self> {
+    pub(super) fn of_mesh(measured: &Measurements, mesh: &Triangulation) -> Vec<Self> {
+        let mut warnings = Vec::new();
         let Connectivity { components, euler, .. } = measured.figures.connectivity;
         let is_cut = measured.figures.boundary_excluded > 0;
         let components = [mesh.topology.components.len(), components];
         let euler = [mesh.topology.euler(), euler];
         let differs = components[0] != components[1] || !is_cut && euler[0] != euler[1];
-        (differs && !measured.valence.is_empty()).then_some(Self::MeshDiffers { components, euler })
+        if differs && !measured.valence.is_empty() {
+            warnings.push(Self::MeshDiffers { components, euler });
+        }
+        if !mesh.unfilled.is_empty() {
+            warnings.push(Self::MeshHoles { count: mesh.unfilled.len() });
+        }
+        if !mesh.left_out.is_empty() {
+            warnings.push(Self::MeshLeavesOut { count: mesh.left_out.len() });
+        }
+        warnings
     }
 
     /// The warning about a surface that was fitted to the mesh of a file, if it has another topology than the mesh or if their areas differ
@@ -444,6 +464,14 @@ impl fmt::Display for Warning {
                     told(0),
                     told(1)
                 )
+            }
+            Self::MeshHoles { count } => write!(
+                f,
+                "The mesh has {}, where sheets meet or particles are too sparse.",
+                counted(*count, "hole that could not be filled", "holes that could not be filled")
+            ),
+            Self::MeshLeavesOut { count } => {
+                write!(f, "{} in no triangle of the mesh.", counted(*count, "particle is", "particles are"))
             }
             Self::FileDiffers { mesh, components, euler, area, position, length } => {
                 let told = |components: usize, euler: i64, area: f64| {

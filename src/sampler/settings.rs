@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Whether all particles have one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Sampling {
     /// All particles have one radius (paper §4).
     #[default]
@@ -19,6 +20,7 @@ pub enum Sampling {
 /// The quantity by which the size of the particles is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum SizeMode {
     /// The size is given by [`Settings::radius_share`], or by the radius law of adaptive sampling.
     Radius,

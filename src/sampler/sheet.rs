@@ -9,6 +9,7 @@
 //! | which particles around a point a front takes for its own | [`SheetRule`]: by the lift, then by the field |
 //! | how much two particles repel each other | [`repulsion_weight`]: continuous in their normals |
 //! | which particles repel each other beside near sheets | [`numbers`]: those of fronts that have met |
+//! | which particles may be corners of one triangle | `mesh::build::ball`, which knows no field: by directions and heights |
 //!
 //! What *proves* that points are connected is in `discovery::sheets`; `quality::sheets` judges finished particles, and shares
 //! nothing with these rules, so that a fault here shows there.

@@ -15,7 +15,7 @@ pub use setting::{
     Choice, Condition, Setting, SettingGroup, SettingKind, SettingScale, SettingValue, settings,
 };
 
-use crate::extent::Reach;
+use crate::extent::{FALLBACK, Reach};
 use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
@@ -161,6 +161,12 @@ impl Session {
             made: None,
             started: None,
         }
+    }
+
+    /// A session whose first formula is that of no surface of the gallery, whatever its text.
+    #[must_use]
+    pub fn without_surface() -> Self {
+        Self { surface: None, declared: Vec::new(), own: FALLBACK, clip: FALLBACK, ..Self::new() }
     }
 
     fn source(&self) -> &Source {

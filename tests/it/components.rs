@@ -203,6 +203,8 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
+    // Thin parts, long blends and a high degree keep the search for further components from a proof.
+    const UNPROVEN: [&str; 3] = ["decocube", "drilled-block", "chmutov"];
     for surface in gallery::SURFACES.iter() {
         for share in [0.02, 0.006] {
             let mut session = Session::new();
@@ -210,7 +212,7 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             session.set_field(&request).unwrap();
             let report = run(&mut session, &settings!(radius_share: share; ..Settings::default()));
             let context = format!("{} at {share}", surface.id);
-            if surface.id == "cayley" || surface.smooth && !surface.intricate {
+            if surface.id == "cayley" || surface.smooth && !UNPROVEN.contains(&surface.id) {
                 is_proven(&report, &context);
             }
             let mut counts = vec![0; report.proof.components];

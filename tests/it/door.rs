@@ -2,8 +2,8 @@
 
 use marching_particles::glam::DVec3;
 use marching_particles::{
-    Bounds, Error, Field, FnField, Format, Formula, MeshFormat, Run, Settings, SettingsError, StopReason,
-    Warning, sample,
+    Bounds, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles, Run, Settings,
+    SettingsError, StopReason, Warning, sample,
 };
 
 const FEW: u32 = 1_500;
@@ -53,6 +53,25 @@ fn a_run_that_borrows_its_field_is_the_same_as_the_whole_job() {
     let part = run.finish().unwrap();
     assert_eq!(part.report().stop_reason, Some(StopReason::Cancelled));
     assert!(part.particles().len() < 4 * FEW as usize);
+}
+
+#[test]
+fn what_is_known_at_the_start_is_told_before_the_first_step_and_measuring_can_be_left_out() {
+    let run = || Run::start(FnField::new(sphere), &Settings::with_radius(0.03)).unwrap();
+    let mut measured = run();
+    let start = measured.start_report().clone();
+    assert!((start.area / (4.0 * std::f64::consts::PI) - 1.0).abs() < 0.05, "{start:?}");
+    while measured.step(1_000).stop_reason.is_none() {}
+    let count = measured.count();
+    assert!(start.predicted_count.abs_diff(count as u64) as f64 <= 0.2 * count as f64, "{start:?}");
+    assert_eq!(measured.progress().unwrap().radius, start.radius);
+    let measured = measured.finish().unwrap();
+    let mut plain = run();
+    while plain.step(1_000).stop_reason.is_none() {}
+    let plain = plain.finish_unmeasured().unwrap();
+    assert_eq!(plain.report().digest, measured.report().digest);
+    assert!(plain.report().measures.quality.is_none() && measured.report().measures.quality.is_some());
+    assert!(plain.measured().residual.is_empty() && measured.measured().residual.len() == count);
 }
 
 #[test]
@@ -135,6 +154,47 @@ fn a_field_without_a_surface_gets_a_sentence() {
     assert!(message.contains("keeps one sign"), "{message}");
     let (_, message) = refused(|p| if p.x > 0.1 { f64::INFINITY } else { f64::NEG_INFINITY });
     assert!(!message.is_empty());
+}
+
+#[test]
+fn a_field_with_faults_in_places_ends_in_particles_of_the_rest_or_in_a_sentence() {
+    let step = |p: DVec3| if p.x > 0.3 { sphere(p) + 1.0 } else { sphere(p) };
+    let fields: [(&str, Box<dyn Field>); 8] = [
+        ("no value in a half", Box::new(FnField::new(|p| if p.x > 0.0 { f64::NAN } else { sphere(p) }))),
+        (
+            "no value in a layer",
+            Box::new(FnField::new(|p| if p.x.abs() < 0.1 { f64::NAN } else { sphere(p) })),
+        ),
+        ("infinite in a half", Box::new(FnField::new(|p| if p.x > 0.0 { f64::INFINITY } else { sphere(p) }))),
+        ("beyond single precision", Box::new(FnField::new(|p| 1e60 * sphere(p)))),
+        ("a jump across the surface", Box::new(FnField::new(step))),
+        ("noise", Box::new(FnField::new(|p| sphere(p) + 0.05 * (1e6 * p.x).fract()))),
+        (
+            "no gradient in a half",
+            Box::new(FnField::new(sphere).with_gradient(|p| if p.x > 0.0 { DVec3::NAN } else { outward(p) })),
+        ),
+        (
+            "no gradient in a half",
+            Box::new(
+                FnField::new(sphere).with_gradient(|p| if p.x > 0.0 { DVec3::ZERO } else { outward(p) }),
+            ),
+        ),
+    ];
+    let in_box = Settings::with_count(300).in_box(Bounds::cube(1.3));
+    let runs = [Settings::with_count(300), in_box.adaptive(), settings!(method: Method::Refined; ..in_box)];
+    for (what, mut field) in fields {
+        for settings in runs {
+            match sample(&mut field, &settings) {
+                Ok(sample) => {
+                    let Particles { position, normal, .. } = sample.particles();
+                    assert!(position.iter().all(|p| p.is_finite()), "{what}, {settings:?}");
+                    assert!(normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-4), "{what}, {settings:?}");
+                    assert!(!sample.report().warnings.is_empty(), "{what}, {settings:?}: not a word");
+                }
+                Err(error) => assert!(error.to_string().len() > 20, "{what}, {settings:?}: {error}"),
+            }
+        }
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::half_edge::{HalfEdges, NONE};
+use marching_particles::quality::figures::Coverage;
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};
 use marching_particles::{Method, Phase, Run, Sampling, Settings, Warning};
@@ -59,10 +60,8 @@ fn particles_stay_even_where_a_surface_falls_apart_and_joins() {
             );
             let count = report.count as f64 / fresh.count as f64;
             assert!((0.85..1.15).contains(&count), "{of}: {count} of the particles of a fresh run");
-            let hole = match sampling {
-                Sampling::Uniform => figures.coverage.cover,
-                Sampling::Adaptive => figures.coverage.cover_local,
-            };
+            let Coverage { cover, cover_local, .. } = figures.coverage;
+            let hole = if sampling == Sampling::Uniform { cover } else { cover_local };
             assert!(hole < 1.9, "{of}: a hole of {hole}");
             assert!(figures.accuracy.err_max < 1e-3, "{of}: off by {}", figures.accuracy.err_max);
             let first = run.particles().identity.iter().filter(|&&number| number < 3_000).count();
@@ -202,10 +201,8 @@ fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
         );
         let figures = run.report().measures.quality.expect("figures");
         assert!(figures.order.six > 0.8, "{of}: {} have six neighbours", figures.order.six);
-        let hole = match sampling {
-            Sampling::Uniform => figures.coverage.cover,
-            Sampling::Adaptive => figures.coverage.cover_local,
-        };
+        let Coverage { cover, cover_local, .. } = figures.coverage;
+        let hole = if sampling == Sampling::Uniform { cover } else { cover_local };
         assert!(hole < 1.5, "{of}: a hole of {hole}");
         assert!(
             100 * run.count().abs_diff(count as usize) <= 3 * count as usize,

@@ -94,7 +94,7 @@ fn check_faces(sample: &Sample, bounds: &Bounds, axes: &[u8], what: &str) -> usi
 fn check_mesh(sample: &Sample, what: &str) {
     let Report { warnings, .. } = sample.report();
     assert!(warnings.is_empty(), "{what}: {warnings:?}");
-    assert!(sample.mesh().topology.is_closed() && sample.mesh_warning().is_none(), "{what}");
+    assert!(sample.mesh().topology.is_closed() && sample.mesh_warnings().is_empty(), "{what}");
 }
 
 #[test]

@@ -61,7 +61,7 @@ pub(crate) enum Bundle {
 }
 
 impl Bundle {
-    /// All of them, the one that everything needs first.
+    /// Every bundle, that which all others need first.
     pub(crate) const ALL: [Self; 5] = [Self::Core, Self::Points, Self::Lesson, Self::Webgpu, Self::Webgl];
 
     /// The folder under `www/src/wasm`.

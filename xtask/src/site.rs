@@ -20,7 +20,7 @@ use crate::project::Project;
 /// says why; no code is contorted to stay under one.
 const FIRST_PAINT_BUDGET_KB: f64 = 83.0;
 
-/// The same of the lesson's page, whose figures come to life after that.
+/// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its figures come to life after that.
 const LESSON_PAGE_BUDGET_KB: f64 = 61.0;
 
 /// The largest gzip size of a bundle, in kB: its module and its JavaScript. What [`FIRST_PAINT_BUDGET_KB`] says of budgets

@@ -6,15 +6,12 @@ use crate::outcome::{MeshCounts, Outcome, Seconds};
 use crate::output::OutputFile;
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
-use marching_particles::extent;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::COUNT_ROOM;
-use marching_particles::session::{
-    BoxFaces, BoxMode, Fault, FaultKind, FieldRequest, FileRecord, Session, Source,
-};
+use marching_particles::session::{BoxFaces, Fault, FaultKind, FieldRequest, FileRecord, Session, Source};
 use marching_particles::{
     Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
     RecordText, Run, Settings, StopReason, gallery,
@@ -26,6 +23,7 @@ use std::time::{Duration, Instant};
 
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
 const BUDGET: u32 = 256;
+
 /// The record of what a file was made from.
 fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
@@ -60,7 +58,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
     let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
-    let mut session = Session::new();
+    let mut session = Session::without_surface();
     let model = timed(&mut seconds.points, || choose(&mut session, &arguments.surface, arguments.quiet))?;
     if model.is_none() {
         seconds.points = 0.0;
@@ -224,17 +222,12 @@ pub(crate) fn choose(
         session.set_points(fit.data, fit.info.clone(), fit.bounds, &request).map_err(refused)?;
         return Ok(Some(fit.info));
     }
-    let named = arguments.surface.as_deref().and_then(gallery::find);
-    if arguments.formula.is_some() && arguments.surface.is_none() {
-        // A formula of the user's has no name and no box, even if it is that of the surface on which a session begins.
-        let unnamed = FieldRequest { formula: Some("x".to_owned()), ..FieldRequest::default() };
-        session.set_field(&unnamed).map_err(refused)?;
-        if solid.box_mode == BoxMode::Fixed {
-            request.bounds = Some(extent::FALLBACK);
-        }
-    }
-    request.surface.clone_from(&arguments.surface);
     request.formula.clone_from(&arguments.formula);
+    request.surface.clone_from(&arguments.surface);
+    if request.surface.is_none() && request.formula.is_none() {
+        request.surface = Some(gallery::SURFACES[0].id.to_owned());
+    }
+    let named = request.surface.as_deref().and_then(gallery::find);
     // In another formula the values of the surface's parameters stay what they are.
     let own = named.iter().flat_map(|surface| surface.parameters).map(|p| (p.name.to_string(), p.value));
     request.parameters = own.chain(arguments.parameters.iter().cloned()).collect();

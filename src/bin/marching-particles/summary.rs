@@ -75,9 +75,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         }
     }
     let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
-    let of_mesh = outcome.mesh.iter().flat_map(mesh_warnings);
     let of_run = report.warnings.iter().map(ToString::to_string);
-    for warning in of_points.cloned().chain(of_run).chain(of_mesh) {
+    for warning in of_points.cloned().chain(of_run) {
         writeln!(out, "warning: {warning}")?;
     }
     for file in &outcome.files {
@@ -167,19 +166,6 @@ fn mesh_line(mesh: &MeshCounts) -> String {
         "{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}",
         mesh.euler
     )
-}
-
-/// Returns a sentence for each kind of defect of a mesh.
-fn mesh_warnings(mesh: &MeshCounts) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if mesh.holes > 0 {
-        let holes = counted(mesh.holes, "hole", "holes");
-        warnings.push(format!("the mesh has {holes} that could not be filled"));
-    }
-    if mesh.left_out > 0 {
-        warnings.push(format!("the mesh leaves {} out", counted(mesh.left_out, "particle", "particles")));
-    }
-    warnings
 }
 
 /// Formats a duration in milliseconds or seconds.

@@ -20,7 +20,7 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     let in_directory = |error| Failure::File { path: arguments.out.clone(), error };
     std::fs::create_dir_all(&arguments.out).map_err(in_directory)?;
     let settings_in = |bounds: &Bounds| arguments.sampling.settings(bounds);
-    let mut session = Session::new();
+    let mut session = Session::without_surface();
     // The parameter has to be there.
     arguments.surface.parameters.retain(|(name, _)| *name != sweep.name);
     arguments.surface.parameters.push((sweep.name.clone(), sweep.from));
@@ -84,7 +84,7 @@ struct Counted {
 }
 
 impl Counted {
-    /// Another run begins, whose particles are others.
+    /// Notes that another run begins: none of its particles was there before.
     fn begin_anew(&mut self) {
         self.before = self.next;
         self.runs += 1;

@@ -181,7 +181,7 @@ impl Function {
         if signature.contains('…') { (commas, usize::MAX) } else { (commas + 1, commas + 1) }
     }
 
-    /// Whether it can have so many arguments.
+    /// Whether the function can have `count` arguments.
     pub(crate) fn takes(self, count: usize) -> bool {
         let (least, most) = self.arity();
         (least..=most).contains(&count)

@@ -137,7 +137,6 @@ pub(super) const SURFACES: &[Surface] = &[
         bounds: Bounds::cube(1.45),
         degree: Some(12),
         genus: Some(13),
-        intricate: true,
         story: "Six rings, one on each face of a cube, thick enough to melt together where they come \
                 close. With the first settings it has genus thirteen; thin the rings and it falls apart \
                 into six tori.",
@@ -154,7 +153,6 @@ pub(super) const SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(0.95),
         genus: Some(5),
-        intricate: true,
         story: "A cube cut to a ball and drilled along three axes: constructive solid geometry with \
                 every sharp edge replaced by a smooth blend of width k. The crossing drill holes make \
                 its genus five.",
@@ -168,7 +166,6 @@ pub(super) const SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.8, 0.8, 0.01])],
         bounds: Bounds::cube(1.05),
         degree: Some(6),
-        intricate: true,
         story: "The sum of three Chebyshev polynomials of degree six, whose even waves make a lattice of \
                 bodies joined by thin necks. Sergei Chmutov used such sums in 1992 to build surfaces with \
                 very many cone points, which open here as t leaves an odd number.",

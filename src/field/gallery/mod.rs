@@ -38,10 +38,6 @@ pub struct Surface {
     /// Whether the surface with the default parameters has no singular point.
     #[serde(skip)]
     pub smooth: bool,
-    /// Whether thin parts or long blends keep the search for components from a proof, and a coarse relaxation from its last
-    /// steps.
-    #[serde(skip)]
-    pub intricate: bool,
     /// Two sentences about the surface.
     pub story: &'static str,
     /// Reference to a text about the surface.
@@ -96,7 +92,6 @@ const OPEN: Surface = Surface {
     closed: false,
     genus: None,
     smooth: true,
-    intricate: false,
     story: "",
     source: "",
 };

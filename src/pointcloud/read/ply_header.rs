@@ -106,7 +106,7 @@ impl Element {
         self.properties.iter().any(|property| property.role == role)
     }
 
-    /// Whether it has all of these components.
+    /// Whether the element has all of these components.
     pub(super) fn has_components(&self, mut components: Range<usize>) -> bool {
         components.all(|component| self.has(Role::Component(component)))
     }

@@ -59,7 +59,7 @@ pub(super) struct Crease {
     corners: [Option<usize>; 2],
     /// Whether the last point is followed by the first.
     is_closed: bool,
-    /// What it repeats on the opposite face of a cell.
+    /// The crease on the opposite face of a cell of which this one is the image.
     image: Option<Image>,
 }
 
@@ -69,7 +69,7 @@ pub(super) struct Corner {
     position: DVec3,
     /// The patches that meet there, in ascending order.
     patches: Vec<u32>,
-    /// What it repeats on the opposite face of a cell.
+    /// The corner on the opposite face of a cell of which this one is the image.
     image: Option<Image>,
 }
 

@@ -173,8 +173,8 @@ impl Walls {
         if planes.is_corner() || planes.is_crease() || !slide.is_finite() { Vec3::ZERO } else { slide }
     }
 
-    /// The position of a particle at `p` after one step of Newton's method on its planes, and the normal there. The position is on the
-    /// planes to the last bit, and in the box unless it `may_leave` it. None if the step is longer than `longest` or leads out of the box.
+    /// The position of a particle at `p` after one step of Newton's method on its planes. The position is on the planes to the last bit,
+    /// and in the box unless it `may_leave` it. None if the step is longer than `longest` or leads out of the box.
     pub(super) fn landing(
         &self,
         planes: Planes,
