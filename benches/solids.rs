@@ -8,6 +8,7 @@
 mod solid_table;
 
 use core::f64::consts::PI;
+use marching_particles::field::Branched;
 use marching_particles::particles::Particles;
 use marching_particles::{Bounds, Field, Formula, MeshFormat, Method, Run, Settings, sample};
 use solid_table::SOLIDS;

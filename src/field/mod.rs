@@ -1,7 +1,8 @@
 //! Fields f(x, y, z) whose zero set is the surface.
 //!
-//! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and, if it is
-//! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] sums radial functions.
+//! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, if it is [`Bounded`]
+//! bounds over boxes, and if it is [`Branched`] the smooth functions that f is made of. [`formula`] makes fields from text, [`gallery`]
+//! holds named formulas, and [`rbf`] sums radial functions.
 
 pub(crate) mod descent;
 pub mod formula;
@@ -15,7 +16,6 @@ pub use function::FnField;
 
 use crate::math::{Bounds, Interval, Sym3};
 use crate::slices::Work;
-use core::future::ready;
 use core::ops::DerefMut;
 use glam::{DVec3, Vec3};
 
@@ -155,7 +155,7 @@ pub trait Field: Send {
     }
 
     /// This field as one that can bound its values over boxes, however wide the bounds are. Of a field that cannot, which is the
-    /// default, the survey samples densely, and completeness is not proven.
+    /// default, the survey samples densely, and completeness is not proven. A field that wraps another one has to pass this on.
     fn bounded(&mut self) -> Option<&mut dyn Bounded> {
         None
     }
@@ -178,44 +178,10 @@ pub trait Field: Send {
         None
     }
 
-    /// Looks for the creases of the surface in the box, in slices. Returns cells of it outside of which there are none, no wider than
-    /// `width` but where that would take too long; no cell if there is no crease, as by default. Once the work is done branches that meet
-    /// smoothly on the surface are one, numbers begin anew, and no branch is selected.
+    /// This field as one whose surface may have creases. By default there is none: the field is smooth.
     #[doc(hidden)]
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        let _ = (bounds, width);
-        Box::pin(ready(Vec::new()))
-    }
-
-    /// Cells of another box, as those of [`Field::find_creases`], outside of which none of the branches meet in creases. The branches
-    /// keep their numbers. By default there is none.
-    #[doc(hidden)]
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        let _ = (bounds, width);
-        Box::pin(ready(Vec::new()))
-    }
-
-    /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
-    /// on which f depends. Equal numbers are equal functions. A field that is smooth has the one branch 0, which is the default.
-    #[doc(hidden)]
-    fn branch_at(&mut self, p: DVec3) -> u32 {
-        let _ = p;
-        0
-    }
-
-    /// The branches that may give a point of the surface in the box, each once; none if they are more than can be listed. By default
-    /// there is branch 0 alone, as in a field without creases, whether the surface meets the box or not.
-    #[doc(hidden)]
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        let _ = bounds;
-        Some(vec![0])
-    }
-
-    /// Makes every evaluation of values and derivatives one of the smooth function of `branch`, wherever that gives f or not; or of f
-    /// again. The numbers are those of [`Field::branch_at`]; bounds over boxes stay those of f.
-    #[doc(hidden)]
-    fn select_branch(&mut self, branch: Option<u32>) {
-        let _ = branch;
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        None
     }
 
     /// The period of f along each axis: 0 if f does not change along it, none if f is not known to be periodic.
@@ -312,24 +278,8 @@ impl<P: DerefMut<Target: Field> + Send> Field for P {
         (**self).sampled_as()
     }
 
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        (**self).find_creases(bounds, width)
-    }
-
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        (**self).crease_cells(bounds, width)
-    }
-
-    fn branch_at(&mut self, p: DVec3) -> u32 {
-        (**self).branch_at(p)
-    }
-
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        (**self).branches_in(bounds)
-    }
-
-    fn select_branch(&mut self, branch: Option<u32>) {
-        (**self).select_branch(branch);
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        (**self).branched()
     }
 
     fn periods(&self) -> [Option<f64>; 3] {
@@ -350,8 +300,8 @@ pub trait Bounded: Field {
         0
     }
 
-    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1. Once [creases](Field::find_creases)
-    /// were found, those of each branch.
+    /// Number of functions among whose zeros are those of f: the factors of a product, otherwise 1. Once
+    /// [creases](Branched::crease_cells) were found, those of each branch.
     fn factors(&mut self) -> usize {
         1
     }
@@ -377,4 +327,47 @@ pub trait Bounded: Field {
     ///
     /// Under the same conditions as [`Bounded::enclose`].
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
+}
+
+/// A field that is one of several smooth functions at each point, its *branches*. Where two of them meet, its surface may have a crease.
+#[doc(hidden)]
+pub trait Branched {
+    /// Finds cells of the box, in slices, outside of which the surface has no crease: no wider than `width` but where that would take too
+    /// long; no cell if there is no crease. Where numbers are new, no branch is selected once the work is done.
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64, numbers: BranchNumbers) -> Work<'_, Vec<Bounds>>;
+
+    /// The number of the smooth branch that gives f at `p`: it says which operand every maximum, minimum and absolute value takes there
+    /// on which f depends. Equal numbers are equal functions. Where f is smooth there is branch 0 alone.
+    fn branch_at(&mut self, p: DVec3) -> u32;
+
+    /// The branches that may give a point of the surface in the box, each once; none if they are more than can be listed.
+    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>>;
+
+    /// Makes every evaluation of values and derivatives one of the smooth function of `branch`, wherever that gives f or not; or of f
+    /// again. The numbers are those of [`Branched::branch_at`]; bounds over boxes stay those of f.
+    fn select_branch(&mut self, branch: Option<u32>);
+}
+
+/// What a search for creases makes of the numbers of the branches.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BranchNumbers {
+    /// They begin anew, and branches that meet smoothly on the surface become one.
+    New,
+    /// They stay what they are, after a search in another box.
+    Kept,
+}
+
+impl dyn Field + '_ {
+    /// [`Branched::branch_at`], or 0 in a smooth field.
+    pub(crate) fn branch_at(&mut self, p: DVec3) -> u32 {
+        self.branched().map_or(0, |field| field.branch_at(p))
+    }
+
+    /// [`Branched::select_branch`], if there are branches.
+    pub(crate) fn select_branch(&mut self, branch: Option<u32>) {
+        if let Some(field) = self.branched() {
+            field.select_branch(branch);
+        }
+    }
 }

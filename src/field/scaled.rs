@@ -1,9 +1,8 @@
 //! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in
 //! single precision, whatever units a formula is in.
 
-use super::{Bounded, Enclosure, Field, Jet, UnitCell};
+use super::{Bounded, Branched, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, Sym3, power_of_two, sort_numbers};
-use crate::slices::Work;
 use glam::{DVec3, Vec3};
 
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
@@ -134,24 +133,9 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        self.field.find_creases(bounds, width)
-    }
-
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        self.field.crease_cells(bounds, width)
-    }
-
-    fn branch_at(&mut self, p: DVec3) -> u32 {
-        self.field.branch_at(p)
-    }
-
-    fn branches_in(&mut self, bounds: &Bounds) -> Option<Vec<u32>> {
-        self.field.branches_in(bounds)
-    }
-
-    fn select_branch(&mut self, branch: Option<u32>) {
-        self.field.select_branch(branch);
+    /// The branches of the other field: what they are has no scale.
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        self.field.branched()
     }
 
     fn periods(&self) -> [Option<f64>; 3] {

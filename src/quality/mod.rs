@@ -146,7 +146,7 @@ pub(crate) async fn in_slices(
     options: &MeasureOptions<'_>,
 ) -> Measurements {
     let factor = comfortable_scale(field, position.iter().copied());
-    let field = &mut Scaled::new(field, factor);
+    let field: &mut dyn Field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, bounds, options).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening } =
         figures_of(&prepared, field, bounds, options).await;

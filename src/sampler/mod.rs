@@ -35,8 +35,8 @@ pub(crate) use attempt::COUNT_TOLERANCE;
 pub(crate) use discovery::precision::Blur;
 pub(crate) use discovery::singular::{SingularKind, SingularPlace};
 
-use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale, spread};
+use crate::field::{BranchNumbers, Branched, Field};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::slices::{self, Work};
@@ -119,7 +119,8 @@ struct Output {
 pub(crate) fn find_creases<'a>(field: &'a mut dyn Field, bounds: &Bounds) -> Work<'a, Creases> {
     let bounds = *bounds;
     Box::pin(async move {
-        let cells = field.find_creases(&bounds, Creases::width(&bounds)).await;
+        let Some(branched) = field.branched() else { return Creases::default() };
+        let cells = branched.crease_cells(&bounds, Creases::width(&bounds), BranchNumbers::New).await;
         if cells.is_empty() {
             return Creases::default();
         }
@@ -499,7 +500,9 @@ impl Sampler {
         if !is_still || !is_smooth || particles.len() < 2 || particles.origin != field.origin() {
             return false;
         }
-        if field.branches_in(bounds).is_none_or(|branches| branches.len() > 1) {
+        let has_several =
+            |field: &mut dyn Branched| field.branches_in(bounds).is_none_or(|all| all.len() > 1);
+        if field.branched().is_some_and(has_several) {
             return false;
         }
         field.use_double(self.survey.double);

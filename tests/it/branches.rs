@@ -1,9 +1,9 @@
 //! The smooth branches of formulas: which one gives f where, which may in a box, and their values.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::SURFACES;
+use marching_particles::field::{BranchNumbers, Branched, Field};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::slices::complete;
 use proptest::prelude::*;
@@ -282,7 +282,11 @@ proptest! {
 fn the_surfaces_of_the_gallery_have_no_creases() {
     for surface in SURFACES.iter() {
         let mut field = surface.field();
-        assert!(complete(field.find_creases(&surface.bounds, 0.05)).is_empty(), "{}", surface.id);
+        assert!(
+            complete(field.crease_cells(&surface.bounds, 0.05, BranchNumbers::New)).is_empty(),
+            "{}",
+            surface.id
+        );
         assert!(spread(&surface.bounds).all(|p| field.branch_at(p) == 0), "{}", surface.id);
         field.select_branch(Some(0));
         let p = Vec3::new(0.3, 0.2, 0.1);
@@ -305,7 +309,10 @@ fn choices_that_meet_smoothly_are_no_creases() {
         "abs(x) + 200 y",
     ] {
         let mut field = field(text);
-        assert!(complete(field.find_creases(&Bounds::cube(1.6), 0.05)).is_empty(), "{text}");
+        assert!(
+            complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty(),
+            "{text}"
+        );
         assert_eq!(branches_of(&mut field), [0], "{text}");
     }
 }
@@ -325,7 +332,10 @@ fn creases_are_found_whatever_their_size_and_place() {
         ("z/4 + max(x, y) + max(max(x, y), 8) - 8", 2),
     ] {
         let mut field = field(text);
-        assert!(!complete(field.find_creases(&Bounds::cube(1.6), 0.05)).is_empty(), "{text}");
+        assert!(
+            !complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty(),
+            "{text}"
+        );
         let mut seen: Vec<u32> = on_surface(&mut field).into_iter().map(|p| field.branch_at(p)).collect();
         seen.sort_unstable();
         seen.dedup();
@@ -337,7 +347,7 @@ fn creases_are_found_whatever_their_size_and_place() {
 fn both_sides_of_a_face_of_an_exact_distance_are_one_branch() {
     let squares = ["x", "y", "z"].map(|axis| format!("max(abs({axis}) - 0.7, 0)^2")).join(" + ");
     let mut field = field(&format!("sqrt({squares}) + min(max(abs(x), abs(y), abs(z)) - 0.7, 0)"));
-    assert!(!complete(field.find_creases(&Bounds::cube(1.6), 0.05)).is_empty());
+    assert!(!complete(field.crease_cells(&Bounds::cube(1.6), 0.05, BranchNumbers::New)).is_empty());
     for face in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
         let [inside, outside] = [0.69, 0.71].map(|at| at * face + 0.1 * (DVec3::ONE - face.abs()));
         assert_eq!(field.branch_at(inside), field.branch_at(outside), "{face}");

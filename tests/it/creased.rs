@@ -1,8 +1,10 @@
 //! Particles on surfaces with creases, made by hand: rows along every crease, and a lattice on every patch.
 
 use glam::{DVec2, DVec3, Vec3};
-use marching_particles::Field;
+use marching_particles::field::{BranchNumbers, Branched, Field};
+use marching_particles::math::Bounds;
 use marching_particles::particles::{Particles, Slots};
+use marching_particles::slices::Work;
 
 /// A crease: points in order along it, and the patches on its left and on its right.
 pub(crate) struct Crease {
@@ -37,6 +39,21 @@ impl Field for CreasedField {
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
         let patch = self.selected.unwrap_or_else(|| (self.nearest)(p));
         (self.branch)(patch, p)
+    }
+
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        Some(self)
+    }
+}
+
+/// The creases are those of the particles: nobody looks for them.
+impl Branched for CreasedField {
+    fn crease_cells(&mut self, _: &Bounds, _: f64, _: BranchNumbers) -> Work<'_, Vec<Bounds>> {
+        unreachable!("the creases are given")
+    }
+
+    fn branches_in(&mut self, _: &Bounds) -> Option<Vec<u32>> {
+        unreachable!("the creases are given")
     }
 
     fn branch_at(&mut self, p: DVec3) -> u32 {

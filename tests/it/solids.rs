@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, Enclosure, Field, gallery};
+use marching_particles::field::{Bounded, BranchNumbers, Branched, Enclosure, Field, gallery};
 use marching_particles::math::Bounds;
 use marching_particles::slices::complete;
 
@@ -57,7 +57,7 @@ fn a_box_closes_what_it_cuts() {
         assert_eq!(closed.value_and_gradient(p).0 <= 0.0, inside, "{p}");
     }
     is_consistent(&mut closed, &around, "a closed gyroid");
-    assert!(!complete(closed.find_creases(&around, 0.05)).is_empty());
+    assert!(!complete(closed.crease_cells(&around, 0.05, BranchNumbers::New)).is_empty());
     let listed = closed.branches_in(&Bounds::cube(0.5)).expect("few branches");
     assert_eq!(listed, [closed.branch_at(DVec3::ZERO)]);
     assert!(open.periods()[0].is_some());
@@ -70,7 +70,7 @@ fn a_box_closes_what_it_cuts() {
 #[test]
 fn a_closed_sphere_has_seven_patches() {
     let mut dice = field("x^2 + y^2 + z^2 - 1.2").closed_by(&Bounds::cube(1.0));
-    assert!(!complete(dice.find_creases(&Bounds::cube(1.2), 0.05)).is_empty());
+    assert!(!complete(dice.crease_cells(&Bounds::cube(1.2), 0.05, BranchNumbers::New)).is_empty());
     let faces = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
     let mut seen: Vec<u32> = faces.chain([DVec3::splat(0.63)]).map(|p| dice.branch_at(p)).collect();
     seen.sort_unstable();
@@ -93,7 +93,7 @@ fn a_thickened_sphere_has_two_sheets() {
             assert!(shell.value_and_gradient(direction * a.sqrt()).0 < 0.0);
         }
     }
-    assert!(complete(shell.find_creases(&Bounds::cube(2.0), 0.05)).is_empty());
+    assert!(complete(shell.crease_cells(&Bounds::cube(2.0), 0.05, BranchNumbers::New)).is_empty());
     is_consistent(&mut shell, &Bounds::cube(1.6), "a shell");
 }
 
@@ -120,7 +120,7 @@ fn a_thickened_cube_is_a_cube_in_a_cube() {
         assert_eq!(sheet(p) <= 0.0, is_inside, "{p}");
     }
     is_consistent(&mut shell, &Bounds::cube(2.5), "a thickened cube");
-    assert!(!complete(shell.find_creases(&Bounds::cube(2.5), 0.05)).is_empty());
+    assert!(!complete(shell.crease_cells(&Bounds::cube(2.5), 0.05, BranchNumbers::New)).is_empty());
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn a_thickened_surface_is_closed_by_a_box() {
         assert!(bounds.holds(p) || value > 0.0);
     }
     is_consistent(&mut part, &Bounds::cube(2.2), "a gyroid to print");
-    assert!(!complete(part.find_creases(&Bounds::cube(2.2), 0.05)).is_empty());
+    assert!(!complete(part.crease_cells(&Bounds::cube(2.2), 0.05, BranchNumbers::New)).is_empty());
 }
 
 #[test]

@@ -12,6 +12,7 @@ use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
 use super::{interval, scalar};
+use crate::field::BranchNumbers;
 use crate::math::Bounds;
 use crate::math::newton::step_to_curve;
 use crate::slices::pause;
@@ -66,16 +67,21 @@ struct TieCell {
 }
 
 impl Branches {
-    /// Cells of the box, no wider than `width`, outside of which the surface has no crease. Without any, f has no choices from now on;
-    /// else only those whose operands meet smoothly on the surface are none. The branches begin anew. Products are told by their factors if
-    /// these cross.
-    pub(super) async fn find_creases(
+    /// Cells of the box, no wider than `width`, outside of which the surface has no crease. Where numbers are new, f has no choices from
+    /// now on if there is no cell; else only those whose operands meet smoothly on the surface are none. Products are then told by their
+    /// factors if these cross.
+    pub(super) async fn crease_cells(
         &mut self,
         f: &Compiled,
         values: &[f64],
         bounds: &Bounds,
         width: f64,
+        numbers: BranchNumbers,
     ) -> Vec<Bounds> {
+        if numbers == BranchNumbers::Kept {
+            let found = self.search_creases(values, bounds, width).await;
+            return found.map_or_else(Vec::new, |found| found.cells);
+        }
         if let Some(of_factors) = Self::of_factors(f, values) {
             *self = of_factors;
             let cells = self.take_creases(values, bounds, width).await;
@@ -85,11 +91,6 @@ impl Branches {
         }
         *self = Self::new(f, values);
         self.take_creases(values, bounds, width).await
-    }
-
-    /// Cells of another box, as those of [`Branches::find_creases`]. The branches stay what they are.
-    pub(super) async fn crease_cells(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {
-        self.search_creases(values, bounds, width).await.map_or_else(Vec::new, |found| found.cells)
     }
 
     async fn take_creases(&mut self, values: &[f64], bounds: &Bounds, width: f64) -> Vec<Bounds> {

@@ -58,7 +58,7 @@ pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 
-use super::{Bounded, Enclosure, Field, Jet, UnitCell};
+use super::{Bounded, BranchNumbers, Branched, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, Lanes, Sym3};
 use crate::slices::Work;
 use ast::{COORDINATES, Constant, Equation, Function};
@@ -637,18 +637,22 @@ impl Field for Formula {
         self.origin = origin;
     }
 
-    fn find_creases(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
-        let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
-        Box::pin(async move {
-            let cells = self.branches.find_creases(&self.compiled, &self.values, &bounds, width).await;
-            cells.iter().map(|cell| cell.relative_to(self.origin)).collect()
-        })
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        Some(self)
     }
 
-    fn crease_cells(&mut self, bounds: &Bounds, width: f64) -> Work<'_, Vec<Bounds>> {
+    /// The equation that [`Formula::without_powers`] has found.
+    fn sampled_as(&self) -> Option<String> {
+        self.simplified.as_ref().map(display::plain_equation)
+    }
+}
+
+impl Branched for Formula {
+    fn crease_cells(&mut self, bounds: &Bounds, width: f64, numbers: BranchNumbers) -> Work<'_, Vec<Bounds>> {
         let bounds = self.on_formula_boxes(&[*bounds], |_, boxes| boxes[0]);
         Box::pin(async move {
-            let cells = self.branches.crease_cells(&self.values, &bounds, width).await;
+            let cells =
+                self.branches.crease_cells(&self.compiled, &self.values, &bounds, width, numbers).await;
             cells.iter().map(|cell| cell.relative_to(self.origin)).collect()
         })
     }
@@ -668,11 +672,6 @@ impl Field for Formula {
     /// If no branch has this number.
     fn select_branch(&mut self, branch: Option<u32>) {
         self.branches.select(branch, &self.values);
-    }
-
-    /// The equation that [`Formula::without_powers`] has found.
-    fn sampled_as(&self) -> Option<String> {
-        self.simplified.as_ref().map(display::plain_equation)
     }
 }
 

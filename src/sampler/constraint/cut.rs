@@ -5,6 +5,7 @@
 
 use super::meeting::{Third, common_point};
 use super::{Crease, Creases, ONE_CORNER};
+use crate::field::BranchNumbers;
 use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::complete;
@@ -15,7 +16,7 @@ impl Creases {
         self.at_box()?;
         probe.select(None);
         let width = Self::width(wide);
-        let cells = complete(probe.field.crease_cells(wide, width));
+        let cells = complete(probe.field.branched()?.crease_cells(wide, width, BranchNumbers::Kept));
         let mut creases = complete(Self::find(probe, wide, &cells));
         let [lo, hi] = bounds.single().map(|corner| corner.as_dvec3());
         for axis in 0..3 {

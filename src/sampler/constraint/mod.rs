@@ -2,7 +2,7 @@
 //! corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
-//! ([`Field::branch_at`](crate::field::Field::branch_at)). Two patches meet along a *crease*, the curve on which both branches
+//! ([`Branched::branch_at`](crate::field::Branched::branch_at)). Two patches meet along a *crease*, the curve on which both branches
 //! are zero; it ends at a corner, at the box, or runs back into itself. Where the factors of a product cross, four patches
 //! meet: each factor is two branches, one on either side of the other factor.
 //!
@@ -87,7 +87,7 @@ pub(crate) struct Creases {
 }
 
 impl Creases {
-    /// Width of the [cells](crate::field::Field::find_creases) in which creases are looked for.
+    /// Width of the [cells](crate::field::Branched::crease_cells) in which creases are looked for.
     pub(super) fn width(bounds: &Bounds) -> f64 {
         CELL * bounds.diagonal()
     }
@@ -99,7 +99,8 @@ impl Creases {
         let step = 0.5 * Self::width(bounds);
         for cell in cells {
             pause().await;
-            let branches = probe.field.branches_in(cell).unwrap_or_default();
+            let branches =
+                probe.field.branched().and_then(|field| field.branches_in(cell)).unwrap_or_default();
             for (k, &a) in branches.iter().enumerate() {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)

@@ -1,6 +1,6 @@
 use super::*;
-use crate::field::Field;
 use crate::field::formula::Formula;
+use crate::field::{BranchNumbers, Branched, Field};
 use crate::particles::Particles;
 use crate::sampler::probe::ProbeMemory;
 use crate::slices::complete;
@@ -12,7 +12,8 @@ fn creases(text: &str, half: f64) -> (Formula, Creases) {
     let mut memory = ProbeMemory::default();
     let bounds = Bounds::cube(half);
     let probe = &mut Probe::new(&mut field, &mut memory);
-    let cells = complete(probe.field.find_creases(&bounds, Creases::width(&bounds)));
+    let branched = probe.field.branched().expect("formulas have branches");
+    let cells = complete(branched.crease_cells(&bounds, Creases::width(&bounds), BranchNumbers::New));
     let creases = complete(Creases::find(probe, &bounds, &cells));
     (field, creases)
 }
