@@ -6,7 +6,7 @@
 mod settings;
 
 use marching_particles::field::gallery;
-use marching_particles::sampler::{Method, Sampler, Sampling, Settings, SettingsError, SizeMode};
+use marching_particles::sampler::{Creases, Method, Sampler, Sampling, Settings, SettingsError, SizeMode};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -70,8 +70,9 @@ fn peak_of(settings: Settings) -> (usize, usize) {
     let settings = settings!(max_particles: 4_000_000; ..settings);
     let before = USED.load(Ordering::Relaxed);
     PEAK.store(before, Ordering::Relaxed);
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    let mut sampler = Sampler::default();
+    let smooth = Some(Creases::default());
+    sampler.begin(&mut field, &surface.bounds, &settings, smooth).expect("room for the particles");
     while sampler.step(&mut field, 65_536).stop_reason.is_none() {}
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
@@ -82,10 +83,10 @@ fn assert_expected(settings: Settings, bytes: f64) {
     let mut field = surface.field();
     let settings = settings!(size_mode: SizeMode::Count, count: 40_000; ..settings);
     for (limit, is_refused) in [(1.0 - ESTIMATE, true), (1.0 + ESTIMATE, false)] {
-        let mut sampler = Sampler::new();
+        let mut sampler = Sampler::default();
         sampler.limit_memory((f64::from(settings.count) * bytes * limit) as usize);
         let refused = matches!(
-            sampler.start(&mut field, &surface.bounds, &settings),
+            sampler.begin(&mut field, &surface.bounds, &settings, Some(Creases::default())),
             Err(SettingsError::Memory { particles: 40_000 })
         );
         assert_eq!(

@@ -24,7 +24,7 @@ use crate::quality;
 use crate::sampler::{
     self, Creases, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
 };
-use crate::slices::Work;
+use crate::slices::{self, Work};
 use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
@@ -146,7 +146,7 @@ impl<F: Field> Run<F> {
             field,
             bounds,
             reach: None,
-            sampler: Sampler::new(),
+            sampler: Sampler::default(),
             known: Known::Nothing,
             creases: None,
             most_particles: usize::MAX,
@@ -164,16 +164,13 @@ impl<F: Field> Run<F> {
             return Err(SettingsError::Box);
         }
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
-        let start = if self.known == Known::Survey {
-            self.sampler.start_again(&mut self.field, settings)?
-        } else {
-            self.field.set_origin(self.bounds.local_origin());
-            let bounds = self.bounds.relative_to(self.field.origin());
-            match self.creases.take() {
-                known @ Some(_) => self.sampler.begin(&mut self.field, &bounds, settings, known)?,
-                None => self.sampler.start(&mut self.field, &bounds, settings)?,
-            }
-        };
+        self.field.set_origin(self.bounds.local_origin());
+        let bounds = self.bounds.relative_to(self.field.origin());
+        let creases = (self.known != Known::Survey).then(|| {
+            let known = self.creases.take();
+            known.unwrap_or_else(|| slices::complete(sampler::find_creases(&mut self.field, &bounds)))
+        });
+        let start = self.sampler.begin(&mut self.field, &bounds, settings, creases)?;
         self.known = Known::Survey;
         self.last = None;
         self.measuring = Measuring::default();

@@ -1,6 +1,6 @@
 //! The sampler is a state machine that covers a surface with particles and relaxes them.
 //!
-//! [`Sampler::start`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of work and
+//! [`Sampler::begin`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of work and
 //! returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps does not change its
 //! result by a bit. Placing and relaxing allocate nothing for a particle but the growth of the columns; the search for components,
 //! the audit and the refinement make memory of their own.
@@ -39,9 +39,9 @@ use crate::field::scaled::{Scaled, comfortable_scale, spread};
 use crate::field::{BranchNumbers, Branched, Field};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::slices::{self, Work};
+use crate::slices::Work;
 use attempt::Attempt;
-pub(crate) use constraint::Creases;
+pub use constraint::Creases;
 use constraint::tips::Tip;
 use discovery::search::ComponentSearch;
 use discovery::singular::{NearSurvey, Singular};
@@ -70,7 +70,7 @@ pub(crate) fn bytes_per_particle(settings: &Settings) -> usize {
     }
 }
 
-/// A sampler, which covers one surface at a time with particles.
+/// A sampler, which covers one surface at a time with particles. A new one has nothing to do.
 #[derive(Clone, Default)]
 pub struct Sampler {
     settings: Settings,
@@ -148,18 +148,7 @@ impl PointScale {
     }
 }
 
-fn check(settings: &Settings, bounds: &Bounds) -> Result<(), SettingsError> {
-    settings.validate()?;
-    if bounds.is_valid() { Ok(()) } else { Err(SettingsError::Box) }
-}
-
 impl Sampler {
-    /// A sampler with nothing to do.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. Those
     /// that a coarse front has placed beyond the box are not among them.
     #[must_use]
@@ -260,55 +249,20 @@ impl Sampler {
         &self.settings
     }
 
-    /// Starts a run: finds the creases, surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to prove by)
-    /// and fixes the radius. Particles of an earlier run are dropped.
+    /// Starts a run, with valid settings in a valid box: surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to
+    /// prove by) and fixes the radius. Particles of an earlier run are dropped. `creases` are those of the surface in the box; without
+    /// them all that is known of field and box is kept from the last start, with its survey.
     ///
     /// # Errors
     ///
-    /// If a setting or the box is invalid; an earlier run is then left as it is. If there is no memory for the particles
-    /// to expect; there is no run then.
-    pub fn start(
-        &mut self,
-        field: &mut dyn Field,
-        bounds: &Bounds,
-        settings: &Settings,
-    ) -> Result<Forecast, SettingsError> {
-        check(settings, bounds)?;
-        let creases = slices::complete(find_creases(field, bounds));
-        self.begin(field, bounds, settings, Some(creases))
-    }
-
-    /// [`Sampler::start`] on the field and the box of the last start, without surveying them again.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Sampler::start`].
-    pub fn start_again(
-        &mut self,
-        field: &mut dyn Field,
-        settings: &Settings,
-    ) -> Result<Forecast, SettingsError> {
-        let bounds = self.bounds;
-        // A survey that has found nothing by itself is made again: what it was given since depends on the run.
-        let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
-        let creases = (!is_known).then(|| core::mem::take(&mut self.creases));
-        self.begin(field, &bounds, settings, creases)
-    }
-
-    /// [`Sampler::start`] where the creases of the surface in the box are [known](find_creases). Without them, all that is known of field
-    /// and box is kept from the last start, with its survey.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Sampler::start`].
-    pub(crate) fn begin(
+    /// If there is no memory for the particles to expect; there is no run then.
+    pub fn begin(
         &mut self,
         field: &mut dyn Field,
         bounds: &Bounds,
         settings: &Settings,
         creases: Option<Creases>,
     ) -> Result<Forecast, SettingsError> {
-        check(settings, bounds)?;
         self.settings = *settings;
         self.bounds = *bounds;
         self.output.particles.clear();
@@ -357,9 +311,12 @@ impl Sampler {
         Ok(Forecast { radius, predicted_count: predicted as u64, area })
     }
 
-    /// Surveys the field, unless creases are not given. Where the survey finds no point, the search is carried to its end at once: the
-    /// area is then that of spheres with the curvature at the points that it finds.
+    /// Surveys the field, unless creases are not given and the last survey holds. Where the survey finds no point, the search is carried
+    /// to its end at once: the area is then that of spheres with the curvature at the points that it finds.
     fn look_over(&mut self, field: &mut dyn Field, creases: Option<Creases>) {
+        // A survey that has found nothing by itself is made again: what it was given since depends on the run.
+        let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
+        let creases = creases.or_else(|| (!is_known).then(|| core::mem::take(&mut self.creases)));
         if let Some(creases) = creases {
             self.singular.clear();
             self.tips.clear();

@@ -11,7 +11,7 @@ use serde::Serialize;
 /// sixteen random formulas it is 0.07 to 0.2 natively, so that the display goes faster towards the end.
 const RELAXATION_STEP_COST: f64 = 0.25;
 
-/// Result of [`Sampler::start`]: the radius, and estimates for the run.
+/// Result of [`Sampler::begin`]: the radius, and estimates for the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Forecast {
     /// Repulsion radius of the run.

@@ -1,16 +1,14 @@
 //! Tests of the adaptive front (paper §5): children touch their parents, particles cover the surface, and a run does not
 //! depend on how it is cut into steps.
 
-use crate::runs::{assert_fates, figures, gallery_figures, of_gallery, sampled, sampled_in_any_steps};
+use crate::runs::{assert_fates, begun, figures, gallery_figures, of_gallery, sampled, sampled_in_any_steps};
 use crate::smooth::smooth;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self};
-use marching_particles::sampler::{
-    GapPolicy, LawKind, Phase, Sampler, Sampling, Settings, SizeMode, StopReason,
-};
+use marching_particles::sampler::{GapPolicy, LawKind, Phase, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::spatial::CellGrid;
 
 /// Settings for about 4,000 particles without relaxation.
@@ -221,9 +219,8 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
 
     let surface = gallery::find("torus").expect("a gallery surface");
     let mut field = surface.field();
-    let mut sampler = Sampler::new();
     let settings = settings();
-    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    let mut sampler = begun(&mut field, &surface.bounds, &settings);
     let settled = loop {
         let progress = sampler.step(&mut field, 37);
         if progress.particles > 500 && progress.phase == Phase::Generation {

@@ -1,6 +1,6 @@
 //! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is lost without a word.
 
-use crate::runs::{figures, sampled, sampled_in_any_steps};
+use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
 use glam::Vec3;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
@@ -236,9 +236,8 @@ fn what_is_cancelled_has_no_particle_outside_the_box() {
     let mut field = gyroid.field();
     let mut has_cut_front = false;
     for steps in [5, 20, 60, 200, 600, 1_000] {
-        let mut sampler = Sampler::new();
         let settings = settings(Method::Refined, 8_000, 0);
-        sampler.start(&mut field, &gyroid.bounds, &settings).expect("valid settings");
+        let mut sampler = begun(&mut field, &gyroid.bounds, &settings);
         for _ in 0..steps {
             sampler.step(&mut field, 1_000);
         }
@@ -288,8 +287,7 @@ proptest! {
 fn what_a_coarse_front_places_beyond_the_box_is_not_shown() {
     let surface = gallery::find("gyroid").expect("a surface of the gallery");
     let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, &settings(Method::Refined, 8_000, 0)).expect("valid settings");
+    let mut sampler = begun(&mut field, &surface.bounds, &settings(Method::Refined, 8_000, 0));
     let mut shown: Vec<Vec3> = Vec::new();
     loop {
         let progress = sampler.step(&mut field, 300);

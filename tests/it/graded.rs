@@ -1,7 +1,7 @@
 //! The refinement of a coarse front to sizes that follow the curvature.
 
 use crate::refine::assert_rings;
-use crate::runs::{gallery_figures, of_gallery, sampled_in_any_steps};
+use crate::runs::{begun, gallery_figures, of_gallery, sampled_in_any_steps};
 use marching_particles::differential::exact_curvature;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -101,8 +101,7 @@ fn what_is_cancelled_can_be_relaxed() {
     let surface = gallery::find("ellipsoid").expect("a surface of the gallery");
     let mut field = surface.field();
     for steps in [5, 100, 300] {
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &surface.bounds, &counted(3_000, 0)).expect("valid settings");
+        let mut sampler = begun(&mut field, &surface.bounds, &counted(3_000, 0));
         for _ in 0..steps {
             sampler.step(&mut field, 500);
         }

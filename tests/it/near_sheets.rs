@@ -2,10 +2,10 @@
 //! explains figures of the sample that are not those of the surface.
 
 use crate::runs::{finished, session};
-use marching_particles::Report;
 use marching_particles::field::formula::Formula;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Doubt, Sampler, Sampling, Search, Settings, SizeMode};
+use marching_particles::sampler::{Doubt, Sampling, Search, Settings, SizeMode};
+use marching_particles::{Report, Run};
 
 fn says(report: &Report, words: &str) -> bool {
     report.warnings.iter().any(|warning| warning.to_string().contains(words))
@@ -66,9 +66,9 @@ fn the_area_of_two_near_sheets_is_that_of_both() {
             let mut field =
                 Formula::as_written(&formula, &[]).unwrap_or_else(|error| panic!("{formula}: {error}"));
             let settings = settings!(size_mode: SizeMode::Count, count: 2_000; ..Settings::default());
-            let mut sampler = Sampler::new();
-            let start = sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("valid settings");
-            assert!((start.area / area - 1.0).abs() < 0.05, "{formula}: {} of {area}", start.area);
+            let run = Run::start(&mut field, &settings.in_box(Bounds::cube(1.5))).expect("valid settings");
+            let found = run.start_report().area;
+            assert!((found / area - 1.0).abs() < 0.05, "{formula}: {found} of {area}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The refinement of a coarse front: its figures, its count, and what happens where it cannot be had.
 
-use crate::runs::{figures, sampled, sampled_in_any_steps};
+use crate::runs::{begun, figures, sampled, sampled_in_any_steps};
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self};
-use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Sampling, Search, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampling, Search, Settings, SizeMode};
 use marching_particles::topology::Topology;
 
 fn refined(count: u32, seed: u64) -> Settings {
@@ -83,8 +83,7 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
     let settings = refined(14_000, 0);
     let mut seen = Vec::new();
     for steps in [40, 120, 300, 600] {
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        let mut sampler = begun(&mut field, &surface.bounds, &settings);
         for _ in 0..steps {
             sampler.step(&mut field, 1_000);
         }
@@ -177,8 +176,7 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
     let settings = refined(4_000, 0);
     sampled_in_any_steps(&mut field, &bounds, &settings);
     // The columns change once a level, never in between.
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &bounds, &settings).expect("valid settings");
+    let mut sampler = begun(&mut field, &bounds, &settings);
     let mut counts = Vec::new();
     loop {
         let progress = sampler.step(&mut field, 1);
@@ -193,8 +191,7 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
     let levels = sampler.counts().refined_levels.expect("a refined run");
     assert!(counts.len() as u32 <= levels + 1, "{counts:?} with {levels} levels");
     for steps in [60, 80, 100, 150, 200, 300] {
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &bounds, &settings).expect("valid settings");
+        let mut sampler = begun(&mut field, &bounds, &settings);
         for _ in 0..steps {
             sampler.step(&mut field, 500);
         }
@@ -210,9 +207,8 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
 fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_last() {
     let surface = gallery::find("torus").expect("a surface of the gallery");
     let mut field = surface.field();
-    let mut sampler = Sampler::new();
     let settings = refined(6_000, 1);
-    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    let mut sampler = begun(&mut field, &surface.bounds, &settings);
     let (mut told, mut shown, mut fraction) = (Vec::new(), Vec::new(), 0.0);
     loop {
         let progress = sampler.step(&mut field, 500);
@@ -238,7 +234,7 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     // The last level ends the phase.
     assert_eq!(shown.len() as u32, levels - 1, "{shown:?}");
 
-    sampler.start_again(&mut field, &settings).expect("valid settings");
+    sampler.begin(&mut field, &surface.bounds, &settings, None).expect("room for the particles");
     let first = loop {
         let progress = sampler.step(&mut field, 500);
         if progress.phase == Phase::Refinement && progress.moved {
@@ -355,8 +351,7 @@ fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
         let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
         let mut field = Formula::as_written(&text, &[]).expect("a formula");
         let settings = settings!(method: Method::Refined, radius_share: 0.0077; ..Settings::default());
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("settings in range");
+        let mut sampler = begun(&mut field, &Bounds::cube(1.5), &settings);
         let steps = (0..STEPS).take_while(|_| sampler.step(&mut field, 10_000).stop_reason.is_none()).count();
         assert!(steps < STEPS, "{outer}: {steps} steps were not enough");
         let refusal = sampler.counts().refusal;

@@ -1,7 +1,7 @@
 //! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and
 //! particles stay on the surface.
 
-use crate::runs::{gallery_figures, sampled};
+use crate::runs::{begun, gallery_figures, sampled};
 use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -11,8 +11,7 @@ use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason
 /// The particles after the front and after the relaxation.
 fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particles, Sampler) {
     let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
+    let mut sampler = begun(&mut field, &surface.bounds, settings);
     let mut before = Particles::default();
     loop {
         let progress = sampler.step(&mut field, 1);
@@ -54,8 +53,7 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
 /// Energies by the definition before the first relaxation step and after each step, and those that the sampler reports.
 fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
     let mut field = surface.field();
-    let mut sampler = Sampler::new();
-    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
+    let mut sampler = begun(&mut field, &surface.bounds, settings);
     while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
     let mut defined = Vec::new();
     // Steps of one unit of work catch the particles of an accepted step before the next one moves any.
@@ -110,8 +108,7 @@ fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particl
     let mut is_amid = 0;
     for units in (1..4_000).step_by(331) {
         let mut field = surface.field();
-        let mut sampler = Sampler::new();
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        let mut sampler = begun(&mut field, &surface.bounds, &settings);
         while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
         for _ in 0..units {
             sampler.step(&mut field, 1);

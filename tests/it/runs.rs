@@ -1,6 +1,5 @@
 //! Runs to their end, and what is measured of them.
 
-use marching_particles::Report;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
@@ -8,11 +7,16 @@ use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality::{Figures, MeasureOptions, measure};
 use marching_particles::sampler::{Sampler, Settings};
 use marching_particles::session::{FieldRequest, Session};
+use marching_particles::{Report, Run};
+
+/// A sampler that has begun a run on a field in a box.
+pub(crate) fn begun(field: &mut dyn Field, bounds: &Bounds, settings: &Settings) -> Sampler {
+    Run::start(field, &settings.in_box(*bounds)).expect("valid settings").sampler().clone()
+}
 
 /// A field, sampled in a box by steps of `budget`.
 pub(crate) fn sampled(field: &mut dyn Field, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
-    let mut sampler = Sampler::new();
-    sampler.start(field, bounds, settings).expect("valid settings");
+    let mut sampler = begun(field, bounds, settings);
     while sampler.step(field, budget).stop_reason.is_none() {}
     sampler
 }

@@ -75,7 +75,7 @@ pub(super) struct Corner {
 
 /// The creases and corners of a surface in a box.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Creases {
+pub struct Creases {
     curves: Vec<Crease>,
     corners: Vec<Corner>,
     /// Opposite faces of a cell with the same creases.
