@@ -2,7 +2,7 @@
 //! single precision, whatever units a formula is in.
 
 use super::{Bounded, Branched, Enclosure, Field, Jet, UnitCell};
-use crate::math::{Bounds, Interval, Sym3, power_of_two, sort_numbers};
+use crate::math::{Bounds, Interval, Sym3, median, power_of_two};
 use glam::{DVec3, Vec3};
 
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
@@ -39,11 +39,9 @@ pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIte
     let points: Vec<Vec3> = points.step_by(stride).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
     field.gradients(&points, &mut value, &mut gradient);
-    let mut size: Vec<f32> =
-        gradient.iter().map(|g| g.abs().max_element()).filter(|s| s.is_finite() && *s > 0.0).collect();
-    sort_numbers(&mut size);
-    let Some(&median) = size.get(size.len() / 2) else { return 1.0 };
-    let size = power_of_two(median.into());
+    let sizes = gradient.iter().map(|g| g.abs().max_element()).filter(|s| s.is_finite() && *s > 0.0);
+    let Some(size) = median(sizes.collect()) else { return 1.0 };
+    let size = power_of_two(size.into());
     if (1.0 / COMFORTABLE..=COMFORTABLE).contains(&size) {
         return 1.0;
     }

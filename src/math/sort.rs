@@ -47,6 +47,12 @@ pub(crate) fn sort_numbers<T: Copy + Into<f64>>(numbers: &mut [T]) {
     sort_by_key(numbers, |&number| key_of(number.into()));
 }
 
+/// The number in the middle of the sorted ones, the upper of two; none if there is no number.
+pub(crate) fn median<T: Copy + Into<f64>>(mut numbers: Vec<T>) -> Option<T> {
+    sort_numbers(&mut numbers);
+    numbers.get(numbers.len() / 2).copied()
+}
+
 /// Sorts a few items: by insertion, which keeps the order of those of which neither comes before the other.
 pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
     for end in 1..items.len() {

@@ -16,7 +16,7 @@
 
 use super::thin::covariance;
 use super::{Cloud, NormalSource, eigen};
-use crate::math::{Bounds, significant, sort_numbers, unkey};
+use crate::math::{Bounds, median, significant, unkey};
 use crate::slices::{HEAVY, MEDIUM, pause, ranges};
 use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
@@ -238,18 +238,14 @@ impl NeighbourGraph {
 
     /// Whether each point is far from all others, for the distances between those.
     fn outliers(&self) -> Vec<bool> {
-        let middle = |values: &mut Vec<f64>| {
-            sort_numbers(values);
-            values.get(values.len() / 2).copied().unwrap_or(0.0)
-        };
         let of_neighbours = |i: usize, value: &dyn Fn(usize) -> f64| {
             let near = &self.neighbours[i * self.per_point..(i + 1) * self.per_point];
-            middle(&mut near.iter().map(|&j| value(j as usize)).collect())
+            median(near.iter().map(|&j| value(j as usize)).collect()).unwrap_or(0.0)
         };
         let all = 0..self.local.len();
         let distance = |i: usize| of_neighbours(i, &|j| self.local[i].distance(self.local[j]));
         let reach: Vec<f64> = all.clone().map(distance).collect();
-        let usual = middle(&mut reach.clone());
+        let usual = median(reach.clone()).unwrap_or(0.0);
         let is_far = |i: usize| reach[i] > FAR * usual.max(of_neighbours(i, &|j| reach[j]));
         all.map(is_far).collect()
     }

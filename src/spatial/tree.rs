@@ -260,14 +260,7 @@ fn node_of(items: &[(Vec3, u32)], first: usize) -> TreeNode {
 
 /// Splits the `items` of `node` at the median along its longest side. Returns where the second part begins.
 fn split(items: &mut [(Vec3, u32)], node: &TreeNode) -> usize {
-    let side = node.hi - node.lo;
-    let axis = if side.x >= side.y && side.x >= side.z {
-        0
-    } else if side.y >= side.z {
-        1
-    } else {
-        2
-    };
+    let axis = (node.hi - node.lo).max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     middle

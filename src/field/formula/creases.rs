@@ -427,14 +427,7 @@ impl TieSearch<'_> {
 
 /// The halves of a box across its longest side.
 fn halves(bounds: &Bounds) -> [Bounds; 2] {
-    let size = bounds.size().to_array();
-    let axis = if size[0] >= size[1] && size[0] >= size[2] {
-        0
-    } else if size[1] >= size[2] {
-        1
-    } else {
-        2
-    };
+    let axis = bounds.size().max_position();
     let middle = bounds.middle().to_array()[axis];
     let (mut low, mut high) = (*bounds, *bounds);
     (low.max[axis], high.min[axis]) = (middle, middle);

@@ -4,7 +4,7 @@
 use super::grid::CELLS;
 use super::survey::ulps;
 use crate::field::{Enclosure, Field};
-use crate::math::{Bounds, sort_numbers};
+use crate::math::{Bounds, median};
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 
@@ -98,12 +98,10 @@ fn is_blurred(field: &mut dyn Field, bounds: &Bounds, points: &[Vec3], values: &
     let points: Vec<Vec3> = points.iter().step_by(ONE_IN).copied().collect();
     let (mut exact, mut gradient) = (vec![0.0; points.len()], vec![DVec3::ZERO; points.len()]);
     field.exact_gradients(&points, &mut exact, &mut gradient);
-    let mut moves: Vec<f64> = (0..points.len())
+    let moves = (0..points.len())
         .map(|k| (values[k] - exact[k]).abs() / gradient[k].length())
-        .filter(|distance| distance.is_finite())
-        .collect();
-    sort_numbers(&mut moves);
-    moves.get(moves.len() / 2).is_some_and(|&median| median > MOST_BLUR * f64::from(ulps(bounds)))
+        .filter(|distance| distance.is_finite());
+    median(moves.collect()).is_some_and(|usual| usual > MOST_BLUR * f64::from(ulps(bounds)))
 }
 
 /// Whether f is beyond double precision somewhere.
@@ -143,8 +141,7 @@ fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
     let cell = (bounds.hi() - bounds.lo()).max_element() / CELLS;
     let usual = |mut sizes: Vec<f64>| {
         sizes.retain(|size| size.is_finite() && *size > 0.0);
-        sort_numbers(&mut sizes);
-        sizes.get(sizes.len() / 2).copied()
+        median(sizes)
     };
     let of_slopes = usual(slopes).map(|slope| slope * cell);
     of_slopes.or_else(|| usual(value.iter().map(|v| v.abs()).collect())).unwrap_or(1.0)

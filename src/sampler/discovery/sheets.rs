@@ -197,13 +197,7 @@ impl GraphBox {
         /// them counts twice.
         const SLACKS: f64 = 8.0;
         let size = from.normal.abs();
-        let up = if size.x >= size.y && size.x >= size.z {
-            0
-        } else if size.y >= size.z {
-            1
-        } else {
-            2
-        };
+        let up = size.max_position();
         let (mut lo, mut hi) = (from.position.min(to), from.position.max(to));
         let reach = (to - from.position).abs();
         let slope: f64 =

@@ -3,7 +3,7 @@
 
 use crate::field::Field;
 use crate::field::descent::Descent;
-use crate::math::{Bounds, sort_numbers};
+use crate::math::{Bounds, median, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
 use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
@@ -287,8 +287,7 @@ fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[Option<f32>]) -> f
         let counted = gradient.iter().zip(areas).filter(|(_, area)| area.is_some() || !by_crossings);
         slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
-    sort_numbers(&mut slopes);
-    slopes.get(slopes.len() / 2).copied().unwrap_or(0.0)
+    median(slopes).unwrap_or(0.0)
 }
 
 impl Survey {
@@ -341,8 +340,7 @@ impl Survey {
             self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
             self.push(OrientedPoint { position, normal }, 0.0);
         }
-        sort_numbers(&mut slopes);
-        self.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(self.gradient_scale);
+        self.gradient_scale = median(slopes).unwrap_or(self.gradient_scale);
         if !self.position.is_empty() {
             self.absence = Absence::None;
         } else if search == Search::Proven && matches!(self.absence, Absence::NoZero | Absence::NotSeen) {
