@@ -202,294 +202,128 @@ fn surfaces() -> Vec<SurfaceEntry> {
     gallery::GROUPS.iter().flat_map(entries).collect()
 }
 
-const fn row(
-    key: &'static str,
-    label: &'static str,
-    (group, unit, digits): (&'static str, &'static str, u8),
-    (ideal, better): (&'static str, Option<&'static str>),
-    help: &'static str,
-) -> ReportRow {
-    ReportRow { key, to: None, unless: None, label, group, unit, digits, ideal, better, help, places: None }
+/// A row of a count without an ideal.
+const fn row(key: &'static str, label: &'static str, group: &'static str) -> ReportRow {
+    let (to, unless, better, places) = (None, None, None, None);
+    ReportRow { key, to, unless, label, group, unit: "", digits: 0, ideal: "", better, help: "", places }
 }
 
-const LOWER: Option<&str> = Some("lower");
-const HIGHER: Option<&str> = Some("higher");
-const PAIRS: Option<&str> = Some("places.pairs");
-const HOLES: Option<&str> = Some("places.holes");
+impl ReportRow {
+    const fn to(self, upper: &'static str) -> Self {
+        Self { to: Some(upper), ..self }
+    }
+
+    const fn unless(self, other: &'static str) -> Self {
+        Self { unless: Some(other), ..self }
+    }
+
+    const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    const fn digits(self, digits: u8) -> Self {
+        Self { digits, ..self }
+    }
+
+    const fn ideal(self, ideal: &'static str) -> Self {
+        Self { ideal, ..self }
+    }
+
+    /// The lower, the better.
+    const fn down_to(self, ideal: &'static str) -> Self {
+        Self { ideal, better: Some("lower"), ..self }
+    }
+
+    /// The higher, the better.
+    const fn up_to(self, ideal: &'static str) -> Self {
+        Self { ideal, better: Some("higher"), ..self }
+    }
+
+    const fn places(self, places: &'static str) -> Self {
+        Self { places: Some(places), ..self }
+    }
+
+    const fn help(self, help: &'static str) -> Self {
+        Self { help, ..self }
+    }
+}
+
+const PAIRS: &str = "places.pairs";
+const HOLES: &str = "places.holes";
 
 const REPORT: &[ReportRow] = &[
-    row("count", "Particles", ("Run", "", 0), ("", None), "Particles on the surface."),
-    ReportRow {
-        to: Some("radius_max"),
-        ..row(
-            "radius_min",
-            "Radius",
-            ("Run", "", 4),
-            ("", None),
-            "Repulsion radius, in the units of x, y and z; of the smallest particle and of the largest where they differ.",
-        )
-    },
-    row(
-        "levels",
-        "Generation levels",
-        ("Run", "", 0),
-        ("", None),
-        "Rings of particles, each placed by the one before it.",
-    ),
-    row(
-        "components_seeded",
-        "Fronts",
-        ("Run", "", 0),
-        ("", None),
-        "Fronts started, each from a point that no particle covered: at least one for every component of the surface.",
-    ),
-    row(
-        "gaps_filled",
-        "Gaps filled",
-        ("Run", "", 0),
-        ("", None),
-        "Particles placed after the fronts had met, in gaps wide enough for one.",
-    ),
-    row(
-        "evaluations_per_particle",
-        "Evaluations per particle",
-        ("Run", "", 2),
-        ("about 2", LOWER),
-        "Field evaluations of the front divided by the particles it placed.",
-    ),
-    row(
-        "quality.six",
-        "Six neighbours",
-        ("Order", "%", 1),
-        ("100 %", HIGHER),
-        "Share of the particles with exactly six natural neighbours, those of their Voronoi cell in the tangent plane. A closed surface of genus 0 must have at least twelve without.",
-    ),
-    row(
-        "quality.psi6",
-        "Hexagonal order ψ₆",
-        ("Order", "", 3),
-        ("1", HIGHER),
-        "Mean of |mean of exp(6iθ) over the natural neighbours|: 1 for a perfect hexagonal lattice.",
-    ),
-    row(
-        "quality.ang_min_mean",
-        "Mean smallest angle",
-        ("Triangles", "°", 1),
-        ("60°", HIGHER),
-        "Mean over the triangles of natural neighbours of their smallest angle.",
-    ),
-    ReportRow {
-        unless: Some("smallest_angle"),
-        ..row(
-            "quality.ang_min",
-            "Smallest angle",
-            ("Triangles", "°", 1),
-            ("60°", HIGHER),
-            "Smallest angle of any triangle of natural neighbours.",
-        )
-    },
-    row(
-        "smallest_angle",
-        "Smallest angle",
-        ("Mesh", "°", 1),
-        ("60°", HIGHER),
-        "Smallest angle of any triangle of the mesh, as it stands in its file: those at its border among them, which the other figures leave out.",
-    ),
-    row(
-        "quality.lt30",
-        "Angles below 30°",
-        ("Triangles", "%", 2),
-        ("0 %", LOWER),
-        "Share of the triangles with an angle below 30°.",
-    ),
-    row(
-        "quality.gt90",
-        "Angles above 90°",
-        ("Triangles", "%", 2),
-        ("0 %", LOWER),
-        "Share of the triangles with an angle above 90°.",
-    ),
-    ReportRow {
-        unless: Some("quality.cover_local"),
-        places: HOLES,
-        ..row(
-            "quality.cover",
-            "Largest hole",
-            ("Spacing", "", 2),
-            ("1", LOWER),
-            "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles.",
-        )
-    },
-    ReportRow {
-        places: HOLES,
-        ..row(
-            "quality.cover_local",
-            "Largest hole",
-            ("Spacing", "", 2),
-            ("1", LOWER),
-            "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it.",
-        )
-    },
-    ReportRow {
-        places: HOLES,
-        ..row(
-            "quality.wide_holes",
-            "Holes wider than 1.4",
-            ("Spacing", "", 0),
-            ("0", LOWER),
-            "Empty discs on the surface that are wider than 1.4, measured as the largest one. Of discs that overlap so far that the middle of one lies in the other, one counts. A missing particle leaves a hole of 1.73.",
-        )
-    },
-    ReportRow {
-        unless: Some("quality.overlap_min"),
-        places: PAIRS,
-        ..row(
-            "quality.rho",
-            "Closest pair",
-            ("Spacing", "", 3),
-            ("1", HIGHER),
-            "Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius.",
-        )
-    },
-    ReportRow {
-        places: PAIRS,
-        ..row(
-            "quality.overlap_min",
-            "Closest pair",
-            ("Spacing", "", 3),
-            ("1", HIGHER),
-            "Smallest distance of two neighbours over the sum of their radii.",
-        )
-    },
-    ReportRow {
-        places: PAIRS,
-        ..row(
-            "quality.crowded",
-            "Pairs nearer than 0.75",
-            ("Spacing", "", 0),
-            ("0", LOWER),
-            "Pairs of particles that are nearer to each other than 0.75, measured as the closest one.",
-        )
-    },
-    ReportRow {
-        unless: Some("quality.size_cv"),
-        ..row(
-            "quality.nn_cv",
-            "Spacing variation",
-            ("Spacing", "%", 1),
-            ("0 %", LOWER),
-            "Standard deviation of the distance to the nearest neighbour over its mean.",
-        )
-    },
-    row(
-        "quality.size_cv",
-        "Spacing variation",
-        ("Spacing", "%", 1),
-        ("0 %", LOWER),
-        "Standard deviation over mean of the distance between natural neighbours over the sum of their radii.",
-    ),
-    ReportRow {
-        unless: Some("quality.size_cv"),
-        ..row(
-            "quality.edge_cv",
-            "Edge variation",
-            ("Spacing", "%", 1),
-            ("0 %", LOWER),
-            "Standard deviation of the distance between natural neighbours over its mean.",
-        )
-    },
-    row(
-        "quality.err_max",
-        "Largest residual",
-        ("Accuracy", "", 6),
-        ("0", LOWER),
-        "Largest distance |f|/|∇f| from the surface over the spacing of a perfect lattice.",
-    ),
-    row(
-        "quality.err_mean",
-        "Mean residual",
-        ("Accuracy", "", 6),
-        ("0", LOWER),
-        "Mean distance |f|/|∇f| from the surface over the spacing of a perfect lattice.",
-    ),
-    row(
-        "quality.area",
-        "Area",
-        ("Surface", "units²", 3),
-        ("", None),
-        "Area of the triangles of natural neighbours.",
-    ),
-    row(
-        "volume",
-        "Volume",
-        ("Surface", "units³", 3),
-        ("", None),
-        "Volume that the mesh encloses, exact to its triangles, where the particles are joined to a closed one.",
-    ),
-    row(
-        "quality.euler",
-        "Sample Euler number",
-        ("At this radius", "", 0),
-        ("", None),
-        "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components. It is that of the sample: where the surface is as thin as a particle, a smaller radius may show another one.",
-    ),
-    row(
-        "components",
-        "Sample components",
-        ("At this radius", "", 0),
-        ("", None),
-        "Components of the graph of natural neighbours of the particles. It is that of the sample: a neck or a needle as thin as a particle may divide it. Parts that are joined only at a singular point count separately.",
-    ),
-    row(
-        "pairs",
-        "Periodic pairs",
-        ("Surface", "", 0),
-        ("", None),
-        "Pairs of particles on opposite faces of the box that are the same but for the shift.",
-    ),
-    row(
-        "border",
-        "Border particles",
-        ("Surface", "", 0),
-        ("", None),
-        "Particles where the box cuts the surface: a child of theirs would have been outside.",
-    ),
-    row(
-        "search",
-        "All components found",
-        ("Surface", "", 0),
-        ("proven", None),
-        "Proven: interval arithmetic shows a witness on every component of the surface in the box, and that each witness is on the component of a particle or counted in the next row. By search: a component smaller than the cells of the search can be missing. That is all that can be had of models from points; of a formula a note says why.",
-    ),
-    row(
-        "sampled.missing",
-        "Without particles",
-        ("Surface", "", 0),
-        ("0", LOWER),
-        "Witnessed components without a particle: each is too small or too near another one for this radius. The notes name their places and sizes.",
-    ),
-    row(
-        "undecided_cells",
-        "Undecided cells",
-        ("Surface", "", 0),
-        ("0", LOWER),
-        "Cells of the box in which the proof could neither find a component nor rule one out, and witnesses of which it could not tell whether a particle is on their component.",
-    ),
-    row(
-        "singular_points",
-        "Singular points",
-        ("Surface", "", 0),
-        ("", None),
-        "Places where f has no gradient on the surface, such as the tip of a cone; a curve of them counts as one. Particles within 2r of one are marked in the exported files.",
-    ),
-    row(
-        "creases",
-        "Creases",
-        ("Surface", "", 0),
-        ("", None),
-        "Curves on which the surface has an edge, from corner to corner or closed. Particles lie on them exactly, with a normal for each side.",
-    ),
-    row("corners", "Corners", ("Surface", "", 0), ("", None), "Particles at which creases meet or end."),
+    row("count", "Particles", "Run")
+        .help("Particles on the surface."),
+    row("radius_min", "Radius", "Run").to("radius_max").digits(4)
+        .help("Repulsion radius, in the units of x, y and z; of the smallest particle and of the largest where they differ."),
+    row("levels", "Generation levels", "Run")
+        .help("Rings of particles, each placed by the one before it."),
+    row("components_seeded", "Fronts", "Run")
+        .help("Fronts started, each from a point that no particle covered: at least one for every component of the surface."),
+    row("gaps_filled", "Gaps filled", "Run")
+        .help("Particles placed after the fronts had met, in gaps wide enough for one."),
+    row("evaluations_per_particle", "Evaluations per particle", "Run").digits(2).down_to("about 2")
+        .help("Field evaluations of the front divided by the particles it placed."),
+    row("quality.six", "Six neighbours", "Order").unit("%").digits(1).up_to("100 %")
+        .help("Share of the particles with exactly six natural neighbours, those of their Voronoi cell in the tangent plane. A closed surface of genus 0 must have at least twelve without."),
+    row("quality.psi6", "Hexagonal order ψ₆", "Order").digits(3).up_to("1")
+        .help("Mean of |mean of exp(6iθ) over the natural neighbours|: 1 for a perfect hexagonal lattice."),
+    row("quality.ang_min_mean", "Mean smallest angle", "Triangles").unit("°").digits(1).up_to("60°")
+        .help("Mean over the triangles of natural neighbours of their smallest angle."),
+    row("quality.ang_min", "Smallest angle", "Triangles").unit("°").digits(1).up_to("60°").unless("smallest_angle")
+        .help("Smallest angle of any triangle of natural neighbours."),
+    row("smallest_angle", "Smallest angle", "Mesh").unit("°").digits(1).up_to("60°")
+        .help("Smallest angle of any triangle of the mesh, as it stands in its file: those at its border among them, which the other figures leave out."),
+    row("quality.lt30", "Angles below 30°", "Triangles").unit("%").digits(2).down_to("0 %")
+        .help("Share of the triangles with an angle below 30°."),
+    row("quality.gt90", "Angles above 90°", "Triangles").unit("%").digits(2).down_to("0 %")
+        .help("Share of the triangles with an angle above 90°."),
+    row("quality.cover", "Largest hole", "Spacing").digits(2).down_to("1").unless("quality.cover_local").places(HOLES)
+        .help("Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles."),
+    row("quality.cover_local", "Largest hole", "Spacing").digits(2).down_to("1").places(HOLES)
+        .help("Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it."),
+    row("quality.wide_holes", "Holes wider than 1.4", "Spacing").down_to("0").places(HOLES)
+        .help("Empty discs on the surface that are wider than 1.4, measured as the largest one. Of discs that overlap so far that the middle of one lies in the other, one counts. A missing particle leaves a hole of 1.73."),
+    row("quality.rho", "Closest pair", "Spacing").digits(3).up_to("1").unless("quality.overlap_min").places(PAIRS)
+        .help("Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius."),
+    row("quality.overlap_min", "Closest pair", "Spacing").digits(3).up_to("1").places(PAIRS)
+        .help("Smallest distance of two neighbours over the sum of their radii."),
+    row("quality.crowded", "Pairs nearer than 0.75", "Spacing").down_to("0").places(PAIRS)
+        .help("Pairs of particles that are nearer to each other than 0.75, measured as the closest one."),
+    row("quality.nn_cv", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
+        .help("Standard deviation of the distance to the nearest neighbour over its mean."),
+    row("quality.size_cv", "Spacing variation", "Spacing").unit("%").digits(1).down_to("0 %")
+        .help("Standard deviation over mean of the distance between natural neighbours over the sum of their radii."),
+    row("quality.edge_cv", "Edge variation", "Spacing").unit("%").digits(1).down_to("0 %").unless("quality.size_cv")
+        .help("Standard deviation of the distance between natural neighbours over its mean."),
+    row("quality.err_max", "Largest residual", "Accuracy").digits(6).down_to("0")
+        .help("Largest distance |f|/|∇f| from the surface over the spacing of a perfect lattice."),
+    row("quality.err_mean", "Mean residual", "Accuracy").digits(6).down_to("0")
+        .help("Mean distance |f|/|∇f| from the surface over the spacing of a perfect lattice."),
+    row("quality.area", "Area", "Surface").unit("units²").digits(3)
+        .help("Area of the triangles of natural neighbours."),
+    row("volume", "Volume", "Surface").unit("units³").digits(3)
+        .help("Volume that the mesh encloses, exact to its triangles, where the particles are joined to a closed one."),
+    row("quality.euler", "Sample Euler number", "At this radius")
+        .help("Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components. It is that of the sample: where the surface is as thin as a particle, a smaller radius may show another one."),
+    row("components", "Sample components", "At this radius")
+        .help("Components of the graph of natural neighbours of the particles. It is that of the sample: a neck or a needle as thin as a particle may divide it. Parts that are joined only at a singular point count separately."),
+    row("pairs", "Periodic pairs", "Surface")
+        .help("Pairs of particles on opposite faces of the box that are the same but for the shift."),
+    row("border", "Border particles", "Surface")
+        .help("Particles where the box cuts the surface: a child of theirs would have been outside."),
+    row("search", "All components found", "Surface").ideal("proven")
+        .help("Proven: interval arithmetic shows a witness on every component of the surface in the box, and that each witness is on the component of a particle or counted in the next row. By search: a component smaller than the cells of the search can be missing. That is all that can be had of models from points; of a formula a note says why."),
+    row("sampled.missing", "Without particles", "Surface").down_to("0")
+        .help("Witnessed components without a particle: each is too small or too near another one for this radius. The notes name their places and sizes."),
+    row("undecided_cells", "Undecided cells", "Surface").down_to("0")
+        .help("Cells of the box in which the proof could neither find a component nor rule one out, and witnesses of which it could not tell whether a particle is on their component."),
+    row("singular_points", "Singular points", "Surface")
+        .help("Places where f has no gradient on the surface, such as the tip of a cone; a curve of them counts as one. Particles within 2r of one are marked in the exported files."),
+    row("creases", "Creases", "Surface")
+        .help("Curves on which the surface has an edge, from corner to corner or closed. Particles lie on them exactly, with a normal for each side."),
+    row("corners", "Corners", "Surface")
+        .help("Particles at which creases meet or end."),
 ];
 
 const FATES: &[Fate] = &[
