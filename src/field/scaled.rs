@@ -24,8 +24,8 @@ impl<'a> Scaled<'a> {
         Self { field, scale }
     }
 
-    /// The bounds of the other field, which has some wherever [`Field::bounded`] gives this one.
-    fn bounds(&mut self) -> &mut dyn Bounded {
+    /// The other field, which has bounds wherever [`Field::bounded`] gives this one.
+    fn bounded_field(&mut self) -> &mut dyn Bounded {
         self.field.bounded().expect("a field keeps its bounds")
     }
 }
@@ -147,20 +147,20 @@ impl Field for Scaled<'_> {
 
 impl Bounded for Scaled<'_> {
     fn operations(&mut self) -> usize {
-        self.bounds().operations()
+        self.bounded_field().operations()
     }
 
     fn factors(&mut self) -> usize {
-        self.bounds().factors()
+        self.bounded_field().factors()
     }
 
     fn is_zero_of(&mut self, factor: usize, zero: DVec3) -> bool {
-        self.bounds().is_zero_of(factor, zero)
+        self.bounded_field().is_zero_of(factor, zero)
     }
 
     fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         let scale = f64::from(self.scale);
-        self.bounds().enclose(factor, boxes, out);
+        self.bounded_field().enclose(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
                 known.value = known.value * scale;
@@ -171,7 +171,7 @@ impl Bounded for Scaled<'_> {
 
     fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
         let scale = f64::from(self.scale);
-        self.bounds().enclose_second(factor, boxes, out);
+        self.bounded_field().enclose_second(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
                 *known = known.map(|bounds| bounds * scale);
