@@ -1,7 +1,7 @@
 //! The particles of a run as a structure of arrays: a column for each attribute. Rows are in the order in which the front placed the
 //! particles, so generation levels are contiguous; particles that fill gaps come last.
 
-use crate::math::Bounds;
+use crate::math::{Bounds, FNV_START, fnv};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
@@ -388,18 +388,13 @@ impl Particles {
     /// on any machine.
     #[must_use]
     pub fn digest(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-        let mut word = |bits: u32| {
-            for byte in bits.to_le_bytes() {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-            }
-        };
+        let mut hash = FNV_START;
         if self.origin != DVec3::ZERO {
-            for bits in self.origin.to_array().map(f64::to_bits) {
-                word(bits as u32);
-                word((bits >> 32) as u32);
+            for c in self.origin.to_array() {
+                hash = fnv(hash, &c.to_le_bytes());
             }
         }
+        let mut word = |bits: u32| hash = fnv(hash, &bits.to_le_bytes());
         for i in 0..self.len() {
             for v in [self.position[i], self.normal[i]] {
                 for c in v.to_array() {

@@ -55,7 +55,7 @@ pub use settings::{
 };
 
 use crate::field::Field;
-use crate::math::{Bounds, HEXAGONAL_CELL};
+use crate::math::{Bounds, FNV_START, HEXAGONAL_CELL, fnv};
 use crate::paper::{ImplicitSurface, PaperRun, Particle, Push};
 use crate::sampler::FateCounts;
 use course::{Course, Setup};
@@ -462,12 +462,8 @@ fn check_count(
 /// FNV-1a hash of the bits of all particles.
 #[must_use]
 pub fn digest(particles: &[Particle]) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut word = |bits: u64| {
-        for byte in bits.to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
+    let mut hash = FNV_START;
+    let mut word = |bits: u64| hash = fnv(hash, &bits.to_le_bytes());
     for particle in particles {
         let vectors = [particle.position, particle.normal];
         vectors.as_flattened().iter().chain([&particle.radius]).for_each(|number| word(number.to_bits()));

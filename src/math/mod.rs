@@ -73,6 +73,14 @@ pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Area of the cell of a hexagonal lattice, whose spacing is 2r, over r².
 pub(crate) const HEXAGONAL_CELL: f64 = 2.0 * SQRT_3;
 
+/// The FNV-1a hash of no bytes.
+pub(crate) const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// The FNV-1a hash of the bytes of which `hash` is that, and of more.
+pub(crate) fn fnv(hash: u64, more: &[u8]) -> u64 {
+    more.iter().fold(hash, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
 /// An axis-aligned box, in the field's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
