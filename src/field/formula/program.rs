@@ -83,28 +83,11 @@ impl Program {
     }
 }
 
-/// Estimated cost of computing `outputs` for a point, in units of one addition. It serves to choose between forward and backward
-/// differentiation. With every operation at 1 two adaptive runs of the gallery and one of 58 on random surfaces choose the other, and take as
-/// long.
-pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
-    let of_node = |id: Id| {
-        if graph.is_uniform(id) {
-            return 0;
-        }
-        match graph.node(id) {
-            Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => 0,
-            Node::Unary(Unary::Neg | Unary::Abs | Unary::Sign, _) => 1,
-            Node::Unary(Unary::Sqrt, _) => 4,
-            Node::Unary(_, _) => 20,
-            Node::Binary(Binary::Div, _, _) => 4,
-            Node::Binary(Binary::Pow | Binary::Atan2, _, _) => 40,
-            Node::Binary(_, _, _) => 1,
-            Node::Power(_, n) => n.unsigned_abs().ilog2() + if n < 0 { 4 } else { 0 },
-            Node::Smin(_, _, _) => 10,
-            Node::If(..) => 2,
-        }
-    };
-    graph.needed_by(outputs).into_iter().map(of_node).sum()
+/// Number of operations that compute `outputs` at a point. It serves to choose between forward and backward differentiation. Where each
+/// operation counts for what it takes, two adaptive runs of the gallery and one of 58 on random surfaces choose the other, and take as long.
+pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> usize {
+    let is_operation = |&id: &Id| !graph.is_uniform(id) && !matches!(graph.node(id), Node::Coordinate(_));
+    graph.needed_by(outputs).iter().filter(|id| is_operation(id)).count()
 }
 
 /// The smooth minimum as min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1.
