@@ -11,8 +11,7 @@
 //! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range of the numbers (in
 //!   single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see [`Curvature::is_defined`].
 
-use crate::field::descent::BATCH;
-use crate::field::{Field, Jet};
+use crate::field::{BATCH, Field, Jet};
 use crate::math::{LANES, Lanes, Real, Sym3, frame_of};
 use glam::{DVec3, Vec3};
 

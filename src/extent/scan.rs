@@ -7,7 +7,7 @@
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::Bounds;
-use crate::slices::pause;
+use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
 /// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would run along the faces of cells.
@@ -34,8 +34,6 @@ const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
-/// Cells in a batch, after which the scan may be left: of the longest formula a batch takes some milliseconds.
-const BATCH: usize = 32;
 
 /// The result of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,8 +181,8 @@ async fn visit(
     let factors = field.factors();
     let mut kept = Vec::new();
     let mut batch = BoundsBatch::default();
-    for chunk in cells.chunks(BATCH) {
-        let mut extremes = [None; BATCH];
+    for chunk in cells.chunks(HEAVY) {
+        let mut extremes = [None; HEAVY];
         for factor in 0..factors {
             batch.enclose(field, factor, level, chunk, &mut extremes);
         }
@@ -219,7 +217,7 @@ impl BoundsBatch {
         factor: usize,
         level: &ScanLevel,
         cells: &[CellPlace],
-        extremes: &mut [Option<[bool; 3]>; BATCH],
+        extremes: &mut [Option<[bool; 3]>; HEAVY],
     ) {
         self.boxes.clear();
         self.boxes.extend(cells.iter().map(|&at| level.cell(at)));

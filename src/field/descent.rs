@@ -11,12 +11,8 @@
 //!   `sampler::discovery::audit` stays in a plane on its way.
 //! * `sampler::discovery::singular` looks for a zero of the gradient, and `field::formula::creases` for one of two functions at once.
 
-use super::Field;
+use super::{BATCH, Field};
 use glam::Vec3;
-
-/// Largest number of points in a call of a field: large enough to hide the cost of a call, small enough for the
-/// first-level cache. The result for a point does not depend on it.
-pub(crate) const BATCH: usize = 128;
 
 /// Below this |∇f|, its square is subnormal and has lost digits.
 const FAINT: f32 = 1e-18;

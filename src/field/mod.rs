@@ -19,6 +19,11 @@ use crate::slices::Work;
 use core::ops::DerefMut;
 use glam::{DVec3, Vec3};
 
+/// Largest number of points in a call of a field: large enough to hide the cost of a call, and of decoding a formula,
+/// small enough for the first-level cache. Where a formula is decoded for half as many, six runs on random surfaces take 0.4 to 1.7 % more
+/// instructions, for a quarter 1.4 to 5.2 %. The result for a point does not depend on it.
+pub(crate) const BATCH: usize = 128;
+
 /// Second-order jet of a field at a point, in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {

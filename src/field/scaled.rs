@@ -1,12 +1,9 @@
 //! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in
 //! single precision, whatever units a formula is in.
 
-use super::{Bounded, Branched, Enclosure, Field, Jet, UnitCell};
+use super::{BATCH, Bounded, Branched, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, Sym3, median, power_of_two};
 use glam::{DVec3, Vec3};
-
-/// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
-const SAMPLES: usize = 128;
 
 /// Largest gradient that needs no scale, and the inverse of the smallest. The square of such a gradient, and of a value a million
 /// times smaller or larger, is a normal number in single precision.
@@ -32,10 +29,10 @@ impl<'a> Scaled<'a> {
 
 /// Power of two that brings the median magnitude of the gradient near 1, or 1 if that is not needed.
 ///
-/// The gradient is sampled at no more than 128 of `points`. Because only the exponent of the median counts, nearly all
+/// The gradient is sampled at no more than one batch of `points`. Because only the exponent of the median counts, nearly all
 /// choices of points give the same scale.
 pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> f32 {
-    let stride = points.len().div_ceil(SAMPLES).max(1);
+    let stride = points.len().div_ceil(BATCH).max(1);
     let points: Vec<Vec3> = points.step_by(stride).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
     field.gradients(&points, &mut value, &mut gradient);

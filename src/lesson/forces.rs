@@ -14,16 +14,15 @@
 
 use super::dynamics::Dynamics;
 use super::log::Log;
+use super::witkin_heckbert::{GAMMA, TIME_STEP};
 use crate::paper::{Move, OVERLAP_REACH, OVERLAP_STEP, PaperRun, Particle, overlap};
 use glam::DVec3;
 
-/// A disc meets those that are not larger within this many radii.
-pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
-
 /// A particle that has moved by less than this, in radii, is at rest: γΔt of Witkin and Heckbert.
-pub(super) const AT_REST: f64 = 0.12;
+pub(super) const AT_REST: f64 = GAMMA * TIME_STEP;
 
-/// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a twentieth of the spacing.
+/// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a twentieth of the spacing. On
+/// 24 random surfaces half of it leaves 3 % fewer particles, of which 55 % have six neighbours in place of 61 %, and double 3 % more, with 66 %.
 const FREE: f64 = 0.01;
 
 /// Σ (overlap / mean radius)² above which a particle may die: six neighbours at 0.7 of the spacing 2r.

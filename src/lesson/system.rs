@@ -25,13 +25,14 @@ use super::event::Event;
 use super::settings::LessonMethod;
 use super::{forces, witkin_heckbert};
 use crate::math::frame_of;
-use crate::paper::{Buckets, Particle};
+use crate::paper::{Buckets, GAUSSIAN_REACH, OVERLAP_REACH, Particle};
 use core::iter::successors;
 use glam::DVec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 /// Consecutive iterations of rest after which a run has settled: in as many a particle at rest has moved by a tenth of its radius at most.
+/// On 24 random surfaces Witkin and Heckbert's system ends after 94 iterations with half of it and 139 with double, in place of 120.
 pub(super) const QUIET: u32 = 20;
 
 /// Mean move in an iteration, in radii, up to which particles count as not moving. On 16 random surfaces Witkin and Heckbert's system ends
@@ -87,7 +88,8 @@ impl Course {
     /// "Compute the energy", "compute the velocity": sums over all pairs within reach. `mean` is the mean radius.
     fn interact(&mut self, mean: f64) {
         let is_gaussian = self.setup.settings.method == LessonMethod::WitkinHeckbert;
-        let reach = if is_gaussian { witkin_heckbert::RANGE } else { forces::RANGE };
+        // A disc meets those that are not larger.
+        let reach = if is_gaussian { GAUSSIAN_REACH } else { 2.0 * OVERLAP_REACH };
         let particles = &self.run.particles;
         self.run.buckets = Buckets::new(reach * mean, particles);
         self.dynamics.clear();

@@ -19,12 +19,9 @@ use super::dynamics::Dynamics;
 use crate::paper::{ImplicitSurface, MAX_MOVE, Move, Particle};
 use glam::DVec3;
 
-/// Energies reach as far as this, in σ.
-pub(super) const RANGE: f64 = 3.0;
-
 // The values of the source.
 /// Δt: time step.
-const TIME_STEP: f64 = 0.03;
+pub(super) const TIME_STEP: f64 = 0.03;
 /// α: repulsion amplitude.
 const ALPHA: f64 = 6.0;
 /// Ê: wanted energy.
@@ -36,7 +33,7 @@ const PHI: f64 = 15.0;
 /// β: keeps the growth of a lone particle finite, in 1 / (d/2).
 const BETA: f64 = 10.0;
 /// γ: a particle slower than this, in σ per unit of time, is near equilibrium.
-const GAMMA: f64 = 4.0;
+pub(super) const GAMMA: f64 = 4.0;
 /// ν: share of the wanted energy above which a large particle divides.
 const NU: f64 = 0.2;
 /// δ: share of σ̂ below which a particle may die.

@@ -21,6 +21,9 @@ pub(crate) const ROUNDER: f32 = 12_582_912.0;
 /// 1.5 · 2⁵²: [`ROUNDER`] in double precision.
 pub(crate) const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
 
+/// π/2 in two parts, the first of 33 bits, so that its multiples by up to 2²⁰ are exact.
+pub(crate) const HALF_PI: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
+
 /// 2²³: from here on every single-precision number is an integer.
 const ALL_INTEGERS: f32 = 8_388_608.0;
 
@@ -159,8 +162,6 @@ fn exponent_and_mantissa(a: f32) -> (f32, f32) {
 /// precision, so that r keeps its relative accuracy up to |a| of about 10⁶.
 #[inline]
 fn quadrant(a: f32) -> (u32, f32) {
-    /// π/2 in two parts, the first of 33 bits, so that its multiples by up to 2²⁰ are exact.
-    const HALF_PI: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
     let a = f64::from(a);
     let t = a * core::f64::consts::FRAC_2_PI + ROUNDER_F64;
     let n = t - ROUNDER_F64;

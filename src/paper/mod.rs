@@ -53,7 +53,7 @@ pub(crate) use buckets::Buckets;
 pub(crate) use observer::{Moment, Observer};
 pub(crate) use particle::TangentFrame;
 pub(crate) use projection::Circle;
-pub(crate) use relaxation::{MAX_MOVE, Move, OVERLAP_REACH, RepulsionSums, overlap};
+pub(crate) use relaxation::{GAUSSIAN_REACH, MAX_MOVE, Move, OVERLAP_REACH, RepulsionSums, overlap};
 pub(crate) use rules::OVERLAP_STEP;
 pub(crate) use surface::Trial;
 pub(crate) use uniform::{DIRECTIONS, REACH, predicted_angle};

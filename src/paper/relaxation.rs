@@ -41,7 +41,7 @@ pub(crate) struct Move {
 }
 
 /// Particles of one size repel each other up to this distance, in σ, where the energy exp(−d²/2σ²) is 1 % of that at 0.
-const RANGE: f64 = 3.0;
+pub(crate) const GAUSSIAN_REACH: f64 = 3.0;
 
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps. On 16 random
 /// surfaces half and twice the excess over 1 leave holes 6 % wider after ten steps.
@@ -61,7 +61,7 @@ fn same_sheet_weight(cosine: f64) -> f64 {
 fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
     let share = distance / sigma;
     let energy = libm::exp(-0.5 * share * share);
-    (energy, energy - libm::exp(-0.5 * RANGE * RANGE))
+    (energy, energy - libm::exp(-0.5 * GAUSSIAN_REACH * GAUSSIAN_REACH))
 }
 
 /// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other apart by their overlap. The paper
@@ -109,7 +109,7 @@ impl<O: Observer> PaperRun<O> {
         let own = &self.particles[particle as usize];
         let sizes = self.rules.sizes;
         let reach = match sizes {
-            RadiusRule::Same(_) => RANGE * own.radius,
+            RadiusRule::Same(_) => GAUSSIAN_REACH * own.radius,
             RadiusRule::ByCurvature { most, .. } => OVERLAP_REACH * (own.radius + most),
         };
         let around = self.buckets.near(&self.particles, own.p(), reach).into_iter();

@@ -15,7 +15,7 @@ use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::math::{Bounds, sort_numbers};
-use crate::slices::{HEAVY, pause, ranges};
+use crate::slices::{HEAVY, LIGHT, pause, ranges};
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -29,8 +29,6 @@ const WARN_CONDITION: f64 = 1e10;
 /// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box. Half and twice
 /// as much hold the same surfaces of twelve random clouds.
 const MARGIN: f64 = 0.06;
-/// Pairs of a point and a centre in a slice of work, at 1 to 16 ns each.
-const PAIRS: usize = 8192;
 /// Largest smoothing term λ that is tried. The largest that was chosen for spheres, tori and bunnies of 5,000 points, with and without
 /// noise, is a fourth of it.
 const LARGEST_SMOOTHING: f64 = 4.0;
@@ -166,7 +164,7 @@ struct CellPoint {
 /// The points, each in the cell of its nearest centre, and the mean of their squared distances from these. Ties go to the smaller index.
 async fn in_cells(mut points: Vec<CellPoint>, centres: &[DVec3]) -> (Vec<CellPoint>, f64) {
     let (mut sum, count) = (0.0, points.len() as f64);
-    for range in ranges(points.len(), PAIRS.div_ceil(centres.len())) {
+    for range in ranges(points.len(), LIGHT.div_ceil(centres.len())) {
         for point in &mut points[range] {
             let mut least = f64::INFINITY;
             for (j, centre) in centres.iter().enumerate() {
@@ -298,7 +296,7 @@ impl System {
         for point in points {
             this.count[point.cell as usize] += 1.0;
         }
-        for columns in ranges(centres.len(), PAIRS.div_ceil(points.len())) {
+        for columns in ranges(centres.len(), LIGHT.div_ceil(points.len())) {
             tell(columns.start as f64 / centres.len() as f64);
             for j in columns {
                 this.add_columns(points, centres, j);

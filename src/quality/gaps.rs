@@ -2,8 +2,8 @@
 //! gap are natural neighbours, and nothing between them is surface.
 
 use super::points::MeasuredPoints;
-use crate::field::Field;
-use crate::field::descent::{BATCH, Descent, descend};
+use crate::field::descent::{Descent, descend};
+use crate::field::{BATCH, Field};
 use crate::math::{Bounds, sort_few};
 use crate::slices::{MEDIUM, pause, ranges};
 use glam::Vec3;

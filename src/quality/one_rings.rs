@@ -9,12 +9,9 @@ use crate::spatial::tree::{Leaf, PointsInBox, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
 /// Numbers of nearest points that are tried in turn while a cell is not proven complete, each about three times the one before.
-/// The first try takes the points in a ball that holds about 24 of them. A complete cell does not depend on the try that
+/// The first try takes the points in the ball of the leaf. A complete cell does not depend on the try that
 /// completed it.
 const TRIES: [usize; 3] = [24, 64, 200];
-/// Radius of the ball of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans
-/// 3 to 5 d, so the radius is about 2.5 d and the ball holds 22 points of a perfect lattice.
-const BALL: f32 = 0.45;
 /// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are on
 /// one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the mean
 /// is 1/12 where the curvature changes by its own size between the points. Half of it leaves more open edges on 5 of 12 random
@@ -73,14 +70,14 @@ impl OneRings {
         &mut self,
         sheets: &Sheets,
         field: &mut dyn Field,
-        Leaf { range, lo, hi }: Leaf,
+        leaf: Leaf,
         RingBuffers { cell, nearby, keys, asked }: &mut RingBuffers,
     ) {
         let Sheets { tree, normal, creases, .. } = *sheets;
-        let reach = BALL * (hi - lo).length();
+        let reach = leaf.reach();
         let reach_sq = reach * reach;
-        nearby.gather(tree, lo - reach, hi + reach);
-        for i in range {
+        nearby.gather(tree, leaf.lo - reach, leaf.hi + reach);
+        for i in leaf.range {
             let p = tree.position[i];
             let mut nearest_sq = reach_sq;
             let mut faces_another = false;

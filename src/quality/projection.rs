@@ -1,7 +1,7 @@
 //! Projection of sample points onto the surface.
 
-use crate::field::Field;
-use crate::field::descent::{BATCH, Descent, descend};
+use crate::field::descent::{Descent, descend};
+use crate::field::{BATCH, Field};
 use glam::Vec3;
 
 /// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces change in the sixth digit,

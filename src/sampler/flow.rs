@@ -48,6 +48,8 @@ pub(crate) const BALANCE_EVERY: u32 = 4;
 const STEPS_AFTER_BALANCE: u32 = 2;
 
 /// Two particles nearer than this, over the sum of their radii, crowd each other: a front takes a child so near to a particle for that particle.
+/// On 16 random motions the count is off by 4.8 % and the closest pair at 0.80; with 0.6 by 6.3 % and at 0.78, with 0.8 by 5.2 %, where 32 % in
+/// place of 35 % have six neighbours.
 const CROWDED: f32 = 0.7;
 
 /// The energy, over the usual one, below which a particle gets a child if no neighbour has less, and above which it dies if none has more.
@@ -86,9 +88,6 @@ const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 /// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16 random motions the count is off by 1.3 %
 /// with 0.7, 1.1 % with 0.8 and with 0.9, and the closest pair is at 0.72, 0.72 and 0.71.
 const CLEAR: f32 = 0.8;
-
-/// Neighbours of a particle that are looked at; the two rings of a lattice have 18.
-const MOST_NEIGHBOURS: usize = 24;
 
 /// What the births and deaths of a frame have to know of the run.
 pub(crate) struct FlowSurface<'a> {
@@ -409,7 +408,7 @@ impl Flow {
     fn look_around(&mut self, particles: &Particles, i: usize) {
         let (u, w) = tangent_frame(particles.normal[i]);
         self.around.clear();
-        self.around.extend(self.found.iter().take(MOST_NEIGHBOURS).map(|near| Bearing {
+        self.around.extend(self.found.iter().map(|near| Bearing {
             angle: direction_angle(near.offset.dot(u), near.offset.dot(w)),
             distance: near.distance_sq.sqrt() / (particles.radius[i] + particles.radius[near.index as usize]),
             index: near.index,
@@ -429,7 +428,7 @@ impl Flow {
         let grown_sq = -0.5 * libm::log(pair + f64::from(END_ENERGY));
         let more = surface.count.map_or(1.0, |count| (n / f64::from(count)).sqrt());
         let growth = grown_sq.max(0.0).sqrt() * more;
-        // Of a few particles without neighbours the energy says nothing.
+        // Of a few particles without neighbours the energy says nothing. Half and double of the tenth give the same in 16 random motions.
         self.growth = if growth.is_finite() { growth.clamp(0.9, 1.1) } else { 1.0 };
         usual
     }

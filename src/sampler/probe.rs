@@ -1,6 +1,6 @@
 //! The field as the sampler evaluates it: in batches, with the memory that they take, and counted.
 
-pub(crate) use crate::field::descent::BATCH;
+pub(crate) use crate::field::BATCH;
 
 use crate::field::Field;
 use crate::field::descent::Descent;

@@ -18,12 +18,11 @@ use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
 
-/// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
-/// than one of the front, and a caller that derives its budget from the front's pace must not wait. Its size changes no particle.
-const SEARCH_SLICE: u32 = 8_192;
-/// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a
-/// factor of ten. In the mean a unit takes 0.04 to 0.2 µs natively, so many 1 to 3 ms.
-const RELAXATION_SLICE: u32 = 16_384;
+/// Largest number of units of the search, of the audit or of the relaxation in one step, whatever the budget. On some formulas a unit of
+/// the search takes far longer than one of the front, and in the stages of the relaxation the time of a unit differs by a factor of ten. A caller
+/// that derives its budget from the pace of the front must not wait: a unit of the relaxation takes 0.04 to 0.2 µs natively in the mean, so
+/// many 0.3 to 2 ms. It changes no particle.
+const SLICE: u32 = 8_192;
 /// Distance within which a singular point is a tip, as a share of the one within which it was searched for: far above rounding. From
 /// a millionth to 1 the particles of 16 random cones are the same.
 const SAME_TIP: f64 = 1e-3;
@@ -334,7 +333,7 @@ impl Sampler {
             return self.begin_filling(probe);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
-        let slice = (*left).min(SEARCH_SLICE);
+        let slice = (*left).min(SLICE);
         let least_gap = self.least_gap();
         let unused = self.components.search(probe, &self.bounds, tolerance, least_gap, slice);
         if unused == 0 {
@@ -682,7 +681,7 @@ impl Sampler {
     fn relax_slice(&mut self, probe: &mut Probe, left: &mut u32) {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
-        let slice = (*left).min(RELAXATION_SLICE);
+        let slice = (*left).min(SLICE);
         self.output.moved |= self.tools.relaxation.step(
             probe,
             sizing,
@@ -707,7 +706,7 @@ impl Sampler {
     /// Finds out which components hold particles.
     fn audit(&mut self, probe: &mut Probe, left: &mut u32, reason: StopReason) -> PhaseState {
         let tolerance = self.attempt.tolerance(&self.survey);
-        let slice = (*left).min(SEARCH_SLICE);
+        let slice = (*left).min(SLICE);
         let start = probe.evaluations();
         let unused = self.components.audit(
             probe,

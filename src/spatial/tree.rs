@@ -40,6 +40,16 @@ pub(crate) struct Leaf {
     pub(crate) hi: Vec3,
 }
 
+impl Leaf {
+    /// Radius of the first ball that is searched around each of the points.
+    pub(crate) fn reach(&self) -> f32 {
+        /// Share of the diagonal of the box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d, so the ball reaches 1.4 to 2.2 d, and few
+        /// points need a second one.
+        const SHARE: f32 = 0.45;
+        SHARE * (self.hi - self.lo).length()
+    }
+}
+
 /// Points in tree order: the points of a leaf are contiguous, and leaves near one another are near in memory.
 #[derive(Debug)]
 pub(crate) struct Tree {

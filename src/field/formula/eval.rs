@@ -6,16 +6,18 @@
 use super::graph::whole_power;
 use super::operations::{Binary, Unary};
 use super::program::{Instruction, Op, Program};
+use crate::field::BATCH;
 use crate::math::functions;
 use crate::math::{LANES, Lanes};
 use core::cell::Cell;
 use core::iter::repeat;
 use glam::Vec3;
 
-/// Maximum number of [`Lanes`], of eight points each, in a block.
-pub(super) const BLOCK: usize = 16;
+/// Maximum number of [`Lanes`] in a block: those of a batch.
+pub(super) const BLOCK: usize = BATCH / LANES;
 
-/// Intended maximum size of the register file in bytes: half of a small first-level cache.
+/// Intended maximum size of the register file in bytes: half of a small first-level cache. With half of it six runs on random surfaces take up to
+/// 0.2 % more instructions, with double they take the same.
 const FILE_BYTES: usize = 16 * 1024;
 
 /// Evaluates `program` at `points`, and calls `store` with the index of each and the first `N` results there. `file` is the memory of the

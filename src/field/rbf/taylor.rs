@@ -13,8 +13,6 @@ use glam::DVec3;
 pub(super) const TERMS: usize = below(DEGREE + 1);
 /// Number of coefficients for one degree more, which ∇φ needs.
 const MORE_TERMS: usize = below(DEGREE + 2);
-/// Centres that are expanded together: one for each lane.
-const TOGETHER: usize = 8;
 /// Powers along each axis of the cube that holds a polynomial while it is shifted.
 const POWERS: usize = DEGREE + 1;
 
@@ -51,7 +49,7 @@ pub(super) struct Taylor {
 }
 
 /// A number for each of the centres that are expanded together.
-type CentreGroup = [f64; TOGETHER];
+type CentreGroup = [f64; LANES];
 /// Length of that buffer: as many entries as a byte can index.
 const PLACES: usize = 256;
 
@@ -83,7 +81,7 @@ impl Taylor {
                 rows.push(core::array::from_fn(|j| if within(j) { index([k, j, i]) } else { MORE_TERMS }));
             }
         }
-        Self { terms, rows, group: vec![[0.0; TOGETHER]; PLACES] }
+        Self { terms, rows, group: vec![[0.0; LANES]; PLACES] }
     }
 
     /// Adds the terms of `centres`, none of which is at `middle`, to the polynomial of a cell.
@@ -94,14 +92,14 @@ impl Taylor {
         half: f64,
         centres: &[Centre],
     ) {
-        for group in centres.chunks(TOGETHER) {
+        for group in centres.chunks(LANES) {
             let at = |k: usize| group[k.min(group.len() - 1)];
             // In units of the cell φ has the factor half³, and ∇φ has half².
             let offset = core::array::from_fn(|k| (middle - at(k).position) / half);
-            let real: [f64; TOGETHER] =
+            let real: [f64; LANES] =
                 core::array::from_fn(|k| if k < group.len() { half * half } else { 0.0 });
-            let alpha: [f64; TOGETHER] = core::array::from_fn(|k| at(k).alpha * half * real[k]);
-            let beta: [DVec3; TOGETHER] = core::array::from_fn(|k| at(k).beta * real[k]);
+            let alpha: [f64; LANES] = core::array::from_fn(|k| at(k).alpha * half * real[k]);
+            let beta: [DVec3; LANES] = core::array::from_fn(|k| at(k).beta * real[k]);
             self.expand_group(polynomial, &offset, &alpha, &beta);
         }
     }
@@ -110,9 +108,9 @@ impl Taylor {
     fn expand_group(
         &mut self,
         polynomial: &mut Polynomial,
-        offset: &[DVec3; TOGETHER],
+        offset: &[DVec3; LANES],
         alpha: &CentreGroup,
-        beta: &[DVec3; TOGETHER],
+        beta: &[DVec3; LANES],
     ) {
         let d: [CentreGroup; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
         let beta: [CentreGroup; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));

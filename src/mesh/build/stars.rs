@@ -11,9 +11,6 @@ use crate::spatial::tree::{Leaf, Tree};
 use core::ops::Range;
 use glam::Vec3;
 
-/// Radius of the first ball that is searched, over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d
-/// spans 3 to 5 d, so the ball reaches 1.4 to 2.2 d, and few stars need a second one.
-const BALL: f32 = 0.45;
 /// Largest circumradius of a triangle, in units of the spacing at the corner. With half of it 336 instead of 154 particles of 46
 /// unrelaxed random runs are in no triangle; with twice as much gaps of the surface are closed: 8 of 91 borders go.
 pub(super) const WIDEST: f32 = 2.0;
@@ -79,7 +76,9 @@ impl Stars {
         let cloud = StarPoints { tree, normal, tips };
         let mut scratch = Box::<StarBuffers>::default();
         let mut pause_at = HEAVY;
-        for Leaf { range, lo, hi } in tree.leaves() {
+        for leaf in tree.leaves() {
+            let reach = leaf.reach();
+            let Leaf { range, lo, hi } = leaf;
             if range.start >= pause_at {
                 pause_at = range.start + HEAVY;
                 pause().await;
@@ -88,7 +87,6 @@ impl Stars {
                 stars.add_twins(range);
                 continue;
             }
-            let reach = BALL * (hi - lo).length();
             scratch.surroundings.gather(tree, normal, lo - reach, hi + reach);
             range.for_each(|i| stars.add(&cloud, i, reach, &mut scratch));
         }

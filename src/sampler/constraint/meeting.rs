@@ -1,14 +1,10 @@
 //! Points where branches of f are zero together.
 
+use super::{AT_REST, STEPS};
 use crate::math::newton::{self, StepLimits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Steps of Newton's method. From a cell that a crease crosses five are enough; where two branches touch without an angle each step
-/// halves the distance.
-const STEPS: u32 = 12;
-/// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding.
-const AT_REST: f64 = 1e-9;
 /// Sine of the angle between two branches from which on they make a crease: one degree. Half and double give the same particles on
 /// 24 random solids.
 pub(super) const SHARP: f64 = 0.0175;

@@ -41,8 +41,16 @@ const ONE_CORNER: f64 = 1e-3;
 /// Distance from a corner, in steps, at which the creases that end there are looked for: ten times the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
 /// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
-/// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before.
+/// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before. Half and
+/// double give the same particles on 24 random solids.
 const ONE_END: f64 = 0.1;
+
+/// Steps of Newton's method to a crease or a corner, and along a sphere around a tip. From a cell that a crease crosses five are enough;
+/// where two branches touch without an angle each step halves the distance.
+const STEPS: u32 = 12;
+/// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding. With
+/// ten times and a tenth of it the particles of 24 random solids are the same.
+const AT_REST: f64 = 1e-9;
 
 /// A curve along which patches meet: two, or four where two sheets cross.
 #[derive(Clone, Debug)]
@@ -155,7 +163,7 @@ impl Creases {
     /// Whether a crease that is known runs through a meeting of two branches.
     fn has_point(&self, meeting: &Meeting, step: f64) -> bool {
         /// Distance from the chord between two points of a curve, in steps, up to which a point lies on the curve: the chord of a
-        /// curve that turns by 60° in two steps is a seventh of a step away.
+        /// curve that turns by 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
         const NEAR: f64 = 0.2;
         let is_on = |curve: &&Crease| {
             let ends = curve.points.windows(2).map(|pair| [pair[0], pair[1]]);

@@ -115,6 +115,8 @@ impl Walk<'_, '_> {
             if !self.bounds.holds(next.position) {
                 return self.end_at_box(here, next.position, points);
             }
+            // Of the 1.2 the part above 1 allows for the turn of a step. Half and double of it give other places to the particles of 2 and 7 of 24
+            // random solids, and change no figure.
             let to_start = origin - here;
             let is_back = to_start.dot(direction) > 0.0 && to_start.length() <= 1.2 * length;
             if left_start && is_back && next.position.distance(origin) <= length {
@@ -180,7 +182,7 @@ impl Walk<'_, '_> {
                 common_point(self.probe, branches, Third::Branch(third), here + 0.5 * way, way.length());
             if let Some(corner) = corner
                 && (corner - here).dot(way) > 0.0
-                && corner.distance(here) <= 1.01 * way.length()
+                && corner.distance(here) <= (1.0 + BESIDE) * way.length()
             {
                 // Another corner may come before it, of a branch that gives f at neither end of the step.
                 let share = (corner.distance(here) - BESIDE * self.step) / way.length();
@@ -205,7 +207,7 @@ impl Walk<'_, '_> {
             let middle = 0.5 * (active + inactive);
             let point = Meeting::of_branches(self.probe, branches, middle, way.length(), FADED);
             match point {
-                Some(point) if self.is_same_crease(&point, 1e-3 * self.step) => {
+                Some(point) if self.is_same_crease(&point, ONE_CORNER * self.step) => {
                     active = point.position;
                 }
                 _ => inactive = middle,
@@ -222,7 +224,7 @@ impl Walk<'_, '_> {
 
     /// The branches, other than those of the walk, that give f at a point and beside it.
     fn branches_around(&mut self, point: &Meeting) -> Vec<u32> {
-        let aside = 1e-2 * self.step;
+        let aside = BESIDE * self.step;
         let offsets = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
         let mut found: Vec<u32> = Vec::new();
         for offset in offsets {

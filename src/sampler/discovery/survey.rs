@@ -265,7 +265,7 @@ fn project(
     spacing: f32,
     out: &mut Survey,
 ) {
-    out.residual = (1e-4 * spacing).max(ulps(bounds));
+    out.residual = ResidualLimits::UNLIMITED.residual(spacing).max(ulps(bounds));
     let limits = Descent { residual: out.residual, reach: 2.0 * spacing, trust: 0.0 };
     let landed = probe.land_all(start, out.tolerance().min_gradient, limits, MAX_NEWTON_STEPS);
     for ((&position, area), normal) in start.iter().zip(areas).zip(landed) {

@@ -37,3 +37,6 @@ pub(crate) const LISTED_COSINE: f32 = -0.5 - 2.0 * STALE_TURN;
 /// Side of a grid's cells over the radius of the usual query. Instruction counts hardly change from 1.2 to 2.5; larger
 /// cells fill their blocks better and so take less memory.
 pub(crate) const CELL_PER_REACH: f32 = 2.0;
+
+/// Particles that are looked at together: the lanes of a SIMD register.
+pub(crate) const CHUNK: usize = 4;

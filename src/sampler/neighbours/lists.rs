@@ -6,7 +6,7 @@
 
 use crate::math::{larger, refill};
 use crate::particles::Particles;
-use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
+use crate::sampler::neighbours::constants::{CHUNK, FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::grids::{RadiusChains, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
@@ -14,9 +14,6 @@ use glam::{BVec4A, Vec4};
 /// Largest number of particles whose lists are renewed together. It limits the candidates of a list; half and double give the
 /// same particles.
 const GROUP: usize = 32;
-
-/// Particles in a chunk: the lanes of a SIMD register.
-const CHUNK: usize = 4;
 
 /// Distance that a particle has travelled since its list was made, or one of two marks beyond all distances.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]

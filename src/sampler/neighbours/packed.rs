@@ -10,9 +10,6 @@ use core::ops::Range;
 /// relaxation, half of them with a smaller index; one particle in a hundred has more than eight of these.
 pub(crate) const ROOM: usize = 8;
 
-/// Particles that share a mark in [`PackedNeighbours::note_weighted`]: those that land in one batch.
-const BLOCK: usize = BATCH;
-
 /// The neighbour lists of all particles.
 ///
 /// A neighbour is stored as the difference of the indices. The front numbers particles level by level, so neighbours
@@ -25,7 +22,7 @@ pub(crate) struct PackedNeighbours {
     /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose
     /// indices are far apart.
     far: Vec<[u32; 2]>,
-    /// Whether a particle of each block may have a pair of a weight below 1.
+    /// Whether a particle of each block may have a pair of a weight below 1: those of a block land in one batch.
     is_weighted: Vec<bool>,
 }
 
@@ -45,7 +42,7 @@ impl PackedNeighbours {
     /// than 60°.
     #[cold]
     pub(crate) fn note_weighted(&mut self, i: usize) {
-        let block = i / BLOCK;
+        let block = i / BATCH;
         if block >= self.is_weighted.len() {
             self.is_weighted.resize(block + 1, false);
         }
@@ -54,7 +51,7 @@ impl PackedNeighbours {
 
     /// Returns whether a particle in the blocks of `range` may have a pair of a weight below 1.
     pub(crate) fn any_weighted(&self, range: &Range<usize>) -> bool {
-        (range.start / BLOCK..range.end.div_ceil(BLOCK))
+        (range.start / BATCH..range.end.div_ceil(BATCH))
             .any(|block| self.is_weighted.get(block) == Some(&true))
     }
 
@@ -86,7 +83,7 @@ impl PackedNeighbours {
                 // Rows only come nearer to each other.
                 *entry = (rows[i] - row) as u16;
             }
-            if weighted.get(i / BLOCK) == Some(&true) {
+            if weighted.get(i / BATCH) == Some(&true) {
                 self.note_weighted(kept);
             }
             self.near[kept] = list;

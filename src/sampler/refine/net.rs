@@ -5,11 +5,12 @@ use crate::differential::Curvature;
 use crate::math::grow;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
-use crate::sampler::constraint::CreaseLadder;
+use crate::sampler::constraint::{CreaseLadder, tips::LEAST_RING};
 use crate::sampler::probe::{BATCH, Probe};
 use glam::Vec3;
 
-/// Particles that are brought back onto the surface together: the field is evaluated in lanes.
+/// Particles that are moved before they are brought back onto the surface together. With half and double of it the figures of 35 random surfaces
+/// are the same within 0.1 %.
 pub(super) const BLOCK: usize = 64;
 
 /// No move is longer than this share of the spacing. Of 40 random wedges of 6° to 25° eight are refused; without a limit 20 are, with twice as
@@ -20,16 +21,15 @@ const MAX_MOVE: f32 = 0.3;
 const MAX_CORRECTION: f32 = 0.5;
 /// No step to a surface that has moved is longer than this share of the spacing. Particles without a mesh are followed as far.
 const LONGEST_WAY: f32 = 1.0;
-/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
+/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back. Without it none of 24 random surfaces changes,
+/// and one of the 44 of the gallery, which is symmetric.
 const FLIP_SLACK: f32 = 1e-5;
-
-/// Least number of neighbours of a tip, which its ring has from the start.
-const LEAST_AROUND_TIP: usize = 4;
 
 /// Neighbours nearer to each other than this share of the spacing move apart in Lloyd's method. On 45 random surfaces the closest pair is
 /// 0.014 farther apart with it and the smallest angle 0.2° larger, in the mean; with 0.84 0.011 and 0.1°.
 const SHORT: f32 = 0.86;
 /// Share of what is missing by which each of the two moves: as several edges of a particle are short, half of it would be too much.
+/// With half of what is missing the closest pair of 24 random surfaces is 2 % nearer in the mean, and with a sixth 1 %.
 const PUSH: f32 = 1.0 / 3.0;
 
 /// The springs between neighbours: their energy is Σ (l − θa)² over the edges.
@@ -452,7 +452,7 @@ impl Net {
 
     /// Whether a particle is a tip that can spare no neighbour: three faces around it would face away from each other.
     fn is_narrow_tip(&self, v: u32) -> bool {
-        self.is_tip(v) && self.mesh.valence(v) <= LEAST_AROUND_TIP
+        self.is_tip(v) && self.mesh.valence(v) <= LEAST_RING as usize
     }
 
     /// Difference between a particle's valence and that of a particle without a defect: six, and four on the border, where three

@@ -6,7 +6,7 @@ use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use super::range::{Range, absolute, down, greatest, least, up};
 use crate::field::formula::operations::sign;
 use crate::math::Interval;
-use crate::math::functions::ROUNDER_F64;
+use crate::math::functions::{HALF_PI, ROUNDER_F64};
 use crate::math::interval::product;
 
 /// Bounds of an operation over up to `N` boxes.
@@ -195,13 +195,10 @@ const LARGEST_SINE: f64 = 1e5;
 /// Functions", 1980). The Taylor series follows; its first omitted terms are below 10⁻¹⁷ for |r| ≤ π/4.
 #[inline]
 fn sine_cosine(x: f64) -> (f64, f64) {
-    // π/2 in two parts. The first has 33 bits, so that its product with a quadrant below 2²⁰ is exact.
-    const HALF_PI_HEAD: f64 = 1.570_796_326_734_125_6;
-    const HALF_PI_TAIL: f64 = 6.077_100_506_506_192e-11;
     let shifted = x * core::f64::consts::FRAC_2_PI + ROUNDER_F64;
     let quadrant = shifted.to_bits();
     let turns = shifted - ROUNDER_F64;
-    let r = (x - turns * HALF_PI_HEAD) - turns * HALF_PI_TAIL;
+    let r = (x - turns * HALF_PI[0]) - turns * HALF_PI[1];
     let q = r * r;
     let mut sine = -1.0 / 1_307_674_368_000.0;
     for inverse in

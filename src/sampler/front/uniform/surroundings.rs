@@ -1,6 +1,7 @@
 //! The particles around a parent of the uniform front, processed four at a time: second fundamental form, nearest particle,
 //! sheet test.
 
+use crate::sampler::neighbours::constants::CHUNK;
 use crate::sampler::sheet::{MAX_LIFT, MAX_RISE_SQ};
 use glam::{Vec3, Vec4};
 
@@ -11,9 +12,6 @@ const RING: f32 = 2.6;
 /// Weight of the prior "equal curvature in all directions" in the fit. It decides where the neighbours determine no curvature;
 /// half of it and twice as much change the evaluations of random surfaces by 0.01 %, and no figure.
 const ISOTROPY: f32 = 0.005;
-
-/// Particles in a chunk: the lanes of a SIMD register.
-const CHUNK: usize = 4;
 
 /// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the particle is final.
 #[derive(Clone, Debug, Default)]
