@@ -134,7 +134,7 @@ impl Sampler {
             PhaseState::Audit(_) | PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
-                // A coarse front is the smaller part of its run.
+                // A coarse front is the smaller part of its run. Any front may place more particles than are expected.
                 let refining = self.attempt.refining.as_ref();
                 let share = refining.map_or(generation, |refining| refine::coarse_share(refining.halvings));
                 share * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)

@@ -32,7 +32,8 @@ use core::ops::Range;
 use glam::{Vec2, Vec3};
 
 /// Radius of the query around a parent, in its radii: it covers every collision of a child of usual size, 2 + 2 × 0.7, and some
-/// more. The second ring of a lattice is at 3.46.
+/// more. The second ring of a lattice is at 3.46. With 3.4 the particles of 25 random surfaces are the same, with 4.4 their figures within
+/// 0.4 %.
 const REACH: f32 = 3.7;
 
 /// Particles within this share of r_i + r_j enter each other's neighbour lists for the relaxation.

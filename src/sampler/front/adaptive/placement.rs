@@ -300,7 +300,8 @@ impl DirectPlacement {
 }
 
 /// A correction shorter than this share of the radius is accepted without another evaluation: the third-order term that the
-/// Hessian leaves out is then below a thousandth of the radius.
+/// Hessian leaves out is then below a thousandth of the radius. Half and double change the particles of 7 and 3 of 25 random surfaces,
+/// and no figure.
 const TRUSTED_MOVE: f32 = 0.06;
 
 /// The outcome of a step of Newton's method.
