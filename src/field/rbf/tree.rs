@@ -31,6 +31,7 @@ const MAX_REMAINDER: f64 = 3e-4;
 const MIN_DISTANCE: f64 = 1.5;
 /// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes evaluation cheaper and
 /// the cells costlier: with 32, the cells of a model of 200 centres pay off after about 10,000 evaluations.
+/// With half of it a fit and 3,000 or 12,000 particles of a random surface take 5 % more instructions, with double 1 to 2 % fewer.
 const MAX_NEAR: usize = 32;
 /// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little of the surface is there. With
 /// half of it four random clouds take 1.9 times as long, with twice as much they give the same particles.
