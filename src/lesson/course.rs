@@ -8,7 +8,7 @@ use super::event::Event;
 use super::log::Log;
 use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder, Seeding};
 use crate::field::Field;
-use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle, RepulsionSums};
+use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle};
 use crate::sampler::GapPolicy;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
@@ -74,7 +74,6 @@ pub(super) struct Setup {
 pub(super) struct Predicted {
     pub(super) child: ChildSlot,
     pub(super) circle: Circle,
-    pub(super) theta_rad: f64,
     /// The particle that the child would be where it is predicted.
     pub(super) placed: Particle,
 }
@@ -203,10 +202,10 @@ impl Course {
             Some(ChapterKind::Filling)
         } else if self.steps < self.setup.settings.relax_steps && self.run.particles.len() > 1 {
             self.left = self.run.particles.len() as u32;
-            let RepulsionSums { forces, energy, pushes } = self.run.repulsion();
-            self.dynamics =
-                forces.into_iter().map(|force| Dynamics { force, ..Dynamics::default() }).collect();
+            let (energy, pushes) = self.repulsion();
             self.interactions += pushes;
+            let dynamics = |i| Dynamics { force: self.run.force(i), ..Dynamics::default() };
+            self.dynamics = (0..self.left).map(dynamics).collect();
             let (step, size) = (self.steps + 1, self.run.rules.step_size);
             self.run.seen.push(Event::StepBegins { step, size, energy });
             Some(ChapterKind::Relaxation { step })
@@ -269,10 +268,22 @@ impl Course {
         self.left -= 1;
         if self.left == 0 {
             self.steps += 1;
-            let energy = self.run.repulsion().energy;
+            let (energy, _) = self.repulsion();
             let (step, largest_move) = (self.steps, largest_move(&self.dynamics));
             self.run.seen.push(Event::StepEnds { step, energy, largest_move });
         }
+    }
+
+    /// Energy per particle where the particles are now, and the number of pushes of one by another.
+    fn repulsion(&mut self) -> (f64, u64) {
+        self.run.regroup();
+        let (mut energy, mut count) = (0.0, 0);
+        for push in (0..self.run.particles.len() as u32).flat_map(|i| self.run.pushes(i)) {
+            // Each pair is met twice.
+            energy += 0.5 * push.energy;
+            count += 1;
+        }
+        (energy / self.run.particles.len() as f64, count)
     }
 
     /// Tells how a force has moved a particle to where it is now.
@@ -355,7 +366,7 @@ impl Course {
     fn is_zero(&mut self, seed: &Particle) -> bool {
         let step = POLE_PROBE * seed.radius;
         let [here, above, below] =
-            [0.0, step, -step].map(|step| self.run.surface.sample(seed.p() + seed.n() * step).value.abs());
+            [0.0, step, -step].map(|step| self.run.surface.jet(seed.p() + seed.n() * step).value.abs());
         above > here || below > here
     }
 }

@@ -45,8 +45,6 @@ pub enum Event {
         u: Vector,
         /// N̂ × u.
         w: Vector,
-        /// Second fundamental form [a, b, c] in (u, w), where it was asked for.
-        form: Option<Vector>,
     },
     /// A child is proposed ("place its six children").
     Slot {

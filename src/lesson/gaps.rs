@@ -45,9 +45,9 @@ impl Course {
             return;
         }
         let direction = (u * centre.x + w * centre.y) / centre.length();
-        let circle = Circle { centre: p, normal: n, direction, radius: centre.length() * 2.0 * r };
-        let Ok((position, normal)) =
-            run.surface.land_on_circle(&circle, 0.0, run.rules.residual * r, &mut |_| {})
+        let radius = centre.length() * 2.0 * r;
+        let circle = Circle { centre: p, normal: n, direction, radius, start_rad: 0.0 };
+        let Ok((position, normal)) = run.surface.land_on_circle(&circle, run.rules.residual * r, &mut |_| {})
         else {
             return;
         };

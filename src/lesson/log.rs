@@ -44,29 +44,31 @@ impl Observer for Log {
             self.push(Event::Added { particle, data: particles[particle as usize] });
         }
         self.push(match moment {
-            Moment::Frame { frame, form } => {
+            Moment::Frame(frame) => {
                 let [normal, u, w] = [frame.n, frame.u, frame.w].map(|v| v.to_array());
-                Event::Frame { particle: parent, normal, u, w, form }
+                Event::Frame { particle: parent, normal, u, w }
             }
-            Moment::Proposed { direction, theta_rad, position } => {
-                let (direction, place) = (direction.to_array(), position.to_array());
+            Moment::Proposed(circle) => {
+                let theta_rad = circle.start_rad;
+                let (direction, place) = (circle.direction.to_array(), circle.point(theta_rad).to_array());
                 Event::Slot { parent, slot, direction, theta_rad, place }
             }
-            Moment::Tried(Trial { step, theta_rad, position, sample }) => {
-                let (position, value, slope) = (position.to_array(), sample.value, sample.slope);
+            Moment::Tried(Trial { step, theta_rad, position, value, slope }) => {
+                let position = position.to_array();
                 Event::Iterate { parent, slot, step, theta_rad, position, value, slope }
             }
-            Moment::Landed { position, normal, distance } => {
+            Moment::Landed { position, normal } => {
+                let distance = position.distance(particles[parent as usize].p());
                 let (position, normal) = (position.to_array(), normal.to_array());
                 Event::Landed { parent, slot, position, normal, distance }
             }
             Moment::Gathered { reach, neighbours } => {
                 Event::Gathered { particle: parent, reach, neighbours: neighbours.to_vec() }
             }
-            Moment::Compared { position, against, distance, limit, corresponds } => {
-                let position = position.to_array();
+            Moment::Compared { position, nearest, limit, corresponds } => {
+                let (position, distance) = (position.to_array(), nearest.map(|near| near.distance));
                 // A child that still has to be projected is none of the particles.
-                let against = against.filter(|&other| (other as usize) < particles.len());
+                let against = nearest.map(|near| near.particle).filter(|&k| (k as usize) < particles.len());
                 Event::Compared { parent, slot, position, against, distance, limit, corresponds }
             }
             Moment::Decided { fate, particle } => Event::Fate { parent, slot, fate, particle },
@@ -86,20 +88,16 @@ impl Observer for Log {
             }
             Moment::Room { phi_rad, tau_rad, fits } => Event::Room { parent, slot, phi_rad, tau_rad, fits },
         });
-        let Moment::Compared { against, distance: Some(distance), corresponds: true, .. } = moment else {
-            return;
-        };
-        if distance <= self.seam {
+        let Moment::Compared { nearest: Some(near), corresponds: true, .. } = moment else { return };
+        if near.distance <= self.seam {
             return;
         }
         if self.seams.last() != Some(&parent) {
             self.seams.push(parent);
         }
-        if let Some(particle) = against
-            && let Some(other) = particles.get(particle as usize)
-        {
+        if let Some(other) = particles.get(near.particle as usize) {
             let is_other = particles[parent as usize].front != other.front;
-            self.push(Event::FrontsMeet { parent, slot, particle, is_other });
+            self.push(Event::FrontsMeet { parent, slot, particle: near.particle, is_other });
         }
     }
 }

@@ -51,7 +51,8 @@ pub use course::ChapterKind;
 pub use event::{Event, Vector};
 pub use section::Iterate;
 pub use settings::{
-    LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings, MAX_PARTICLES, QueueOrder, Seeding,
+    LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings, MAX_PARTICLES, Matched,
+    Projection, QueueOrder, SearchStart, Seeding,
 };
 
 use crate::field::Field;

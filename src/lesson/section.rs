@@ -33,7 +33,7 @@ impl Lesson {
         let values: Vec<f64> = (0..(cells + 1) * (cells + 1))
             .map(|k| {
                 let (x, y) = (at(k % (cells + 1)), at(k / (cells + 1)));
-                surface.sample(centre + right * x + up * y).value
+                surface.jet(centre + right * x + up * y).value
             })
             .collect();
         let node = |i: usize, j: usize| ([at(i), at(j)], values[j * (cells + 1) + i]);
@@ -62,8 +62,8 @@ impl Lesson {
         let mut note = |trial: Trial| {
             steps.push(Iterate {
                 position: trial.position.to_array(),
-                value: trial.sample.value,
-                slope: trial.sample.slope,
+                value: trial.value,
+                slope: trial.slope,
             });
         };
         // The last step says where the method has come to.

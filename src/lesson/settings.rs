@@ -1,9 +1,10 @@
 //! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond it.
 
+use super::levels::predicted_angles;
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
 use crate::math::Bounds;
-use crate::paper::{Matched, Projection, RadiusRule, Rules, SearchStart, sum_of_curvatures};
+use crate::paper::{RadiusRule, Rules, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,39 @@ pub enum QueueOrder {
     Queue,
     /// The particle that came last is next, as the word "stack" in the text says.
     Stack,
+}
+
+/// The method that moves a child onto the surface (§4.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
+#[serde(rename_all = "snake_case")]
+pub enum Projection {
+    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
+    Circle,
+    /// The child moves by Newton's method in space, "the most common technique", which does not keep the distance to the parent.
+    Newton,
+}
+
+/// The start of the search on the circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
+#[serde(rename_all = "snake_case")]
+pub enum SearchStart {
+    /// The search starts in the tangent plane, θ₀ = 0, as in Fig. 4 (left).
+    Tangent,
+    /// The search starts at the angle at which the parent's normal curvature predicts the surface.
+    Curvature,
+}
+
+/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
+#[serde(rename_all = "snake_case")]
+pub enum Matched {
+    /// The particle leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
+    Leave,
+    /// The particle stays, and so do the new children. No two particles are then closer than the match radius.
+    Stay,
 }
 
 /// Order of the projection of children and their comparison with the particles that exist.
@@ -182,18 +216,26 @@ impl LessonSettings {
                 most: self.radius_max,
             },
         };
-        let usual = Rules::with_sizes(sizes);
-        Rules {
-            sizes,
-            projection: self.projection,
-            start: self.start,
-            matched: self.matched,
+        let mut rules = Rules {
+            removes_matched: self.matched == Matched::Leave,
             match_tolerance: self.match_tolerance,
             fit: self.fit,
             residual: self.residual,
-            step_size: self.step_size.unwrap_or(usual.step_size),
             max_particles: self.max_particles as usize,
+            ..Rules::with_sizes(sizes)
+        };
+        if self.projection == Projection::Newton {
+            rules.projection = |surface, circle, residual, note| {
+                surface.land_by_newton(circle.point(circle.start_rad), circle.radius, residual, note)
+            };
         }
+        if self.start == SearchStart::Curvature {
+            rules.start_angles = predicted_angles;
+        }
+        if let Some(size) = self.step_size {
+            rules.step_size = size;
+        }
+        rules
     }
 
     /// Checks every value.

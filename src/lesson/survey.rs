@@ -29,7 +29,7 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
     let strides = [1, nodes[0], nodes[0] * nodes[1]];
     let node = |index: usize| [index % nodes[0], index / strides[1] % nodes[1], index / strides[2]];
     let count: usize = nodes.iter().product();
-    let values: Vec<f64> = (0..count).map(|index| surface.sample(at(node(index))).value).collect();
+    let values: Vec<f64> = (0..count).map(|index| surface.jet(at(node(index))).value).collect();
     let mut patches = Vec::new();
     for index in 0..count {
         for axis in 0..3 {
@@ -42,7 +42,7 @@ pub(super) fn survey(surface: &mut ImplicitSurface) -> Vec<SurfacePatch> {
                 continue;
             }
             let point = at(start).lerp(at(node(index + strides[axis])), a / (a - b));
-            let gradient = surface.sample(point).gradient.abs();
+            let gradient = surface.jet(point).gradient.abs();
             // The other two spacings.
             let section = step.x * step.y * step.z / step[axis];
             let area = section * gradient.length() / (gradient.x + gradient.y + gradient.z);

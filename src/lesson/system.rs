@@ -201,8 +201,8 @@ impl Course {
             LessonMethod::WitkinHeckbert => parent.radius * core::f64::consts::FRAC_1_SQRT_2,
             LessonMethod::Front | LessonMethod::Forces => self.run.radius_at(position)?,
         };
-        let level = parent.level + 1;
-        Some(Particle { level, ..Particle::seed(position, normal, radius, parent.front) })
+        let placed = Particle::placed(position, normal, radius, None, parent.level + 1);
+        Some(Particle { front: parent.front, ..placed })
     }
 
     fn end_iteration(&mut self) {

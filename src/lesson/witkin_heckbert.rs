@@ -16,6 +16,7 @@
 
 use super::course::Setup;
 use super::dynamics::Dynamics;
+use crate::field::Jet;
 use crate::paper::{ImplicitSurface, MAX_MOVE, Move, Particle};
 use glam::DVec3;
 
@@ -100,8 +101,9 @@ pub(super) fn step(
         .clamp(LEAST * wanted(setup), largest(setup));
 
     let target = own.p() + (velocity * TIME_STEP).clamp_length_max(MAX_MOVE * sigma);
-    let sample = surface.sample(target);
-    let (height, there) = (sample.value / sample.slope, sample.gradient / sample.slope);
+    let Jet { value, gradient, .. } = surface.jet(target);
+    let slope = gradient.length();
+    let (height, there) = (value / slope, gradient / slope);
     let can_go = height.is_finite() && surface.bounds.holds(target) && there.dot(normal) > 0.0;
     dynamics.is_at_rest = !can_go || velocity.length() < GAMMA * sigma;
     if can_go {

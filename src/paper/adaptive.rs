@@ -7,10 +7,7 @@
 //! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than the match tolerance
 //!   allows is not added.
 
-use super::PaperRun;
-use super::observer::{ChildSlot, Moment, Observer};
-use super::particle::TangentFrame;
-use super::projection::Circle;
+use super::{ChildSlot, Circle, Moment, Observer, PaperRun, TangentFrame};
 use crate::particles::{SlotFate, Slots};
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
@@ -49,7 +46,6 @@ impl Disc {
 struct Circumference {
     /// The next child.
     child: ChildSlot,
-    p: DVec3,
     radius: f64,
     frame: TangentFrame,
     around: Vec<Disc>,
@@ -57,11 +53,11 @@ struct Circumference {
 
 impl Circumference {
     fn place(&self, centre: DVec2) -> DVec3 {
-        self.p + self.frame.u * centre.x + self.frame.w * centre.y
+        self.frame.p + self.frame.u * centre.x + self.frame.w * centre.y
     }
 
     fn disc(&self, position: DVec3, radius: f64) -> Disc {
-        let offset = position - self.p;
+        let offset = position - self.frame.p;
         let flat = DVec2::new(offset.dot(self.frame.u), offset.dot(self.frame.w));
         Disc { centre: flat.normalize_or_zero() * offset.length(), radius }
     }
@@ -103,8 +99,8 @@ impl<O: Observer> PaperRun<O> {
         let neighbours = self.gather(particle, REACH * own.radius);
         let frame = self.tangent_frame(particle);
         let child = ChildSlot { parent: particle, slot: 0 };
-        self.tell(child, Moment::Frame { frame: &frame, form: None });
-        let mut ring = Circumference { child, p: own.p(), radius: own.radius, frame, around: Vec::new() };
+        self.tell(child, Moment::Frame(&frame));
+        let mut ring = Circumference { child, radius: own.radius, frame, around: Vec::new() };
         let mut touching = Vec::new();
         for near in neighbours {
             let other = &self.particles[near.particle as usize];
@@ -147,15 +143,13 @@ impl<O: Observer> PaperRun<O> {
             };
             let fits = tau_rad >= self.rules.fit * phi_rad;
             self.tell(ring.child, Moment::Room { phi_rad, tau_rad, fits });
-            if fits {
-                self.settle(ring, child);
-            } else {
-                self.decide(ring.child, SlotFate::Matched, None);
-            }
-            ring.child.slot += 1;
             if !fits {
-                break;
+                self.decide(ring.child, SlotFate::Matched, None);
+                ring.child.slot += 1;
+                return;
             }
+            self.project(ring, child);
+            ring.child.slot += 1;
             last = Some(child);
             behind = behind.or(last);
         }
@@ -208,26 +202,24 @@ impl<O: Observer> PaperRun<O> {
     }
 
     /// "Finally we re-project the children of P on the surface" (§5.1), and adds the child unless a particle is in its way.
-    fn settle(&mut self, ring: &mut Circumference, child: Disc) {
+    fn project(&mut self, ring: &mut Circumference, child: Disc) {
         let of = ring.child;
-        let direction = ring.frame.u * child.centre.x + ring.frame.w * child.centre.y;
         let distance = child.centre.length();
-        let direction = direction / distance;
-        let circle = Circle { centre: ring.p, normal: ring.frame.n, direction, radius: distance };
-        let landing = self.land(of, &circle, 0.0);
+        let direction = (ring.frame.u * child.centre.x + ring.frame.w * child.centre.y) / distance;
+        let (centre, normal) = (ring.frame.p, ring.frame.n);
+        let circle = Circle { centre, normal, direction, radius: distance, start_rad: 0.0 };
+        let landing = self.land(of, &circle);
         let landing = landing.and_then(|at| self.radius_at(at.0).map(|_| at).ok_or(SlotFate::Undefined));
         let Some((position, normal)) = self.usable(of, landing) else { return };
         let Some(radius) = self.radius_at(position) else { return };
         let placed = self.child(of.parent, (position, normal), radius);
         let reach = self.rules.match_tolerance * (radius + self.rules.sizes.largest());
         let near = self.buckets.near(&self.particles, position, reach);
-        if let Some(other) = self.corresponding(of, &placed, self.candidates(&near)) {
-            self.decide(of, SlotFate::Matched, Some(other));
-        } else if self.add_child(of, placed).is_some() {
-            ring.around.push(ring.disc(position, radius));
-        } else {
-            // There are as many particles as there may be: no other child is tried.
-            ring.child.slot = Slots::COUNT as u32;
+        match self.settle(of, placed, &near).0 {
+            SlotFate::Added => ring.around.push(ring.disc(position, radius)),
+            // No other child is tried.
+            SlotFate::Capped => ring.child.slot = Slots::COUNT as u32,
+            _ => {}
         }
     }
 }

@@ -5,13 +5,13 @@
 //! | Paper | Here |
 //! |---|---|
 //! | §4.2 the six children in the tangent plane, §4.4 Algorithm 2 | `uniform` |
-//! | §4.3 back onto the surface, along a circle | `projection`, `surface` |
+//! | §4.3 back onto the surface, along a circle | `surface` |
 //! | §5 children of different sizes | `adaptive` |
 //! | §4.5 and §5.4 relaxation | `relaxation` |
-//! | §4.4 "a space partitioning scheme" | `buckets` |
+//! | §4.4 "a space partitioning scheme" | `particle` |
 //!
-//! [`Rules`] holds every choice that the paper discusses or leaves open. An observer is told the moments of a treatment that leave no
-//! trace in the particles. Tests hold the fast fronts of the sampler to these algorithms, and the lesson is built on them.
+//! [`Rules`] holds every choice that the paper discusses or leaves open. Tests hold the fast fronts of the sampler to these algorithms, and
+//! the lesson is built on them.
 //!
 //! ```
 //! use marching_particles::field::gallery;
@@ -33,30 +33,22 @@
 //! * A surface may have several seeds, so that each of its components can have one.
 
 mod adaptive;
-mod buckets;
-mod observer;
 mod particle;
-mod projection;
 mod relaxation;
 mod rules;
 mod surface;
 mod uniform;
 
-pub use buckets::Nearby;
-pub use observer::ChildSlot;
-pub use particle::Particle;
+pub use particle::{Nearby, Particle};
 pub use relaxation::Push;
-pub use rules::{Matched, Projection, RadiusRule, Rules, SearchStart, sum_of_curvatures};
+pub use rules::{RadiusRule, Rules, sum_of_curvatures};
 pub use surface::ImplicitSurface;
 
-pub(crate) use buckets::Buckets;
-pub(crate) use observer::{Moment, Observer};
-pub(crate) use particle::TangentFrame;
-pub(crate) use projection::Circle;
-pub(crate) use relaxation::{GAUSSIAN_REACH, MAX_MOVE, Move, OVERLAP_REACH, RepulsionSums, overlap};
+pub(crate) use particle::Buckets;
+pub(crate) use relaxation::{GAUSSIAN_REACH, MAX_MOVE, Move, OVERLAP_REACH, overlap};
 pub(crate) use rules::OVERLAP_STEP;
-pub(crate) use surface::Trial;
-pub(crate) use uniform::{DIRECTIONS, REACH, predicted_angle};
+pub(crate) use surface::{Circle, Trial};
+pub(crate) use uniform::{DIRECTIONS, REACH, TangentFrame};
 
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -98,19 +90,16 @@ impl<O: Observer> PaperRun<O> {
         let landing = self.surface.land_by_newton(point, 2.0 * sizes.largest(), residual, &mut |_| {});
         let (position, normal) = landing.ok()?;
         let radius = self.radius_at(position)?;
-        self.surface.bounds.holds(position).then(|| Particle::seed(position, normal, radius, front))
+        let seed = Particle { front, ..Particle::placed(position, normal, radius, None, 0) };
+        self.surface.bounds.holds(position).then_some(seed)
     }
 
     /// The complete process (§4.4, §5.2): treats all particles, those that come of it too, then relaxes in `steps` steps.
     pub fn sample(&mut self, steps: u32) {
-        let mut next = 0;
         // "While it exists one particle marked as not done": the one that has waited longest. The text says stack, but the rings of
         // Fig. 11 are those of a queue.
-        while next < self.particles.len() {
-            if !self.particles[next].is_done {
-                self.treat(next as u32);
-            }
-            next += 1;
+        while let Some(next) = self.particles.iter().position(|particle| !particle.is_done) {
+            self.treat(next as u32);
         }
         for _ in 0..steps {
             self.relax();
@@ -145,17 +134,6 @@ impl<O: Observer> PaperRun<O> {
         Particle { front, ..Particle::placed(position, normal, radius, Some(parent), level + 1) }
     }
 
-    /// "Add the child (marked as not done) to the particle set", unless there are as many particles as there may be.
-    pub(crate) fn add_child(&mut self, child: ChildSlot, placed: Particle) -> Option<u32> {
-        if self.particles.len() >= self.rules.max_particles {
-            self.decide(child, SlotFate::Capped, None);
-            return None;
-        }
-        let particle = self.enter(placed);
-        self.decide(child, SlotFate::Added, Some(particle));
-        Some(particle)
-    }
-
     /// Decides the fate of a child. `particle` is the one that was added, or the one that was there.
     pub(crate) fn decide(&mut self, child: ChildSlot, fate: SlotFate, particle: Option<u32>) {
         self.particles[child.parent as usize].slots.set(child.slot as usize, fate);
@@ -167,3 +145,51 @@ impl<O: Observer> PaperRun<O> {
         self.seen.see(child, moment, &self.particles);
     }
 }
+
+/// A child that is not a particle yet: slot number `slot` of particle number `parent`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChildSlot {
+    /// The particle that places the child.
+    pub parent: u32,
+    /// Number among the parent's children.
+    pub slot: u32,
+}
+
+/// A moment in the treatment of a particle, or of one of its children. Lengths are in the field's coordinates, angles in radians.
+pub enum Moment<'a> {
+    /// The tangent frame is laid (§4.2, Fig. 3).
+    Frame(&'a TangentFrame),
+    /// The child is proposed where the search on its circle starts ("place its six children").
+    Proposed(&'a Circle),
+    /// The field is evaluated on the child's way to the surface (§4.3).
+    Tried(Trial),
+    /// The child has come to the surface.
+    Landed { position: DVec3, normal: DVec3 },
+    /// The particles within `reach` are gathered.
+    Gathered { reach: f64, neighbours: &'a [Nearby] },
+    /// The child is compared with the nearest particle of its sheet, if there is one ("if an existing particle correspond"): it corresponds
+    /// within the distance `limit`.
+    Compared { position: DVec3, nearest: Option<Nearby>, limit: f64, corresponds: bool },
+    /// The fate of the child is decided. The particle is the one that was added, or the one that was there.
+    Decided { fate: SlotFate, particle: Option<u32> },
+    /// A free space is found on the circle, between two particles that touch the parent (§5.3, Fig. 8a). There are none if the whole
+    /// circle is free.
+    Space { ends: Option<[u32; 2]>, angles_rad: [f64; 2] },
+    /// An adaptive child starts (§5.1, Figs 7a and 7c). `tangent` is the point I of Fig. 7c, which the first child of a seed has not.
+    Started { tangent: Option<DVec3>, position: DVec3, radius: f64 },
+    /// An adaptive child has been pushed away from its parent (Figs 7b and 7e).
+    Pushed { position: DVec3, radius: f64 },
+    /// An adaptive child has been pushed along the circle (Fig. 7f), to where `overlap` is its largest with another particle.
+    Turned { position: DVec3, radius: f64, overlap: f64 },
+    /// The angle φ that an adaptive child takes is compared with the free angle τ (Figs 7g, 8c and 8e).
+    Room { phi_rad: f64, tau_rad: f64, fits: bool },
+}
+
+/// Observer of a run: it is told the moments of the treatment of a particle that leave no trace in the particles. All other events, such as
+/// seeds and moves, can be read off the particles between two steps. `()` looks at nothing.
+pub trait Observer {
+    /// Something has happened to a child, or to its parent; `particles` are those that there are then.
+    fn see(&mut self, _child: ChildSlot, _moment: Moment<'_>, _particles: &[Particle]) {}
+}
+
+impl Observer for () {}

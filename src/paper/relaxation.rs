@@ -1,11 +1,7 @@
 //! Relaxation: in uniform sampling (§4.5) the repulsion of Witkin and Heckbert 1994, §4, without fission, death and adaptive
 //! radii; in non-uniform sampling (§5.4) forces between discs that overlap.
 
-use super::PaperRun;
-use super::buckets::{Buckets, Nearby};
-use super::observer::Observer;
-use super::particle::Particle;
-use super::rules::RadiusRule;
+use super::{Buckets, Nearby, Observer, PaperRun, Particle, RadiusRule};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -20,16 +16,6 @@ pub struct Push {
     pub force: [f64; 3],
     /// Energy of the pair.
     pub energy: f64,
-}
-
-/// The repulsion on all particles where they are.
-pub(crate) struct RepulsionSums {
-    /// Force on each particle, in the tangent plane.
-    pub(crate) forces: Vec<DVec3>,
-    /// Energy per particle.
-    pub(crate) energy: f64,
-    /// Number of pushes of one particle by another.
-    pub(crate) pushes: u64,
 }
 
 /// How a particle was moved, beside where it is now.
@@ -76,35 +62,30 @@ pub(crate) fn overlap(distance: f64, both: f64) -> (f64, f64) {
 impl<O: Observer> PaperRun<O> {
     /// A relaxation step: all forces, then all moves.
     pub fn relax(&mut self) {
-        for (particle, force) in self.repulsion().forces.into_iter().enumerate() {
+        self.regroup();
+        let forces: Vec<DVec3> = (0..self.particles.len()).map(|i| self.force(i as u32)).collect();
+        for (particle, force) in forces.into_iter().enumerate() {
             self.move_particle(particle, force * self.rules.step_size);
         }
     }
 
-    /// Sums the repulsion on every particle by its neighbours.
+    /// Puts the particles, which may have moved, into buckets anew.
+    pub(crate) fn regroup(&mut self) {
+        self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
+    }
+
+    /// The force on a particle, in its tangent plane.
+    pub(crate) fn force(&self, particle: u32) -> DVec3 {
+        let force: DVec3 = self.pushes(particle).map(|push| DVec3::from(push.force)).sum();
+        let normal = self.particles[particle as usize].n();
+        force - normal * normal.dot(force)
+    }
+
+    /// The repulsion of a particle by each of its neighbours.
     ///
     /// # Differs from the paper
     ///
     /// Pairs on two sheets do not count.
-    pub(crate) fn repulsion(&mut self) -> RepulsionSums {
-        // The particles may have moved.
-        self.buckets = Buckets::new(2.0 * self.rules.sizes.largest(), &self.particles);
-        let (mut forces, mut energy, mut pushes) = (Vec::new(), 0.0, 0);
-        for i in 0..self.particles.len() as u32 {
-            let mut force = DVec3::ZERO;
-            for push in self.pushes(i) {
-                force += DVec3::from(push.force);
-                // Each pair is met twice.
-                energy += 0.5 * push.energy;
-                pushes += 1;
-            }
-            let normal = self.particles[i as usize].n();
-            forces.push(force - normal * normal.dot(force));
-        }
-        RepulsionSums { forces, energy: energy / self.particles.len() as f64, pushes }
-    }
-
-    /// Returns the repulsion of a particle by each of its neighbours at their present positions.
     pub(crate) fn pushes(&self, particle: u32) -> impl Iterator<Item = Push> {
         let own = &self.particles[particle as usize];
         let sizes = self.rules.sizes;

@@ -1,43 +1,15 @@
 //! The choices that the paper discusses or leaves open.
 
-use super::particle::Particle;
-use super::surface::ImplicitSurface;
-use crate::differential::Curvature;
+use super::surface::{Circle, Landing, Note};
+use super::{ImplicitSurface, Particle, TangentFrame};
+use crate::differential::{Curvature, exact_curvature};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
-/// The method that moves a child onto the surface (§4.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
-#[serde(rename_all = "snake_case")]
-pub enum Projection {
-    /// The child moves along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
-    Circle,
-    /// The child moves by Newton's method in space, "the most common technique", which does not keep the distance to the parent.
-    Newton,
-}
+/// A method that moves a child onto the surface, within a residual.
+pub(crate) type Projection = fn(&mut ImplicitSurface, &Circle, f64, Note) -> Landing;
 
-/// The start of the search on the circle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
-#[serde(rename_all = "snake_case")]
-pub enum SearchStart {
-    /// The search starts in the tangent plane, θ₀ = 0, as in Fig. 4 (left).
-    Tangent,
-    /// The search starts at the angle at which the parent's normal curvature predicts the surface, sin θ₀ = −κ_V r.
-    Curvature,
-}
-
-/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
-#[serde(rename_all = "snake_case")]
-pub enum Matched {
-    /// The particle leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
-    Leave,
-    /// The particle stays, and so do the new children. No two particles are then closer than the match radius.
-    Stay,
-}
+/// A rule for the angles at which the searches of a particle's children start on their circles, by its frame and radius.
+pub(crate) type StartAngles = fn(&mut ImplicitSurface, &TangentFrame, f64) -> [f64; 6];
 
 /// The rule for the repulsion radii of the particles.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +51,7 @@ impl RadiusRule {
         match *self {
             Self::Same(radius) => Some(radius),
             Self::ByCurvature { law, scale, least, most } => {
-                let curvature = surface.curvature(p);
+                let curvature = exact_curvature(&surface.jet(p));
                 curvature.is_defined().then(|| law(&curvature, scale).clamp(least, most))
             }
         }
@@ -105,12 +77,13 @@ pub(crate) const OVERLAP_STEP: f64 = 0.33;
 pub struct Rules {
     /// The radii of the particles.
     pub sizes: RadiusRule,
-    /// The method that moves a child onto the surface.
-    pub projection: Projection,
-    /// The start of the search on the circle.
-    pub start: SearchStart,
-    /// Whether matched particles leave the neighbours.
-    pub matched: Matched,
+    /// The method that moves a child onto the surface (§4.3): along its circle.
+    pub(crate) projection: Projection,
+    /// The angles at which the searches start: in the tangent plane, θ₀ = 0, as in Fig. 4 (left).
+    pub(crate) start_angles: StartAngles,
+    /// Whether a particle to which a child corresponds leaves the neighbours of the parent (§4.4), so that no second child is identified
+    /// with it. If not, it stays, and so do the new children.
+    pub(crate) removes_matched: bool,
     /// A child is identified with a particle within this distance, in r_i + r_j. The paper names no value; 0.7 gives the most particles
     /// with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
@@ -130,9 +103,9 @@ impl Rules {
     pub fn with_sizes(sizes: RadiusRule) -> Self {
         Self {
             sizes,
-            projection: Projection::Circle,
-            start: SearchStart::Tangent,
-            matched: Matched::Leave,
+            projection: ImplicitSurface::land_on_circle,
+            start_angles: |_, _, _| [0.0; 6],
+            removes_matched: true,
             match_tolerance: 0.7,
             fit: 0.5,
             residual: 1e-4,

@@ -1,16 +1,25 @@
-//! The surface f = 0, and the way to it by Newton's method in space.
+//! The surface f = 0, and the projection of a child onto it, paper §4.3: along a circle around its parent.
 
-use crate::differential::{Curvature, exact_curvature};
-use crate::field::Field;
+use super::{ChildSlot, Moment, Observer, PaperRun, Particle};
+use crate::field::{Field, Jet};
 use crate::math::Bounds;
 use crate::particles::SlotFate;
+use core::f64::consts::PI;
 use glam::DVec3;
 use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Largest number of evaluations in Newton's method. From a good guess it takes two. With six of them three of 24 random
 /// surfaces get other particles, with 24 none, or one where particles are large.
-pub(super) const MAX_NEWTON: u32 = 12;
+const MAX_NEWTON: u32 = 12;
+
+/// Largest turn of a step on the circle, as the tangent of half the angle: about 23°. On 16 random surfaces half of it takes 2 % more
+/// evaluations for large particles. Twice as much changes counts and evaluations by less than 0.1 %.
+const MAX_TURN: f64 = 0.2;
+
+/// Angle from the tangent plane at which a child is given up, 100°: past 90° it lies beneath its parent, behind a rim. On 16 random surfaces
+/// 75° and 130° change nothing.
+const MAX_THETA_RAD: f64 = PI * 5.0 / 9.0;
 
 /// "Require: an implicit surface": f = 0 in a box. Clones share the field, and count their evaluations apart.
 #[derive(Clone)]
@@ -19,22 +28,6 @@ pub struct ImplicitSurface {
     pub(crate) bounds: Bounds,
     /// Evaluations of the field.
     pub(crate) evaluations: u64,
-}
-
-/// f and ∇f at a point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FieldSample {
-    pub(crate) value: f64,
-    pub(crate) gradient: DVec3,
-    /// The length |∇f| of the gradient.
-    pub(crate) slope: f64,
-}
-
-impl FieldSample {
-    /// Whether the point counts as a point of the surface that has a normal.
-    pub(super) fn is_zero(&self, residual: f64) -> bool {
-        self.slope > 0.0 && self.slope.is_finite() && self.value.abs() <= residual * self.slope
-    }
 }
 
 /// An evaluation on the way to the surface.
@@ -46,12 +39,48 @@ pub struct Trial {
     pub(crate) theta_rad: Option<f64>,
     /// Position of the evaluation.
     pub(crate) position: DVec3,
-    /// The field at that position.
-    pub(crate) sample: FieldSample,
+    /// Value f at the position.
+    pub(crate) value: f64,
+    /// Length |∇f| of the gradient at the position.
+    pub(crate) slope: f64,
 }
+
+/// What is told every evaluation of a search.
+pub(crate) type Note<'a> = &'a mut dyn FnMut(Trial);
 
 /// Result of a search for the surface: a point of it with the unit normal there, or the fate of a child that finds none.
 pub(crate) type Landing = Result<(DVec3, DVec3), SlotFate>;
+
+/// The circle C(p, 2r) in the plane (p, N̂, V̂).
+///
+/// The circle has the points p + 2r (cos θ V̂ + sin θ N̂): the paper's formula leaves the centre out and takes |N| = |V| = 2r.
+#[derive(Clone, Copy, Debug)]
+pub struct Circle {
+    /// The parent's place, p.
+    pub(crate) centre: DVec3,
+    /// The parent's unit normal N̂.
+    pub(crate) normal: DVec3,
+    /// Unit tangent vector V̂ towards the child.
+    pub(crate) direction: DVec3,
+    /// Radius of the circle: 2r, or in adaptive sampling r_i + r_j.
+    pub(crate) radius: f64,
+    /// Angle θ₀ at which the search for the surface starts.
+    pub(crate) start_rad: f64,
+}
+
+impl Circle {
+    /// The point at the angle θ from the tangent plane.
+    pub(crate) fn point(&self, theta_rad: f64) -> DVec3 {
+        let (sin, cos) = (libm::sin(theta_rad), libm::cos(theta_rad));
+        self.centre + (self.direction * cos + self.normal * sin) * self.radius
+    }
+
+    /// Derivative of the point by θ.
+    fn tangent(&self, theta_rad: f64) -> DVec3 {
+        let (sin, cos) = (libm::sin(theta_rad), libm::cos(theta_rad));
+        (self.normal * cos - self.direction * sin) * self.radius
+    }
+}
 
 impl ImplicitSurface {
     /// The zeros of `field` in a box.
@@ -60,42 +89,52 @@ impl ImplicitSurface {
         Self { field: Rc::new(RefCell::new(field)), bounds: *bounds, evaluations: 0 }
     }
 
-    pub(crate) fn sample(&mut self, p: DVec3) -> FieldSample {
+    /// f, ∇f and ∇∇f at a point.
+    pub(crate) fn jet(&mut self, p: DVec3) -> Jet {
         self.evaluations += 1;
-        let jet = self.field.borrow_mut().jet(p);
-        FieldSample { value: jet.value, gradient: jet.gradient, slope: jet.gradient.length() }
+        self.field.borrow_mut().jet(p)
     }
 
-    /// Second fundamental form [a, b, c] of the surface at p in the tangent frame (u, w): the normal turns by `[a b; b c]`.
-    pub(crate) fn second_form(&mut self, p: DVec3, u: DVec3, w: DVec3) -> [f64; 3] {
-        self.evaluations += 1;
-        let jet = self.field.borrow_mut().jet(p);
-        [(u, u), (u, w), (w, w)].map(|(a, b)| a.dot(jet.hessian.apply(b)) / jet.gradient.length())
-    }
-
-    /// Principal curvatures of the level set through p.
-    pub(crate) fn curvature(&mut self, p: DVec3) -> Curvature<f64, DVec3> {
-        self.evaluations += 1;
-        exact_curvature(&self.field.borrow_mut().jet(p))
+    /// §4.3: moves a child along the circle until it has converged on the surface.
+    ///
+    /// # Differs from the paper
+    ///
+    /// The paper turns by α_j π, where α_j is f "scaled between −1 and 1". Here the turn is that of Newton's method in θ,
+    /// −f / (df/dθ) to first order, limited to 23°.
+    pub(crate) fn land_on_circle(&mut self, circle: &Circle, residual: f64, note: Note) -> Landing {
+        let mut theta_rad = circle.start_rad;
+        for step in 0..MAX_NEWTON {
+            let position = circle.point(theta_rad);
+            let Jet { value, gradient, .. } = self.jet(position);
+            let slope = gradient.length();
+            note(Trial { step, theta_rad: Some(theta_rad), position, value, slope });
+            if is_zero(value, slope, residual) {
+                return Ok((position, gradient / slope));
+            }
+            let derivative = gradient.dot(circle.tangent(theta_rad));
+            theta_rad += 2.0 * libm::atan((-0.5 * value / derivative).clamp(-MAX_TURN, MAX_TURN));
+            if !theta_rad.is_finite() {
+                return Err(SlotFate::Undefined);
+            }
+            if theta_rad.abs() >= MAX_THETA_RAD {
+                break;
+            }
+        }
+        Err(SlotFate::NotConverged)
     }
 
     /// "The most common technique", the Newton–Raphson method: x ← x − f ∇f / |∇f|², until the point is on the surface or has
-    /// moved by more than `reach`.
-    pub(crate) fn land_by_newton(
-        &mut self,
-        start: DVec3,
-        reach: f64,
-        residual: f64,
-        note: &mut dyn FnMut(Trial),
-    ) -> Landing {
+    /// moved by more than `reach`. Seeds come to the surface by it, and particles that were moved.
+    pub(crate) fn land_by_newton(&mut self, start: DVec3, reach: f64, residual: f64, note: Note) -> Landing {
         let mut position = start;
         for step in 0..MAX_NEWTON {
-            let sample = self.sample(position);
-            note(Trial { step, theta_rad: None, position, sample });
-            if sample.is_zero(residual) {
-                return Ok((position, sample.gradient / sample.slope));
+            let Jet { value, gradient, .. } = self.jet(position);
+            let slope = gradient.length();
+            note(Trial { step, theta_rad: None, position, value, slope });
+            if is_zero(value, slope, residual) {
+                return Ok((position, gradient / slope));
             }
-            position -= sample.gradient * (sample.value / (sample.slope * sample.slope));
+            position -= gradient * (value / (slope * slope));
             if !position.is_finite() {
                 return Err(SlotFate::Undefined);
             }
@@ -104,5 +143,47 @@ impl ImplicitSurface {
             }
         }
         Err(SlotFate::NotConverged)
+    }
+}
+
+/// Whether a point counts as a point of the surface that has a normal.
+fn is_zero(value: f64, slope: f64, residual: f64) -> bool {
+    slope > 0.0 && slope.is_finite() && value.abs() <= residual * slope
+}
+
+impl<O: Observer> PaperRun<O> {
+    /// Moves a child onto the surface (§4.3).
+    pub(crate) fn land(&mut self, child: ChildSlot, circle: &Circle) -> Landing {
+        let residual = self.rules.residual * self.particles[child.parent as usize].radius;
+        let (seen, particles) = (&mut self.seen, &self.particles);
+        let mut note = |trial: Trial| seen.see(child, Moment::Tried(trial), particles);
+        let landing = (self.rules.projection)(&mut self.surface, circle, residual, &mut note);
+        if let Ok((position, normal)) = landing {
+            self.tell(child, Moment::Landed { position, normal });
+        }
+        landing
+    }
+
+    /// The position and normal of a child that has landed, if it may be a particle there; otherwise its fate is decided.
+    pub(crate) fn usable(&mut self, child: ChildSlot, landing: Landing) -> Option<(DVec3, DVec3)> {
+        let fate = match landing {
+            Err(fate) => fate,
+            // The circle may meet the far side of a rim or of a thin sheet.
+            Ok((_, normal)) if normal.dot(self.particles[child.parent as usize].n()) <= 0.0 => {
+                SlotFate::NotConverged
+            }
+            Ok((position, _)) if !self.surface.bounds.holds(position) => SlotFate::Outside,
+            Ok(place) => return Some(place),
+        };
+        self.decide(child, fate, None);
+        None
+    }
+
+    /// The position and normal of a particle that is moved to `target` and brought back to the surface; `None` at the border of the box,
+    /// where the field ends, or around a fold.
+    pub(crate) fn come_back(&mut self, own: &Particle, target: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
+        let residual = self.rules.residual * own.radius;
+        let landing = self.surface.land_by_newton(target, reach, residual, &mut |_| {}).ok();
+        landing.filter(|&(position, normal)| self.surface.bounds.holds(position) && normal.dot(own.n()) > 0.0)
     }
 }

@@ -9,36 +9,44 @@
 //! * The paper does not say when a particle corresponds to a child. Here it is within the match radius, on the same sheet of the
 //!   surface: two sheets may be nearer than that.
 
-use super::PaperRun;
-use super::buckets::Nearby;
-use super::observer::{ChildSlot, Moment, Observer};
-use super::particle::{Particle, TangentFrame};
-use super::projection::Circle;
-use super::rules::{Matched, SearchStart};
-use super::surface::Landing;
+use super::surface::{Circle, Landing};
+use super::{ChildSlot, Moment, Nearby, Observer, PaperRun, Particle};
 use crate::math::{SQRT_3, frame_of};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
+/// sin π/3.
+const SIN_60: f64 = 0.5 * SQRT_3;
+
 /// Directions of the six children in the frame (V̂⁰, N̂ × V̂⁰): §4.2, (cos iπ/3, sin iπ/3).
-pub(crate) const DIRECTIONS: [[f64; 2]; 6] = {
-    const SIN_60: f64 = 0.5 * SQRT_3;
-    [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
-};
+pub(crate) const DIRECTIONS: [[f64; 2]; 6] =
+    [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]];
 
 /// Neighbours are gathered within this many radii: a child at 2r meets particles up to 2r + the match radius from its parent, which
 /// is below 2r.
 pub(crate) const REACH: f64 = 4.0;
 
-/// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size do not resolve. On 16 random surfaces half of
-/// it changes no count of small particles, and that of large ones by 0.5 %; with 1 a tenth more searches find no surface.
-const STEEPEST: f64 = 0.9;
+/// The tangent frame of a particle (Fig. 3).
+#[derive(Clone, Copy, Debug)]
+pub struct TangentFrame {
+    /// The particle's place, p.
+    pub(crate) p: DVec3,
+    /// Unit normal N̂.
+    pub(crate) n: DVec3,
+    /// V̂⁰: unit tangent vector towards the first child.
+    pub(crate) u: DVec3,
+    /// N̂ × V̂⁰.
+    pub(crate) w: DVec3,
+    /// Whether the particle is a seed, whose first child is no parent.
+    pub(crate) is_seed: bool,
+}
 
 impl TangentFrame {
-    /// Direction V̂ⁱ of a child.
-    pub(crate) fn direction(&self, slot: usize) -> DVec3 {
+    /// The circle of a child, in the direction V̂ⁱ at the distance 2r.
+    pub(crate) fn circle(&self, slot: usize, radius: f64, start_rad: f64) -> Circle {
         let [cos, sin] = DIRECTIONS[slot];
-        self.u * cos + self.w * sin
+        let direction = self.u * cos + self.w * sin;
+        Circle { centre: self.p, normal: self.n, direction, radius: 2.0 * radius, start_rad }
     }
 
     /// The children that are still to be placed: all six of a seed, five of any other particle.
@@ -47,35 +55,21 @@ impl TangentFrame {
     }
 }
 
-/// Angle θ₀ at which the surface leaves the tangent plane in the direction `d` of a frame in which its second form is [a, b, c]:
-/// it falls away by κ l²/2 in a distance l, hence sin θ = −κ_V r at l = 2r.
-pub(crate) fn predicted_angle([a, b, c]: [f64; 3], [cos, sin]: [f64; 2], radius: f64) -> f64 {
-    let curvature = (a * cos + b * sin) * cos + (b * cos + c * sin) * sin;
-    libm::asin((-curvature * radius).clamp(-STEEPEST, STEEPEST))
-}
-
 impl<O: Observer> PaperRun<O> {
     /// Treats a particle: the body of Algorithm 2.
     pub(super) fn treat_uniform(&mut self, particle: u32, radius: f64) {
         let child = |slot: usize| ChildSlot { parent: particle, slot: slot as u32 };
-        let centre = self.particles[particle as usize].p();
         let frame = self.tangent_frame(particle);
-        let form = match self.rules.start {
-            SearchStart::Tangent => None,
-            SearchStart::Curvature => Some(self.surface.second_form(centre, frame.u, frame.w)),
-        };
-        self.tell(child(0), Moment::Frame { frame: &frame, form });
+        self.tell(child(0), Moment::Frame(&frame));
 
         // "Place its six children on the surface."
+        let start_angles = (self.rules.start_angles)(&mut self.surface, &frame, radius);
         let landings: Vec<(usize, Landing)> = frame
             .slots()
             .map(|slot| {
-                let direction = frame.direction(slot);
-                let circle = Circle { centre, normal: frame.n, direction, radius: 2.0 * radius };
-                let theta_rad = form.map_or(0.0, |form| predicted_angle(form, DIRECTIONS[slot], radius));
-                let position = circle.point(theta_rad);
-                self.tell(child(slot), Moment::Proposed { direction, theta_rad, position });
-                (slot, self.land(child(slot), &circle, theta_rad))
+                let circle = frame.circle(slot, radius, start_angles[slot]);
+                self.tell(child(slot), Moment::Proposed(&circle));
+                (slot, self.land(child(slot), &circle))
             })
             .collect();
 
@@ -83,7 +77,7 @@ impl<O: Observer> PaperRun<O> {
         let mut neighbours = self.gather(particle, REACH * radius);
         if let Some(parent) = self.particles[particle as usize].parent {
             // "For each particle, we define its first child as being its father."
-            if self.rules.matched == Matched::Leave {
+            if self.rules.removes_matched {
                 neighbours.retain(|near| near.particle != parent);
             }
             self.decide(child(0), SlotFate::Parent, Some(parent));
@@ -93,16 +87,12 @@ impl<O: Observer> PaperRun<O> {
         for (slot, landing) in landings {
             let Some(place) = self.usable(child(slot), landing) else { continue };
             let placed = self.child(particle, place, radius);
-            if let Some(other) = self.corresponding(child(slot), &placed, self.candidates(&neighbours)) {
-                // The child is that particle, which leaves the neighbouring particles.
-                self.decide(child(slot), SlotFate::Matched, Some(other));
-                if self.rules.matched == Matched::Leave {
-                    neighbours.retain(|near| near.particle != other);
-                }
-            } else if let Some(added) = self.add_child(child(slot), placed)
-                && self.rules.matched == Matched::Stay
-            {
-                neighbours.push(Nearby { particle: added, distance: placed.p().distance(centre) });
+            let (_, is_now) = self.settle(child(slot), placed, &neighbours);
+            if self.rules.removes_matched {
+                // "Remove this particle from the neighboring particles."
+                neighbours.retain(|near| Some(near.particle) != is_now);
+            } else if let Some(particle) = is_now {
+                neighbours.push(Nearby { particle, distance: placed.p().distance(frame.p) });
             }
         }
     }
@@ -122,18 +112,33 @@ impl<O: Observer> PaperRun<O> {
                 (u.into(), w.into())
             }
         };
-        TangentFrame { n, u, w, is_seed: own.parent.is_none() }
+        TangentFrame { p, n, u, w, is_seed: own.parent.is_none() }
     }
 
     /// The particles within `reach` of another one.
     pub(crate) fn gather(&mut self, particle: u32, reach: f64) -> Vec<Nearby> {
         let mut neighbours = self.buckets.near(&self.particles, self.particles[particle as usize].p(), reach);
         neighbours.retain(|near| near.particle != particle);
-        self.tell(
-            ChildSlot { parent: particle, slot: 0 },
-            Moment::Gathered { reach, neighbours: &neighbours },
-        );
+        let first = ChildSlot { parent: particle, slot: 0 };
+        self.tell(first, Moment::Gathered { reach, neighbours: &neighbours });
         neighbours
+    }
+
+    /// "If an existing particle corresponds, the child is replaced by it", otherwise "the child is added to the particle set", unless there
+    /// are as many particles as there may be. Returns the fate of the child, and the particle that it is now.
+    pub(crate) fn settle(
+        &mut self,
+        child: ChildSlot,
+        placed: Particle,
+        neighbours: &[Nearby],
+    ) -> (SlotFate, Option<u32>) {
+        let (fate, particle) = match self.corresponding(child, &placed, self.candidates(neighbours)) {
+            Some(other) => (SlotFate::Matched, Some(other)),
+            None if self.particles.len() >= self.rules.max_particles => (SlotFate::Capped, None),
+            None => (SlotFate::Added, Some(self.enter(placed))),
+        };
+        self.decide(child, fate, particle);
+        (fate, particle)
     }
 
     /// "If an existing particle corresponds": the number of the candidate of the child's sheet that is nearest, in r_i + r_j, if it is
@@ -144,20 +149,18 @@ impl<O: Observer> PaperRun<O> {
         placed: &Particle,
         candidates: impl IntoIterator<Item = (u32, Particle)>,
     ) -> Option<u32> {
-        let tolerance = self.rules.match_tolerance;
         let nearest = candidates
             .into_iter()
             .filter(|(_, other)| self.rules.is_same_sheet(placed, other))
-            .map(|(number, other)| (placed.p().distance(other.p()), placed.radius + other.radius, number))
-            .min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+            .map(|(number, other)| (number, placed.p().distance(other.p()), placed.radius + other.radius))
+            .min_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)));
         let alone = placed.radius + self.particles[child.parent as usize].radius;
-        let limit = tolerance * nearest.map_or(alone, |(_, both, _)| both);
-        let distance = nearest.map(|(distance, ..)| distance);
-        let against = nearest.map(|(.., number)| number);
-        let corresponds = distance.is_some_and(|distance| distance <= limit);
-        let position = placed.p();
-        self.tell(child, Moment::Compared { position, against, distance, limit, corresponds });
-        against.filter(|_| corresponds)
+        let limit = self.rules.match_tolerance * nearest.map_or(alone, |(.., both)| both);
+        let nearest = nearest.map(|(particle, distance, _)| Nearby { particle, distance });
+        let found = nearest.filter(|near| near.distance <= limit);
+        let (position, corresponds) = (placed.p(), found.is_some());
+        self.tell(child, Moment::Compared { position, nearest, limit, corresponds });
+        found.map(|near| near.particle)
     }
 
     /// The particles around a child, with which it is compared.

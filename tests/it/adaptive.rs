@@ -287,8 +287,7 @@ fn levels_increase_along_the_columns() {
 /// are as many, and they are as large.
 #[test]
 fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_paper_s() {
-    use marching_particles::lesson::{self, Lesson};
-    use marching_particles::paper::Matched;
+    use marching_particles::lesson::{self, Lesson, Matched};
     for id in ["sphere", "ellipsoid", "torus"] {
         let surface = gallery::find(id).expect("a gallery surface");
         let diagonal = surface.bounds.diagonal();

@@ -9,11 +9,9 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
     ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings,
-    QueueOrder, Seeding, digest,
+    Matched, Projection, QueueOrder, Seeding, digest,
 };
-use marching_particles::paper::{
-    ImplicitSurface, Matched, PaperRun, Particle, Projection, RadiusRule, Rules, sum_of_curvatures,
-};
+use marching_particles::paper::{ImplicitSurface, PaperRun, Particle, RadiusRule, Rules, sum_of_curvatures};
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
 

@@ -440,9 +440,7 @@ normal: [number, number, number],
 /** Unit tangent vector of slot 0, towards the parent; any for a seed. */
 u: [number, number, number],
 /** N̂ × u. */
-w: [number, number, number],
-/** Second fundamental form [a, b, c] in (u, w), where it was asked for. */
-form: [number, number, number] | null, } | { "type": "slot",
+w: [number, number, number], } | { "type": "slot",
 /** The particle that places the child. */
 parent: number,
 /** Number of the slot, at an angle of slot · π/3 in uniform sampling. */

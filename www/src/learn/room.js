@@ -33,7 +33,7 @@ export function roomEvents(a, b) {
   const first = polar(0, a + b);
   /** @type {LessonEvent[]} */
   const events = [
-    { type: 'frame', particle: PARENT, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0], form: null },
+    { type: 'frame', particle: PARENT, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0] },
     { type: 'gathered', particle: PARENT, reach: 3 * a, neighbours: [{ particle: FIRST, distance: a + b }] },
     { type: 'arc', parent, before: FIRST, behind: FIRST, angles_rad: [0, 2 * Math.PI] },
   ];

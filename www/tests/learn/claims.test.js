@@ -104,7 +104,7 @@ test('what the text states of the paper is in its tables', () => {
 
 test('what the text states of the core are its constants', () => {
   says('by at most 23° at a time');
-  const turn = /MAX_TURN: f64 = ([\d.]+)/.exec(read('../src/paper/projection.rs'));
+  const turn = /MAX_TURN: f64 = ([\d.]+)/.exec(read('../src/paper/surface.rs'));
   expect(Math.round((2 * Math.atan(Number(turn?.[1])) * 180) / Math.PI)).toBe(23);
   says('count as 1.15 times as large as they are');
   expect(read('../src/paper/relaxation.rs')).toContain('OVERLAP_REACH: f64 = 1.15;');

@@ -20,7 +20,7 @@ beforeAll(() => setLocale('en'));
 /** The events of a particle with two children: one is added, one matches. @type {LessonEvent[]} */
 const events = [
   { type: 'taken', particle: 47 },
-  { type: 'frame', particle: 47, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0], form: null },
+  { type: 'frame', particle: 47, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0] },
   { type: 'slot', parent: 47, slot: 1, direction: [0.5, 0.866, 0], theta_rad: 0, place: [0.1, 0.1732, 0] },
   {
     type: 'iterate',
@@ -209,7 +209,7 @@ describe('the particle that stands for another', () => {
 const sized = [
   { type: 'taken', particle: 5 },
   { type: 'gathered', particle: 5, reach: 0.37, neighbours: [{ particle: 2, distance: 0.2 }] },
-  { type: 'frame', particle: 5, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0], form: null },
+  { type: 'frame', particle: 5, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0] },
   { type: 'fate', parent: 5, slot: 0, fate: 'parent', particle: 2 },
   { type: 'arc', parent: 5, before: 2, behind: 2, angles_rad: [0, 0] },
   { type: 'start', parent: 5, slot: 1, tangent: [0.2, 0.1, 0], position: [0.09, 0.045, 0], radius: 0.12 },
