@@ -37,6 +37,7 @@ use crate::sampler::sheet::{OrientedPoint, SheetRule, UNCOVERED, is_cover, is_le
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::f32::consts::{PI, TAU};
+use core::f64::consts::E;
 use glam::{Vec2, Vec3};
 
 /// Frames from one balance to the next. On the twelve sweeps of `benches/flow.rs` more of the first particles live to the end than with half of
@@ -68,12 +69,8 @@ const SPARSE_ENERGY: f32 = 0.8;
 const GAP: f32 = 0.5;
 const WIDE_GAP: f32 = 0.7;
 
-/// Share of the radius of a gap that the curvature of the surface leaves of it. From 0.8 to 1 the mean figures of 16 random motions are the
-/// same within 1 %.
-const GAP_ROOM: f32 = 0.97;
-
 /// Energy of a pair of neighbours in a lattice: exp(−2) less the energy at the end of the range.
-const LATTICE_PAIR: f64 = 0.124_226_3;
+const LATTICE_PAIR: f64 = 1.0 / (E * E) - END_ENERGY as f64;
 
 /// A sector without a neighbour is open if its angle is larger: in a lattice it is 60°, and 120° where one neighbour is missing. From 80° to 120°
 /// the mean figures of 16 random motions are the same within 1 %.
@@ -517,7 +514,7 @@ impl Flow {
         let (u, w) = tangent_frame(particles.normal[parent]);
         let direction = (u * centre.x + w * centre.y) / width;
         let circle = circle_around(particles, parent, direction, width);
-        self.try_child(probe, surface, particles, parent, &circle, GAP_ROOM * least);
+        self.try_child(probe, surface, particles, parent, &circle, least);
     }
 
     /// Places a child where a circle meets the surface, if it is in the box, on the sheet of its parent, and farther from all others than
