@@ -66,7 +66,8 @@ pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) {
             if hole.len() > LARGEST_AT_RIM {
                 continue;
             }
-            if !cutter.cut(patch, &hole, faces_as_corners) && !cutter.cut(patch, &hole, faces_as_mean) {
+            let mut cut = |is_right| cutter.cut(patch, borders.rim, &hole, is_right);
+            if !cut(faces_as_corners) && !cut(faces_as_mean) {
                 resisting.push(hole);
             }
         }
@@ -136,10 +137,19 @@ struct Cutter {
 
 impl Cutter {
     /// Fills a hole with the triangles whose circumradii have the least sum, if there are any that are right and have no edge
-    /// of the mesh but those of the hole; whether there were.
-    fn cut(&mut self, patch: &mut Patch, hole: &[u32], is_right: impl Fn(&Patch, [u32; 3]) -> bool) -> bool {
+    /// of the mesh or of its rim but those of the hole; whether there were.
+    fn cut(
+        &mut self,
+        patch: &mut Patch,
+        rim: &Rim,
+        hole: &[u32],
+        is_right: fn(&Patch, [u32; 3]) -> bool,
+    ) -> bool {
         let n = hole.len();
         let at = |i: usize, j: usize| i * n + j;
+        // An edge of the rim has a triangle on its left alone, which may be that of another hole.
+        let is_taken =
+            |patch: &Patch, a: u32, b: u32| a == b || patch.has_edge(a, b) || rim.has(a, b) || rim.has(b, a);
         self.best.clear();
         self.best.resize(n * n, (f64::INFINITY, 0));
         for i in 0..n - 1 {
@@ -148,7 +158,7 @@ impl Cutter {
         for span in 2..n {
             for i in 0..n - span {
                 let j = i + span;
-                if span + 1 < n && (hole[i] == hole[j] || patch.has_edge(hole[i], hole[j])) {
+                if span + 1 < n && is_taken(patch, hole[i], hole[j]) {
                     continue;
                 }
                 for k in i + 1..j {
@@ -225,11 +235,18 @@ mod tests {
         if last < 2 { 0.0 } else { (1..last).map(with_corner).fold(f64::INFINITY, f64::min) }
     }
 
-    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already. Numbers stand
-    /// for corners, and those beyond for the other points.
-    fn cut(corners: &[Vec3], others: &[Vec3], triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already and edges of a rim.
+    /// Numbers stand for corners, and those beyond for the other points.
+    fn cut(
+        corners: &[Vec3],
+        others: &[Vec3],
+        triangles: &[[u32; 3]],
+        rim: &[[u32; 2]],
+    ) -> Option<Vec<[u32; 3]>> {
         with_plane(&[corners, others].concat(), triangles, |patch, tree, in_tree| {
-            let is_cut = Cutter::default().cut(patch, &in_tree[..corners.len()], faces_as_corners);
+            let edges = rim.iter().map(|edge| edge.map(|v| in_tree[v as usize])).collect();
+            let rim = Rim::new(edges, patch.position, patch.normal);
+            let is_cut = Cutter::default().cut(patch, &rim, &in_tree[..corners.len()], faces_as_corners);
             let all = patch.triangles().map(|t| t.map(|v| tree.origin[v as usize]));
             is_cut.then(|| all.skip(triangles.len()).collect())
         })
@@ -258,7 +275,7 @@ mod tests {
             };
             let corners: Vec<Vec3> = (0..n).map(corner).collect();
             let place = |v: u32| corners[v as usize].as_dvec3();
-            let triangles = cut(&corners, &[], &[]).expect("a convex hole can be cut");
+            let triangles = cut(&corners, &[], &[], &[]).expect("a convex hole can be cut");
             assert_eq!(triangles.len(), n - 2, "{n} corners, case {case}");
             let sum: f64 = triangles.iter().map(|t| circumradius(t.map(place))).sum();
             let least = least_sum(&(0..n as u32).map(place).collect::<Vec<_>>());
@@ -267,17 +284,21 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_of_the_mesh_is_no_chord_of_a_hole() {
+    fn an_edge_of_the_mesh_or_the_rim_is_no_chord_of_a_hole() {
         // Of the two diagonals that of 0 and 2 is the shorter one.
         let corners = [[0.0, -1.0], [1.5, 0.0], [0.0, 1.0], [-1.5, 0.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
         let has = |triangles: &[[u32; 3]], a: u32, b: u32| {
             triangles.iter().filter(|t| t.contains(&a) && t.contains(&b)).count() == 2
         };
-        let free = cut(&corners, &[], &[]).expect("a convex hole can be cut");
+        let free = cut(&corners, &[], &[], &[]).expect("a convex hole can be cut");
         assert!(has(&free, 0, 2), "{free:?}");
         let others = [Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, 6.0)];
-        let beside = cut(&corners, &others, &[[0, 2, 4]]).expect("the other diagonal is free");
-        assert!(has(&beside, 1, 3), "{beside:?}");
-        assert_eq!(cut(&corners, &others, &[[0, 2, 4], [1, 3, 5]]), None);
+        for (triangles, rim) in [([[0, 2, 4]].as_slice(), [].as_slice()), (&[], &[[0, 2]]), (&[], &[[2, 0]])]
+        {
+            let beside = cut(&corners, &others, triangles, rim).expect("the other diagonal is free");
+            assert!(has(&beside, 1, 3), "{beside:?}");
+        }
+        assert_eq!(cut(&corners, &others, &[[0, 2, 4], [1, 3, 5]], &[]), None);
+        assert_eq!(cut(&corners, &others, &[[0, 2, 4]], &[[3, 1]]), None);
     }
 }
