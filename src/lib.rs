@@ -88,7 +88,7 @@
 //! | one-ring | The natural neighbours of a particle in order around it. |
 //! | valence | The number of natural neighbours; six in a hexagonal lattice. |
 //! | hexagonal spacing, d_hex | The spacing of a perfect hexagonal lattice of as many particles on the same area. |
-//! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
+//! | residual | \|f\|/\|∇f\|, the distance to the surface to first order; where f has no gradient, \|f\| over its slope along the normal. |
 //! | fission, death | Splitting and removal of particles, in the system of Witkin and Heckbert. |
 //! | budget | A count of work units after which a step returns. It is never a time. |
 //! | slice | A share of long work between two returns to the caller. |

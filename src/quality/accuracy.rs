@@ -2,11 +2,22 @@
 
 use super::figures::Accuracy;
 use super::moments::Moments;
+use crate::field::{Field, difference_step};
 use glam::{DVec3, Vec3};
 
 /// Returns the first-order height f/|∇f| of a point above the surface; its size is the distance.
 pub(super) fn first_order_height(value: f64, slope: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / slope }
+}
+
+/// Returns the height f/slope of a place where f has this value and no gradient, as at the tip of a cone: with the slope to the steeper
+/// side along the unit normal.
+pub(super) fn height_along(field: &mut dyn Field, place: DVec3, normal: Vec3, value: f64) -> f64 {
+    let h = difference_step(field.origin() + place);
+    let mut slope =
+        |way: f64| (field.value_and_gradient(place + way * normal.as_dvec3()).0 - value).abs() / h;
+    let slope = slope(h).max(slope(-h));
+    first_order_height(value, slope)
 }
 
 /// Accuracy of points with these first-order distances and of their normals, whose angles are `normals`.

@@ -92,7 +92,7 @@ pub struct Accuracy {
     pub err_max: f64,
     /// Mean first-order distance to the surface.
     pub err_mean: f64,
-    /// Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`.
+    /// Points whose residual is undefined; left out of `err_max` and `err_mean`.
     pub undefined: usize,
     /// Mean angle between the given normals (either sign) and ∇f, in degrees.
     pub nrm_mean: f64,

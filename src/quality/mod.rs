@@ -51,7 +51,7 @@ use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, SQRT_3};
 use crate::slices::{self, MEDIUM, pause, ranges};
 use crate::topology::Topology;
-use accuracy::first_order_height;
+use accuracy::{first_order_height, height_along};
 use border::Border;
 use figures::hexagonal_spacing;
 use glam::Vec3;
@@ -84,7 +84,8 @@ pub struct Measurements {
     /// Distance to the nearest other particle, of any sheet, in the field's units; infinite for a lone one, NaN for a
     /// non-finite position.
     pub nearest: Vec<f32>,
-    /// First-order distance to the surface |f|/|∇f|, in the field's units; NaN where that is undefined.
+    /// First-order distance to the surface |f|/|∇f|, in the field's units; where f has no gradient, |f| over its slope to the steeper side
+    /// along the normal. NaN where that is undefined, too.
     pub residual: Vec<f32>,
     /// Energy of the particle among its natural neighbours, over that of six at the ideal distance; NaN for a duplicate or a
     /// non-finite position.
@@ -173,9 +174,14 @@ pub(crate) async fn in_slices(
         if let Some(patch) = options.rows.and_then(|rows| rows.patch_of(i)) {
             field.select_branch(Some(patch));
         }
-        let jet = field.jet(position[i].as_dvec3());
+        let place = position[i].as_dvec3();
+        let jet = field.jet(place);
+        let mut height = first_order_height(jet.value, jet.gradient.length());
+        if !height.is_finite() {
+            height = height_along(field, place, normal.get(i).copied().unwrap_or_default(), jet.value);
+        }
         points.creases.release(field);
-        report.residual[i] = first_order_height(jet.value, jet.gradient.length()).abs() as f32;
+        report.residual[i] = height.abs() as f32;
         let (_, equal) = points.tree.nearest(position[i], u32::MAX, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(Measurements::NO_COMPONENT);
         if let Some(&twin) = points.tree.origin.get(equal as usize) {

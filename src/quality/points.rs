@@ -1,6 +1,6 @@
 //! The points to be measured, with their normals and one-rings.
 
-use super::accuracy::{NormalAngles, first_order_height};
+use super::accuracy::{NormalAngles, first_order_height, height_along};
 use super::creases::CreaseRows;
 use super::one_rings::OneRings;
 use super::sheets::Sheets;
@@ -15,7 +15,7 @@ pub(super) struct MeasuredPoints {
     pub(super) tree: Tree,
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
     pub(super) normal: Vec<Vec3>,
-    /// First-order distances |f|/|∇f| from the surface.
+    /// First-order distances from the surface, see [`Measurements::residual`](super::Measurements::residual).
     pub(super) residual: Vec<f64>,
     /// Angles between the given normals and ∇f.
     pub(super) normal_angles: NormalAngles,
@@ -55,7 +55,13 @@ impl MeasuredPoints {
                 normal_angles.add(given, gradient);
                 let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
                 normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
-                height.push(first_order_height(value, slope));
+                let mut own = first_order_height(value, slope);
+                if !own.is_finite() {
+                    creases.select(field, k);
+                    own = height_along(field, tree.position[k].as_dvec3(), given, value);
+                    creases.release(field);
+                }
+                height.push(own);
             }
             pause().await;
         }

@@ -701,6 +701,20 @@ fn undefined_field_is_counted_and_given_normals_take_its_place() {
 }
 
 #[test]
+fn the_distance_of_a_point_without_a_gradient_is_that_along_its_normal() {
+    // A cone, on its axis.
+    let mut cone = Analytic(|p| {
+        let out = p.truncate().length();
+        Jet { value: out + p.z, gradient: (p.truncate() / out).extend(1.0), ..Jet::default() }
+    });
+    let report = measure(&[Vec3::Z * 1e-3; 2], &[Vec3::Z; 2], &mut cone, None, &MeasureOptions::default());
+    assert_eq!(report.figures.accuracy.undefined, 0);
+    for residual in report.residual {
+        close("residual", f64::from(residual), 1e-3, 1e-6);
+    }
+}
+
+#[test]
 fn order_of_the_points_does_not_matter() {
     let points = fibonacci(1000);
     let reversed: Vec<Vec3> = points.iter().rev().copied().collect();

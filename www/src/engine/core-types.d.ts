@@ -201,7 +201,7 @@ export type Figures = {
   err_max: number,
   /** Mean first-order distance to the surface. */
   err_mean: number,
-  /** Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`. */
+  /** Points whose residual is undefined; left out of `err_max` and `err_mean`. */
   undefined: number,
   /** Mean angle between the given normals (either sign) and ∇f, in degrees. */
   nrm_mean: number,
