@@ -106,8 +106,7 @@ impl Walk<'_, '_> {
             };
             if (next.tangent.dot(direction) > 0.0) != is_forward {
                 let end = self.turn(here, &next, direction, is_forward);
-                points.push(end);
-                return WalkEnd::Corner(creases.corner_at(end, self.patches, ONE_END * self.step));
+                return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
             if !self.is_same_crease(&next, self.step) {
                 return self.end_before(creases, here, &next, points);
@@ -194,12 +193,8 @@ impl Walk<'_, '_> {
                 {
                     return self.end_before(creases, here, &before, points);
                 }
-                if !self.bounds.holds(corner) {
-                    return self.end_at_box(here, corner, points);
-                }
-                points.push(corner);
                 let patches = [self.patches, &[third]].concat();
-                return WalkEnd::Corner(creases.corner_at(corner, &patches, ONE_CORNER * self.step));
+                return self.end_at(creases, [here, corner], &patches, ONE_CORNER, points);
             }
         }
         let (mut active, mut inactive) = (here, beyond.position);
@@ -213,8 +208,25 @@ impl Walk<'_, '_> {
                 _ => inactive = middle,
             }
         }
-        points.push(active);
-        WalkEnd::Corner(creases.corner_at(active, self.patches, ONE_END * self.step))
+        self.end_at(creases, [here, active], self.patches, ONE_END, points)
+    }
+
+    /// Ends the walk on its way from one point to another: at the corner of these patches there, which is that within a `share` of a step, or
+    /// at the box, if the corner lies beyond it by more than rounding.
+    fn end_at(
+        &mut self,
+        creases: &mut Creases,
+        [here, end]: [DVec3; 2],
+        patches: &[u32],
+        share: f64,
+        points: &mut Vec<DVec3>,
+    ) -> WalkEnd {
+        let inside = end.clamp(self.bounds.lo(), self.bounds.hi());
+        if inside.distance(end) > ONE_CORNER * self.step {
+            return self.end_at_box(here, end, points);
+        }
+        points.push(inside);
+        WalkEnd::Corner(creases.corner_at(inside, patches, share * self.step))
     }
 
     /// Whether the patches lie beside a point of the curve as they do at its start.
