@@ -26,9 +26,15 @@ impl CreaseParticle {
     /// The normal of the patch that is selected. Where it has none, as at the tip of a cone, that beside the particle, along the crease if
     /// possible.
     pub(super) fn normal(&self, probe: &mut Probe) -> Option<Vec3> {
-        let ways = [Vec3::ZERO, self.tangent, -self.tangent, Vec3::X, Vec3::Y, Vec3::Z];
-        let mut places = ways.into_iter().map(|way| self.position + ASIDE as f32 * self.radius * way);
-        places.find_map(|place| probe.gradient(place).1.try_normalize())
+        probe.gradient(self.position).1.try_normalize().or_else(|| {
+            // In double precision, which tells places apart that are this near each other however small the particle is.
+            [self.tangent, -self.tangent, Vec3::X, Vec3::Y, Vec3::Z].into_iter().find_map(|way| {
+                let aside = ASIDE * f64::from(self.radius) * way.as_dvec3();
+                probe.count(1);
+                let (_, gradient) = probe.field.value_and_gradient(self.position.as_dvec3() + aside);
+                gradient.try_normalize().map(|normal| normal.as_vec3())
+            })
+        })
     }
 }
 

@@ -61,6 +61,34 @@ fn the_creases_of_solids_are_counted() {
 }
 
 #[test]
+fn a_corner_on_a_face_of_the_box_is_one() {
+    // A tip of the octahedron lies on the face, and two of its edges do.
+    let (_, creases) = creases("abs(x+1)+abs(y)+abs(z)-0.5", 1.0);
+    let tip = DVec3::new(-1.0, 0.5, 0.0);
+    let mut ends = Vec::new();
+    for curve in &creases.curves {
+        let places = [curve.points[0], curve.points[curve.points.len() - 1]];
+        let here = places.into_iter().zip(curve.corners).filter(|(place, _)| place.distance(tip) < 1e-9);
+        ends.extend(here.map(|(_, corner)| corner));
+    }
+    assert_eq!(ends.len(), 3, "{ends:?}");
+    assert!(ends[0].is_some() && ends.iter().all(|&end| end == ends[0]), "{ends:?}");
+}
+
+#[test]
+fn a_small_particle_where_a_factor_touches_another_has_a_normal() {
+    // A torus on a plane. Neither factor has a gradient in the product where they touch.
+    let text = "((hypot(x-1,y-1)-1)^2+(z-1.25)^2-1/16)*(1-z)";
+    let mut field = Formula::as_written(text, &[]).expect("a formula");
+    let mut memory = ProbeMemory::default();
+    let probe = &mut Probe::new(&mut field, &mut memory);
+    let (position, radius) = (Vec3::new(2.0, 1.0, 1.0), 1e-6);
+    let particle = fill::CreaseParticle { position, radius, tangent: Vec3::Y, patches: Vec::new() };
+    let normal = particle.normal(probe).expect("a normal");
+    assert!((normal.length() - 1.0).abs() < 1e-6, "{normal}");
+}
+
+#[test]
 fn a_crease_lies_where_both_branches_are_zero() {
     let (mut field, creases) = creases("min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7);
     let [curve] = &creases.curves[..] else { panic!("{creases:?}") };
