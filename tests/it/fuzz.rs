@@ -16,11 +16,11 @@ use std::path::Path;
 pub(crate) mod harness;
 
 /// How many times as many cases are asked for as usual.
-fn times() -> u64 {
+pub(crate) fn times() -> u64 {
     std::env::var("FUZZ_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
 }
 
-fn below(random: &mut Pcg32, count: usize) -> usize {
+pub(crate) fn below(random: &mut Pcg32, count: usize) -> usize {
     random.next_u32() as usize % count.max(1)
 }
 

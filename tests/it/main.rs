@@ -52,6 +52,8 @@ mod products;
 mod proof;
 mod quality;
 #[cfg(feature = "points")]
+mod random_solids;
+#[cfg(feature = "points")]
 mod rbf;
 mod readme;
 mod refine;
