@@ -5,12 +5,6 @@ use super::{ImplicitSurface, Particle, TangentFrame};
 use crate::differential::{Curvature, exact_curvature};
 use glam::DVec3;
 
-/// A method that moves a child onto the surface, within a residual.
-pub(crate) type Projection = fn(&mut ImplicitSurface, &Circle, f64, Note) -> Landing;
-
-/// A rule for the angles at which the searches of a particle's children start on their circles, by its frame and radius.
-pub(crate) type StartAngles = fn(&mut ImplicitSurface, &TangentFrame, f64) -> [f64; 6];
-
 /// The rule for the repulsion radii of the particles.
 #[derive(Clone, Copy, Debug)]
 pub enum RadiusRule {
@@ -77,10 +71,11 @@ pub(crate) const OVERLAP_STEP: f64 = 0.33;
 pub struct Rules {
     /// The radii of the particles.
     pub sizes: RadiusRule,
-    /// The method that moves a child onto the surface (§4.3): along its circle.
-    pub(crate) projection: Projection,
-    /// The angles at which the searches start: in the tangent plane, θ₀ = 0, as in Fig. 4 (left).
-    pub(crate) start_angles: StartAngles,
+    /// The method that moves a child onto the surface, within a residual (§4.3): along its circle.
+    pub(crate) projection: fn(&mut ImplicitSurface, &Circle, f64, Note) -> Landing,
+    /// The angles at which the searches of a particle's children start, by its frame and radius: in the tangent plane, θ₀ = 0, as in
+    /// Fig. 4 (left).
+    pub(crate) start_angles: fn(&mut ImplicitSurface, &TangentFrame, f64) -> [f64; 6],
     /// Whether a particle to which a child corresponds leaves the neighbours of the parent (§4.4), so that no second child is identified
     /// with it. If not, it stays, and so do the new children.
     pub(crate) removes_matched: bool,

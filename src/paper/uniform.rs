@@ -9,8 +9,7 @@
 //! * The paper does not say when a particle corresponds to a child. Here it is within the match radius, on the same sheet of the
 //!   surface: two sheets may be nearer than that.
 
-use super::surface::{Circle, Landing};
-use super::{ChildSlot, Moment, Nearby, Observer, PaperRun, Particle};
+use super::{ChildSlot, Circle, Moment, Nearby, Observer, PaperRun, Particle};
 use crate::math::{SQRT_3, frame_of};
 use crate::particles::SlotFate;
 use glam::DVec3;
@@ -64,7 +63,7 @@ impl<O: Observer> PaperRun<O> {
 
         // "Place its six children on the surface."
         let start_angles = (self.rules.start_angles)(&mut self.surface, &frame, radius);
-        let landings: Vec<(usize, Landing)> = frame
+        let landings: Vec<_> = frame
             .slots()
             .map(|slot| {
                 let circle = frame.circle(slot, radius, start_angles[slot]);

@@ -96,7 +96,9 @@ fn check(seed: u64) -> bool {
         let known = *at.entry(particles.position[i].to_array().map(f32::to_bits)).or_insert(first);
         assert!(known == first || is_double, "two particles at {place}: {warnings:?}");
         assert!(run.bounds().holds(place), "{place} is not in {:?}", run.bounds());
-        field.select_branch(particles.patch_of(i));
+        if let Some(field) = field.branched() {
+            field.select_branch(particles.patch_of(i));
+        }
         let value = field.value_and_gradient(particles.position[i].as_dvec3()).0;
         assert!(!value.is_finite() || residual.is_finite(), "{residual} at {place}, where f is {value}");
     }
