@@ -5,7 +5,8 @@
 //! in the order of the queue.
 
 use super::course::{Course, Predicted};
-use crate::paper::{ChildSlot, DIRECTIONS, ImplicitSurface, Moment, Nearby, REACH, TangentFrame};
+use super::prediction::{predicted_angle, second_form};
+use crate::paper::{ChildSlot, DIRECTIONS, Moment, Nearby, REACH, TangentFrame};
 use crate::particles::SlotFate;
 use glam::DVec3;
 
@@ -15,29 +16,6 @@ const RING: f64 = 2.6;
 /// Weight of "equal curvature in all directions" in that fit. It decides where the neighbours determine no curvature; half and double
 /// change the evaluations of random surfaces by 0.01 %.
 const ISOTROPY: f64 = 0.005;
-
-/// Largest |sin θ₀|: at 1 the surface would curve with the radius r, which particles of this size do not resolve. On 16 random surfaces half of
-/// it changes no count of small particles, and that of large ones by 0.5 %; with 1 a tenth more searches find no surface.
-const STEEPEST: f64 = 0.9;
-
-/// Angles θ₀ at which the curvature of the surface predicts the children of a particle.
-pub(super) fn predicted_angles(surface: &mut ImplicitSurface, frame: &TangentFrame, radius: f64) -> [f64; 6] {
-    let form = second_form(surface, frame);
-    DIRECTIONS.map(|direction| predicted_angle(form, direction, radius))
-}
-
-/// Second fundamental form [a, b, c] of the surface in a tangent frame (u, w): the normal turns by `[a b; b c]`.
-fn second_form(surface: &mut ImplicitSurface, &TangentFrame { p, u, w, .. }: &TangentFrame) -> [f64; 3] {
-    let jet = surface.jet(p);
-    [(u, u), (u, w), (w, w)].map(|(a, b)| a.dot(jet.hessian.apply(b)) / jet.gradient.length())
-}
-
-/// Angle θ₀ at which the surface leaves the tangent plane in the direction (cos, sin) of a frame in which its second form is [a, b, c]:
-/// it falls away by κ l²/2 in a distance l, hence sin θ = −κ_V r at l = 2r.
-fn predicted_angle([a, b, c]: [f64; 3], [cos, sin]: [f64; 2], radius: f64) -> f64 {
-    let curvature = (a * cos + b * sin) * cos + (b * cos + c * sin) * sin;
-    libm::asin((-curvature * radius).clamp(-STEEPEST, STEEPEST))
-}
 
 impl Course {
     /// First stage: predicts the children of a particle and compares them there. Those that are free wait to be projected.

@@ -40,6 +40,7 @@ mod forces;
 mod gaps;
 mod levels;
 mod log;
+mod prediction;
 mod section;
 mod settings;
 mod snapshots;

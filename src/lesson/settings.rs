@@ -1,6 +1,6 @@
 //! Settings of a run of the lesson: the method, the rules of the paper, and choices that go beyond it.
 
-use super::levels::predicted_angles;
+use super::prediction::predicted_angles;
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
 use crate::math::Bounds;

@@ -5,7 +5,6 @@
 use crate::field::descent::{self, Descents, descend, unit};
 use crate::math::sort_few;
 use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
-use crate::sampler::sheet::face_one_way;
 use glam::Vec3;
 
 /// Largest number of evaluations of Newton's method, on a circle or along the gradient, from a good guess, which takes two. With
@@ -212,7 +211,7 @@ impl Probe<'_> {
                 p -= descent::step(value, within);
                 n = within.normalize_or_zero();
             }
-            if n == Vec3::ZERO || !p.is_finite() || !face_one_way(n, before) {
+            if n == Vec3::ZERO || !p.is_finite() || n.dot(before) <= 0.0 {
                 return CircleLanding::NotConverged;
             }
             rise = -0.5 * step * (n - before).dot(ahead);

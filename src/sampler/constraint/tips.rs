@@ -9,7 +9,6 @@ use super::{AT_REST, STEPS};
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
-use crate::sampler::sheet::face_one_way;
 use glam::{DMat3, DVec3, Vec3};
 
 /// Divisions of the edge of an octahedron whose faces, thrown onto the sphere, show the link: the narrowest nappe is three of them wide. Half
@@ -205,7 +204,7 @@ pub(in super::super) fn add(
             let (position, normal) = ((apex + direction * distance).as_vec3(), normal.as_vec3());
             let is_free = (0..others).all(|i| {
                 particles.position[i].distance(position) > match_share * radius
-                    || !face_one_way(particles.normal[i], normal)
+                    || particles.normal[i].dot(normal) <= 0.0
             });
             if is_free && bounds.contains(position) {
                 let mut slots = Slots::default();
