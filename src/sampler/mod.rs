@@ -43,6 +43,7 @@ use crate::slices::Work;
 use attempt::Attempt;
 pub use constraint::Creases;
 use constraint::tips::Tip;
+use core::hint::black_box;
 use discovery::search::ComponentSearch;
 use discovery::singular::{NearSurvey, Singular};
 use discovery::survey::{Absence, Survey, spacing, survey};
@@ -431,8 +432,15 @@ impl Sampler {
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(bytes_per_particle(&self.settings));
         let more = particles.saturating_sub(self.output.particles.position.capacity());
+        let is_there = |more: usize| {
+            let mut memory = Vec::<u8>::new();
+            let is_there = memory.try_reserve_exact(more).is_ok();
+            // An allocation that nobody uses is left out by the compiler, as one that succeeds.
+            black_box(&memory);
+            is_there
+        };
         bytes(particles).is_some_and(|all| self.memory_limit.is_none_or(|limit| all <= limit))
-            && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
+            && bytes(more).is_some_and(is_there)
     }
 
     /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
