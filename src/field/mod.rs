@@ -353,13 +353,13 @@ pub trait Branched {
     fn select_branch(&mut self, branch: Option<u32>);
 }
 
-/// What a search for creases makes of the numbers of the branches.
+/// A search for creases numbers the branches anew, or keeps their numbers.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchNumbers {
-    /// They begin anew, and branches that meet smoothly on the surface become one.
+    /// The branches are numbered anew, and those that meet smoothly on the surface become one.
     New,
-    /// They stay what they are, after a search in another box.
+    /// The branches keep their numbers, which an earlier search in another box has given.
     Kept,
 }
 

@@ -45,7 +45,7 @@ pub struct Trial {
     pub(crate) slope: f64,
 }
 
-/// What is told every evaluation of a search.
+/// A callback receives each evaluation of a search for the surface, in their order.
 pub(crate) type Note<'a> = &'a mut dyn FnMut(Trial);
 
 /// Result of a search for the surface: a point of it with the unit normal there, or the fate of a child that finds none.
