@@ -435,7 +435,7 @@ impl Sampler {
         let is_there = |more: usize| {
             let mut memory = Vec::<u8>::new();
             let is_there = memory.try_reserve_exact(more).is_ok();
-            // An allocation that nobody uses is left out by the compiler, as one that succeeds.
+            // The compiler leaves out an allocation that nobody uses, and takes it for one that succeeds.
             black_box(&memory);
             is_there
         };
