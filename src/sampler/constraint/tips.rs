@@ -96,7 +96,10 @@ impl Tip {
         curvature * self.position.distance(point.as_dvec3()) <= MORE * self.bend
     }
 
-    /// The tip of a patch, which is selected, near `start`, within two spacings: the point in which the tangent planes around it meet.
+    /// Largest distance of a tip from the place near which it is looked for, in spacings: the steps are at most 2, 2/4, 2/16, …
+    pub(in super::super) const REACH: f64 = 8.0 / 3.0;
+
+    /// The tip of a patch, which is selected, near `start`: the point in which the tangent planes around it meet.
     pub(in super::super) fn near(
         probe: &mut Probe,
         patch: Option<u32>,

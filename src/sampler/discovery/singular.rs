@@ -146,8 +146,8 @@ pub(crate) fn near_survey(
         for (k, p) in points.iter().enumerate() {
             let (p, slope_sq) = (p.as_dvec3(), gradient[k].as_dvec3().length_squared());
             let most_sq = size_sq(&matrix(&hessian[k].map(f64::from))) * reach * reach;
-            // Within half a spacing; a quarter and a whole one give the same particles on 38 random surfaces.
-            let is_near = |other: DVec3| other.distance_squared(p) <= 0.25 * spacing * spacing;
+            // A quarter and a half of a spacing give the same particles on 38 random surfaces.
+            let is_near = |other: DVec3| other.distance_squared(p) <= spacing * spacing;
             // False for NaN.
             let is_start = slope_sq <= most_sq
                 && !tried.iter().copied().any(is_near)
@@ -240,6 +240,16 @@ fn has_two_signs(hessian: &Sym3<f64>) -> bool {
     let least = SMALL * size_sq(&matrix(hessian)).sqrt();
     extreme_directions(hessian)
         .is_some_and(|[up, down]| up.dot(hessian.apply(up)) > least && down.dot(hessian.apply(down)) < -least)
+}
+
+/// Whether the gradient of f may jump on the surface in a box, as at the tip of a cone where f is a distance; not known where f has no bounds.
+pub(crate) fn may_be_rough(field: &mut dyn Field, bounds: &Bounds) -> bool {
+    let Some(field) = field.bounded() else { return true };
+    (0..field.factors()).any(|factor| {
+        let mut known = [Enclosure::UNKNOWN];
+        field.enclose(factor, &[*bounds], &mut known);
+        known[0].may_vanish && !(known[0].defined && known[0].smooth)
+    })
 }
 
 /// Whether rounding may hide that f is 0 at a point.
