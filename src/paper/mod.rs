@@ -98,8 +98,12 @@ impl<O: Observer> PaperRun<O> {
     pub fn sample(&mut self, steps: u32) {
         // "While it exists one particle marked as not done": the one that has waited longest. The text says stack, but the rings of
         // Fig. 11 are those of a queue.
-        while let Some(next) = self.particles.iter().position(|particle| !particle.is_done) {
-            self.treat(next as u32);
+        let mut next = 0;
+        while let Some(particle) = self.particles.get(next) {
+            if !particle.is_done {
+                self.treat(next as u32);
+            }
+            next += 1;
         }
         for _ in 0..steps {
             self.relax();
