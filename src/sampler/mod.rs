@@ -372,7 +372,8 @@ impl Sampler {
             // At a tip another branch may be zero, too.
             near.points.retain(|point| {
                 let is_tip = |tip: &Tip| Some(tip.patch) == patch && tip.position == point.position;
-                self.tips.iter().any(is_tip) || probe.is_on_patch(point.position.as_vec3(), patch)
+                self.tips.iter().any(is_tip)
+                    || probe.is_on_patch(point.position.as_vec3(), Vec3::ZERO, 0.0, patch)
             });
             self.singular.extend_from_slice(&near.points);
         }

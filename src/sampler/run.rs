@@ -242,6 +242,14 @@ impl Sampler {
         }
         let patch = self.patch_at(probe, seed.position);
         probe.select(patch);
+        if patch.is_some() {
+            // Where branches are equal, on creases and where bodies share a plane, no front begins but those of the creases.
+            let (place, size) = (seed.position, self.attempt.front_radius() as f32);
+            let normal = probe.gradient(place).1.normalize_or_zero();
+            if ![normal, -normal].into_iter().all(|aside| probe.is_on_patch(place, aside, size, patch)) {
+                return None;
+            }
+        }
         let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed, patch));
         is_started.then(|| {
             self.counts.seeds += u32::from(self.tools.coarse.known().is_none());

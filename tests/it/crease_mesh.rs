@@ -73,6 +73,29 @@ fn no_chord_between_creases_is_of_two_patches() {
 }
 
 #[test]
+fn bodies_that_share_a_plane_have_no_wall_between_them() {
+    // A small cube in the middle of a face, one that covers the face, and one that covers a part of it.
+    for (other, area, volume) in [
+        ("max(abs(x-1.5),abs(y),abs(z))-0.5", 28.0, 9.0),
+        ("max(abs(x-2),abs(y),abs(z))-1", 40.0, 16.0),
+        ("max(abs(x-2),abs(y-0.5),abs(z-0.5))-1", 43.5, 16.0),
+    ] {
+        let text = format!("min(max(abs(x),abs(y),abs(z))-1,{other})");
+        for count in [800, 3000] {
+            let solid = Formula::parse(&text).expect("a formula");
+            let sample = sample(solid, &Settings::with_count(count)).expect("there is a surface");
+            let (mesh, told) = (sample.mesh(), format!("{text}, {count} particles"));
+            assert!(mesh.topology.is_closed() && mesh.left_out.is_empty(), "{told}: {:?}", mesh.topology);
+            assert_eq!((mesh.topology.components.len(), mesh.topology.euler()), (1, 2), "{told}");
+            let found = self::area(sample.particles(), mesh);
+            assert!((found / area - 1.0).abs() < 1e-3, "{told}: area {found} instead of {area}");
+            let found = sample.volume().expect("a closed mesh");
+            assert!((found / volume - 1.0).abs() < 1e-3, "{told}: volume {found} instead of {volume}");
+        }
+    }
+}
+
+#[test]
 fn a_strip_beside_a_larger_part_of_its_patch_is_filled() {
     // Its only particles are those of its creases, and the nearest others of the patch lie beyond a slot.
     let comb =

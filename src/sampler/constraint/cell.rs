@@ -3,7 +3,6 @@
 //! The creases and corners on an upper face are replaced by those of the lower face before any particle is placed, so that the particles
 //! on them are the same but for the shift. The particles within a face are repeated once the run has placed them.
 
-use super::meeting::Meeting;
 use super::{Corner, Crease, Creases, ONE_END};
 use crate::field::UnitCell;
 use crate::math::sort_by_key;
@@ -159,7 +158,7 @@ impl Creases {
         let mut replaced = self.curves.iter().filter(|curve| curve.patches.contains(&upper));
         let is_there = |curve: &Crease| {
             let position = curve.points[curve.points.len() / 2];
-            next.has_point(&Meeting { position, branches: curve.branches, tangent: DVec3::ZERO }, step)
+            next.has_point(position, curve.branches, step)
         };
         replaced.all(is_there).then_some(next)
     }

@@ -29,52 +29,52 @@ impl Creases {
         Some(creases)
     }
 
-    /// Adds the pieces into which the plane across an axis at `offset` cuts a curve. What is shorter than `slack` is none.
+    /// Divides a curve at the plane across an axis at `offset`.
     fn cut(&mut self, probe: &mut Probe, curve: Crease, axis: usize, offset: f64, slack: f64) {
         let third = Third::Plane { axis, offset };
-        let mut pieces =
-            vec![Crease { points: Vec::new(), corners: [curve.corners[0], None], ..curve.clone() }];
-        let first = curve.is_closed.then(|| curve.points[0]);
-        for &next in curve.points.iter().chain(&first) {
-            let last = pieces.len() - 1;
-            if let Some(&here) = pieces[last].points.last()
-                && (here[axis] < offset) != (next[axis] < offset)
-            {
-                let way = next - here;
-                let start = here + way * ((offset - here[axis]) / way[axis]);
-                if let Some(mut place) = common_point(probe, curve.branches, third, start, way.length()) {
-                    place[axis] = offset;
-                    let corner = self.corner_at(place, &curve.patches, slack);
-                    self.corners[corner].position[axis] = offset;
-                    pieces[last].points.push(place);
-                    pieces[last].corners[1] = Some(corner);
-                    let (points, corners) = (vec![place], [Some(corner), None]);
-                    pieces.push(Crease { points, corners, ..curve.clone() });
-                }
+        let mut cuts = Vec::new();
+        for (k, [here, next]) in curve.chords().enumerate() {
+            if (here[axis] < offset) == (next[axis] < offset) {
+                continue;
             }
-            let last = pieces.len() - 1;
-            pieces[last].points.push(next);
+            let way = next - here;
+            let start = here + way * ((offset - here[axis]) / way[axis]);
+            if let Some(mut place) = common_point(probe, curve.branches, third, start, way.length()) {
+                place[axis] = offset;
+                let corner = self.corner_at(place, &curve.patches, slack);
+                self.corners[corner].position[axis] = offset;
+                cuts.push((k, corner));
+            }
         }
-        if let [.., last] = &mut pieces[..] {
-            last.corners[1] = curve.corners[1];
-        }
-        if pieces.len() == 1 {
+        self.add_pieces(curve, &cuts, slack);
+    }
+
+    /// Adds the pieces of a curve that is divided at corners, each after the point of this number. What is shorter than `slack` is none.
+    pub(super) fn add_pieces(&mut self, curve: Crease, cuts: &[(usize, usize)], slack: f64) {
+        if cuts.is_empty() {
             self.curves.push(curve);
             return;
         }
-        if curve.is_closed {
-            // The last piece goes on with the first one.
-            let first = core::mem::take(&mut pieces[0].points);
-            let corners = pieces[0].corners;
-            pieces.remove(0);
-            if let Some(last) = pieces.last_mut() {
-                last.points.extend_from_slice(&first[1..]);
-                last.corners[1] = corners[1];
+        let piece = |points, corners| Crease { points, corners, is_closed: false, ..curve.clone() };
+        let mut pieces = Vec::with_capacity(cuts.len() + 1);
+        let (mut points, mut from, mut cuts) = (Vec::new(), curve.corners[0], cuts.iter().peekable());
+        for (k, &point) in curve.points.iter().enumerate() {
+            points.push(point);
+            while let Some(&(_, corner)) = cuts.next_if(|cut| cut.0 == k) {
+                let place = self.corners[corner].position;
+                points.push(place);
+                pieces.push(piece(core::mem::replace(&mut points, vec![place]), [from, Some(corner)]));
+                from = Some(corner);
             }
         }
-        let length =
-            |piece: &Crease| piece.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
-        pieces.retain(|piece| length(piece) > slack);
-        self.curves.extend(pieces.into_iter().map(|piece| Crease { is_closed: false, ..piece }));
+        let mut last = piece(points, [from, curve.corners[1]]);
+        if curve.is_closed {
+            // The last piece goes on with the first one.
+            let first = pieces.remove(0);
+            last.points.extend(first.points);
+            last.corners[1] = first.corners[1];
+        }
+        pieces.push(last);
+        self.curves.extend(pieces.into_iter().filter(|piece| piece.length() > slack));
     }
 }

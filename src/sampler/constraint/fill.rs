@@ -3,7 +3,7 @@
 use super::cell::{FacePair, Image};
 use super::ladder::CreaseLadder;
 use super::meeting::{ASIDE, FADED, Meeting};
-use super::{Crease, Creases};
+use super::{Crease, Creases, ONE_CORNER};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
@@ -160,6 +160,7 @@ impl Creases {
         halvings: u32,
         filled: &mut CreaseParticles,
     ) -> Vec<u32> {
+        let others = filled.list.len();
         let room = points[points.len() - 1].room;
         // A closed curve of two particles would be a line there and back.
         let least = if curve.is_closed { 3.0 } else { 1.0 };
@@ -193,6 +194,18 @@ impl Creases {
             let found = Meeting::of_branches(probe, curve.branches, place, reach, FADED).filter(|_| !is_end);
             let position = found.map_or(place, |meeting| meeting.position).as_vec3();
             let position = self.pinned(&curve.patches, position);
+            // Several creases may end at one point of the box.
+            let is_there = |known: &CreaseParticle| {
+                known.position.distance(position) <= ONE_CORNER as f32 * known.radius
+            };
+            if is_end && let Some(known) = filled.list[..others].iter().position(is_there) {
+                let own = &mut filled.list[known].patches;
+                own.extend_from_slice(&curve.patches);
+                own.sort_unstable();
+                own.dedup();
+                numbers.push(known as u32);
+                continue;
+            }
             if !k.is_multiple_of(1 << halvings) {
                 filled.between.push(position);
                 continue;

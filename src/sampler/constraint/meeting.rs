@@ -23,6 +23,8 @@ pub(super) struct Meeting {
     pub(super) branches: [u32; 2],
     /// Unit vector along the crease.
     pub(super) tangent: DVec3,
+    /// Sine of the angle between the branches.
+    pub(super) sine: f64,
 }
 
 /// Limits of a search within `reach`.
@@ -35,6 +37,12 @@ fn branch(probe: &mut Probe, branch: u32, p: DVec3) -> (f64, DVec3) {
     probe.select(Some(branch));
     probe.count(1);
     probe.field.value_and_gradient(p)
+}
+
+/// Whether a point lies on the sheet of a branch, up to a distance.
+pub(super) fn is_on(probe: &mut Probe, b: u32, p: DVec3, slack: f64) -> bool {
+    let (value, gradient) = branch(probe, b, p);
+    value.abs() <= slack * gradient.length()
 }
 
 /// The point on the surface near one where two branches touch without an angle, so that what is on one is on the other.
@@ -61,11 +69,13 @@ impl Meeting {
             let slopes = branches.map(|b| branch(probe, b, p));
             let (step, tangent) = step_to_curve(slopes);
             let [(_, u), (_, v)] = slopes;
-            let least_sq = (least_sine * least_sine) * u.length_squared() * v.length_squared();
-            (tangent.length_squared() > least_sq).then_some((step, tangent))
+            let scale_sq = u.length_squared() * v.length_squared();
+            let is_angle = tangent.length_squared() > (least_sine * least_sine) * scale_sq;
+            is_angle.then_some((step, (tangent, scale_sq)))
         };
-        let (position, tangent) = newton::land(start, limits(reach), step_at)?;
-        Some(Self { position, branches, tangent: tangent / tangent.length() })
+        let (position, (tangent, scale_sq)) = newton::land(start, limits(reach), step_at)?;
+        let length = tangent.length();
+        Some(Self { position, branches, tangent: tangent / length, sine: length / scale_sq.sqrt() })
     }
 
     /// Whether the patches of these branches are on the left of the crease, in the direction of its tangent and seen from outside. There is
@@ -82,11 +92,14 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f on its sheet to the left of the tangent, and to the right.
+    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right. It is asked on the outer side of the sheet:
+    /// within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
-        Some([aside, -aside].map(|d| probe.field.branch_at(self.position + d * (ASIDE * reach)) == b))
+        let outward = gradient.normalize_or_zero() * ASIDE;
+        let is_given = |d| probe.field.branch_at(self.position + (d + outward) * (ASIDE * reach)) == b;
+        Some([aside, -aside].map(is_given))
     }
 
     /// Whether each branch gives f on both sides, so that their sheets cross, and no patch ends.

@@ -9,7 +9,7 @@
 //! 1. *Search.* The field says in which small cells of the box creases can be. There Newton's method looks for a point on each pair of
 //!    branches.
 //! 2. *Trace.* From such a point the curve is followed both ways, to where another branch takes over: that place is a corner. From there
-//!    the other creases of the corner are followed.
+//!    the other creases of the corner are followed. A crease that passes a corner of others is divided there.
 //! 3. *Fill.* Particles are put on corners and along curves at equal distances, as many as fit best. They do not move any more:
 //!    fronts start from them, patch by patch, and end at them. For a refinement they are put there for every level at once, also beyond
 //!    the box where the creases run to it, and at its faces.
@@ -41,9 +41,13 @@ const ONE_CORNER: f64 = 1e-3;
 /// Distance from a corner, in steps, at which the creases that end there are looked for: ten times the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
 /// Share of a step within which ends of creases that fade out are one corner, and corners on opposite faces images. Such ends are known
-/// less precisely than corners: a walk ends at an angle of [`meeting::FADED`], less than a hundredth of a step before. Half and
-/// double give the same particles on 24 random solids.
+/// less precisely than corners: a walk may end at an angle of [`meeting::FADED`], on three crossing cylinders a twentieth of a step before.
+/// Half and double give the same particles on 24 random solids.
 const ONE_END: f64 = 0.1;
+
+/// Distance from the chord between two points of a curve, in steps, up to which a point lies on the curve: the chord of a curve that turns by
+/// 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
+const NEAR: f64 = 0.2;
 
 /// Steps of Newton's method to a crease or a corner, and along a sphere around a tip. From a cell that a crease crosses five are enough;
 /// where two branches touch without an angle each step halves the distance.
@@ -69,6 +73,18 @@ pub(super) struct Crease {
     is_closed: bool,
     /// The crease on the opposite face of a cell of which this one is the image.
     image: Option<Image>,
+}
+
+impl Crease {
+    /// Every two points that follow each other.
+    fn chords(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        let closing = self.is_closed.then(|| [self.points[self.points.len() - 1], self.points[0]]);
+        self.points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing)
+    }
+
+    fn length(&self) -> f64 {
+        self.chords().map(|[a, b]| a.distance(b)).sum()
+    }
 }
 
 /// A point at which creases end.
@@ -113,11 +129,12 @@ impl Creases {
                 for &b in &branches[..k] {
                     let meeting = Meeting::of_branches(probe, [b, a], cell.middle(), 2.0 * step, SHARP)
                         .filter(|meeting| {
-                            bounds.holds(meeting.position) && !creases.has_point(meeting, step)
+                            bounds.holds(meeting.position)
+                                && !creases.has_point(meeting.position, meeting.branches, step)
                         });
                     let Some(meeting) = meeting else { continue };
                     if meeting.are_left(probe, &[b, a], step).is_some() {
-                        trace::follow(probe, bounds, &mut creases, meeting, &branches, step).await;
+                        trace::follow(probe, bounds, &mut creases, meeting, step).await;
                     } else if creases.passed.is_none() && meeting.is_passed(probe, step) {
                         creases.passed = Some(meeting.position);
                     }
@@ -125,6 +142,7 @@ impl Creases {
             }
         }
         creases.follow_from_corners(probe, bounds, step).await;
+        creases.divide(probe, step);
         if let Some(cell) = probe.field.unit_cell() {
             creases.repeat(probe, &cell, step);
         }
@@ -148,11 +166,12 @@ impl Creases {
                     for way in [at_corner.tangent, -at_corner.tangent] {
                         let meeting = near(probe, position + way * (BESIDE * step), BESIDE)
                             .filter(|meeting| {
-                                bounds.holds(meeting.position) && !self.has_point(meeting, step)
+                                bounds.holds(meeting.position)
+                                    && !self.has_point(meeting.position, meeting.branches, step)
                             })
                             .filter(|meeting| meeting.are_left(probe, &[b, a], step).is_some());
                         if let Some(meeting) = meeting {
-                            trace::follow(probe, bounds, self, meeting, &patches, step).await;
+                            trace::follow(probe, bounds, self, meeting, step).await;
                         }
                     }
                 }
@@ -160,22 +179,68 @@ impl Creases {
         }
     }
 
-    /// Whether a crease that is known runs through a meeting of two branches.
-    fn has_point(&self, meeting: &Meeting, step: f64) -> bool {
-        /// Distance from the chord between two points of a curve, in steps, up to which a point lies on the curve: the chord of a
-        /// curve that turns by 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
-        const NEAR: f64 = 0.2;
+    /// Whether a crease of two branches that is known runs through a point.
+    fn has_point(&self, p: DVec3, branches: [u32; 2], step: f64) -> bool {
         let is_on = |curve: &&Crease| {
-            let ends = curve.points.windows(2).map(|pair| [pair[0], pair[1]]);
-            let last = curve.is_closed.then(|| [curve.points[curve.points.len() - 1], curve.points[0]]);
-            ends.chain(last).any(|[a, b]| {
+            curve.chords().any(|[a, b]| {
                 let way = b - a;
-                let t = ((meeting.position - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-                (a + way * t).distance_squared(meeting.position) <= (NEAR * step) * (NEAR * step)
+                let t = ((p - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+                (a + way * t).distance_squared(p) <= (NEAR * step) * (NEAR * step)
             })
         };
-        let has_both = |curve: &&Crease| meeting.branches.iter().all(|branch| curve.patches.contains(branch));
+        let has_both = |curve: &&Crease| branches.iter().all(|branch| curve.patches.contains(branch));
         self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
+    }
+
+    /// Number of the first corner, none of the `others`, that a crease of these branches meets behind one of its points and up to the next.
+    fn corner_on(
+        &self,
+        probe: &mut Probe,
+        branches: [u32; 2],
+        [here, next]: [DVec3; 2],
+        step: f64,
+        others: [Option<usize>; 2],
+    ) -> Option<usize> {
+        let length = here.distance(next);
+        let way = (next - here) / length;
+        let mut first = None;
+        for (index, &Corner { position, .. }) in self.corners.iter().enumerate() {
+            let along = (position - here).dot(way);
+            let is_first = along > 0.0 && along <= first.map_or(length, |(least, _)| least);
+            if is_first
+                && (here + way * along).distance(position) <= NEAR * step
+                && !others.contains(&Some(index))
+                && branches.into_iter().all(|b| meeting::is_on(probe, b, position, ONE_CORNER * step))
+            {
+                first = Some((along, index));
+            }
+        }
+        first.map(|(_, index)| index)
+    }
+
+    /// Divides creases at the corners of other ones that lie on them. A corner keeps the patches that meet along its creases.
+    fn divide(&mut self, probe: &mut Probe, step: f64) {
+        for curve in core::mem::take(&mut self.curves) {
+            let mut cuts = Vec::new();
+            for (k, [mut here, next]) in curve.chords().enumerate() {
+                while let Some(corner) =
+                    self.corner_on(probe, curve.branches, [here, next], step, curve.corners)
+                {
+                    here = self.corners[corner].position;
+                    self.corner_at(here, &curve.patches, 0.0);
+                    cuts.push((k, corner));
+                }
+            }
+            self.add_pieces(curve, &cuts, ONE_CORNER * step);
+        }
+        // Of other patches a corner may lie on the sheet, but f is theirs on none of it there.
+        for (index, corner) in self.corners.iter_mut().enumerate() {
+            let ending = self.curves.iter().filter(|curve| curve.corners.contains(&Some(index)));
+            let patches: Vec<u32> = ending.flat_map(|curve| curve.patches.iter().copied()).collect();
+            if !patches.is_empty() {
+                corner.patches.retain(|patch| patches.contains(patch));
+            }
+        }
     }
 
     /// Number of the corner at a position, which is added if it is new.

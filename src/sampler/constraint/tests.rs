@@ -26,12 +26,6 @@ fn counts(creases: &Creases) -> [usize; 2] {
     [creases.curves.len(), (0..creases.corners.len()).filter(|&corner| ends(corner) > 2).count()]
 }
 
-/// Length of a crease, by its chords.
-fn length(curve: &Crease) -> f64 {
-    let closing = if curve.is_closed { curve.points[0].distance(*curve.points.last().unwrap()) } else { 0.0 };
-    closing + curve.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>()
-}
-
 #[test]
 fn the_creases_of_solids_are_counted() {
     for (name, text, half, expected) in [
@@ -50,6 +44,15 @@ fn the_creases_of_solids_are_counted() {
         // Eight triples of cylinders meet on the diagonals of the cube, and six pairs where the third has its axis.
         ("three cylinders", "max(x^2+y^2,y^2+z^2,z^2+x^2)-1", 1.3, [24, 14]),
         ("wedge", "max(z,0.176327*x-z,abs(y)-1,-x-1.5)", 2.0, [9, 6]),
+        // An edge of a cube touches the rim of a cone whose base stands in it, at a corner.
+        (
+            "cone in a cube",
+            "min(max(hypot(y,z)-(1-x),0.5-x),max(abs(x-1),abs(y+1),abs(z-0.5))-1)",
+            2.3,
+            [17, 10],
+        ),
+        // The plane between the cubes is no surface where they touch.
+        ("two cubes", "min(max(abs(x),abs(y),abs(z))-1,max(abs(x-1.5),abs(y),abs(z))-0.5)", 2.3, [24, 16]),
         // Curves on which four patches meet.
         ("crossing spheres", "((x-0.5)^2+y^2+z^2-1)*((x+0.5)^2+y^2+z^2-1)", 1.7, [1, 0]),
         ("three planes", "x*y*z", 1.3, [6, 1]),
@@ -76,6 +79,23 @@ fn a_corner_on_a_face_of_the_box_is_one() {
 }
 
 #[test]
+fn creases_that_end_at_one_point_of_the_box_share_a_particle() {
+    // A circle and hyperbolas touch on the lower face across x.
+    let text = "max(hypot(x+1,y)-abs(z),0.5-max(abs(x+1),abs(y),abs(z-1)))";
+    let (mut field, creases) = creases(text, 1.0);
+    let mut memory = ProbeMemory::default();
+    let filled = creases.fill(&mut Probe::new(&mut field, &mut memory), 0, |_, _| 0.05);
+    let at = |place: Vec3| filled.list.iter().filter(move |p| p.position.distance(place) < 1e-4);
+    for y in [-0.5, 0.5] {
+        let [particle] = at(Vec3::new(-1.0, y, 0.5)).collect::<Vec<_>>()[..] else { panic!("two at {y}") };
+        assert_eq!(particle.patches.len(), 3, "{particle:?}");
+    }
+    for particle in &filled.list {
+        assert_eq!(at(particle.position).count(), 1, "{particle:?}");
+    }
+}
+
+#[test]
 fn a_small_particle_where_a_factor_touches_another_has_a_normal() {
     // A torus on a plane. Neither factor has a gradient in the product where they touch.
     let text = "((hypot(x-1,y-1)-1)^2+(z-1.25)^2-1/16)*(1-z)";
@@ -94,7 +114,7 @@ fn a_crease_lies_where_both_branches_are_zero() {
     let [curve] = &creases.curves[..] else { panic!("{creases:?}") };
     assert!(curve.is_closed);
     let exact = core::f64::consts::TAU * 0.75_f64.sqrt();
-    assert!((length(curve) / exact - 1.0).abs() < 1e-3, "{} for {exact}", length(curve));
+    assert!((curve.length() / exact - 1.0).abs() < 1e-3, "{} for {exact}", curve.length());
     for &p in &curve.points {
         for &patch in &curve.patches {
             field.select_branch(Some(patch));
@@ -179,7 +199,8 @@ fn creases_beyond_the_box_are_cut_at_its_faces() {
             let Corner { position, .. } = cut.corners[corner.expect("an end on a face")];
             assert_eq!(position.as_vec3().abs().max_element(), bounds.single()[1].x, "{text}: {position}");
         }
-        let [all, whole] = [&cut.curves, &own.curves].map(|curves| curves.iter().map(length).sum::<f64>());
+        let [all, whole] =
+            [&cut.curves, &own.curves].map(|curves| curves.iter().map(Crease::length).sum::<f64>());
         assert!(pieces == 0 || all > whole, "{text}: {all} after {whole}");
     }
 }

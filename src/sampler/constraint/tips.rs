@@ -147,7 +147,9 @@ impl Tip {
             let points = (0..parts as u32).map(point).collect::<Option<Loop>>()?;
             let place = |point: &LinkPoint| (self.position + point.direction * distance).as_vec3();
             let has_room = distance <= FARTHEST * spacing
-                && points.iter().all(|point| probe.is_on_patch(place(point), Some(self.patch)));
+                && points.iter().all(|point| {
+                    probe.is_on_patch(place(point), point.normal.as_vec3(), distance as f32, Some(self.patch))
+                });
             has_room.then_some(Ring { tip: 0, distance, points })
         };
         nappes.iter().map(ring).collect()

@@ -27,16 +27,17 @@ enum WalkEnd {
     Corner(usize),
 }
 
-/// Follows the crease through `start`, along which patches of the `others` may meet as well, and adds it with its corners.
+/// Follows the crease through `start` and adds it with its corners.
 pub(super) fn follow<'a>(
     probe: &'a mut Probe<'_>,
     bounds: &'a Bounds,
     creases: &'a mut Creases,
     start: Meeting,
-    others: &[u32],
     step: f64,
 ) -> Work<'a, ()> {
-    let patches = start.patches(probe, others, step);
+    let around = Bounds::new(start.position - BESIDE * step, start.position + BESIDE * step);
+    let others = probe.field.branched().and_then(|field| field.branches_in(&around)).unwrap_or_default();
+    let patches = start.patches(probe, &others, step);
     Box::pin(async move {
         let are_left = start.are_left(probe, &patches, step);
         let mut walk = Walk { probe, bounds, start, patches: &patches, are_left: are_left.as_deref(), step };
@@ -96,16 +97,17 @@ impl Walk<'_, '_> {
     /// Walks on from the last of the `points`, and adds those on the way.
     async fn run(&mut self, creases: &mut Creases, direction: DVec3, points: &mut Vec<DVec3>) -> WalkEnd {
         let origin = self.start.position;
-        let (mut here, mut direction) = (self.start.position, direction);
+        let (mut last, mut direction) = (self.start, direction);
         let is_forward = self.start.tangent.dot(direction) > 0.0;
         let mut left_start = false;
         while points.len() < MOST_STEPS {
             pause().await;
+            let here = last.position;
             let Some((next, length)) = self.next(here, direction) else {
                 return WalkEnd::Corner(creases.corner_at(here, self.patches, ONE_END * self.step));
             };
             if (next.tangent.dot(direction) > 0.0) != is_forward {
-                let end = self.turn(here, &next, direction, is_forward);
+                let end = self.turn(last, next, direction, is_forward);
                 return self.end_at(creases, [here, end], self.patches, ONE_END, points);
             }
             if !self.is_same_crease(&next, self.step) {
@@ -113,6 +115,16 @@ impl Walk<'_, '_> {
             }
             if !self.bounds.holds(next.position) {
                 return self.end_at_box(here, next.position, points);
+            }
+            if let Some(corner) = creases.corner_on(
+                self.probe,
+                self.start.branches,
+                [here, next.position],
+                self.step,
+                [None; 2],
+            ) {
+                let end = creases.corners[corner].position;
+                return self.end_at(creases, [here, end], self.patches, ONE_CORNER, points);
             }
             // Of the 1.2 the part above 1 allows for the turn of a step. Half and double of it give other places to the particles of 2 and 7 of 24
             // random solids, and change no figure.
@@ -123,8 +135,8 @@ impl Walk<'_, '_> {
             }
             left_start |= next.position.distance(origin) > length;
             direction = if next.tangent.dot(direction) < 0.0 { -next.tangent } else { next.tangent };
-            here = next.position;
-            points.push(here);
+            last = next;
+            points.push(next.position);
         }
         WalkEnd::Open
     }
@@ -148,22 +160,23 @@ impl Walk<'_, '_> {
 
     /// The point, between the last one of the walk and one behind it, where the angle between the branches changes its sign: the crease
     /// fades out there, and another one may begin.
-    fn turn(&mut self, here: DVec3, beyond: &Meeting, direction: DVec3, is_forward: bool) -> DVec3 {
-        let (mut before, mut after) = (here, beyond.position);
+    fn turn(&mut self, mut before: Meeting, mut after: Meeting, direction: DVec3, is_forward: bool) -> DVec3 {
+        let branches = self.start.branches;
         for _ in 0..BISECTIONS {
-            let middle = 0.5 * (before + after);
-            let reach = before.distance(after);
-            let Some(point) = Meeting::of_branches(self.probe, self.start.branches, middle, reach, FADED)
-            else {
-                return touching_point(self.probe, self.start.branches, middle);
+            let middle = 0.5 * (before.position + after.position);
+            let reach = before.position.distance(after.position);
+            let Some(point) = Meeting::of_branches(self.probe, branches, middle, reach, FADED) else {
+                // The sine changes evenly where it is small.
+                let share = before.sine / (before.sine + after.sine);
+                return touching_point(self.probe, branches, before.position.lerp(after.position, share));
             };
             if (point.tangent.dot(direction) > 0.0) == is_forward {
-                before = point.position;
+                before = point;
             } else {
-                after = point.position;
+                after = point;
             }
         }
-        before
+        before.position
     }
 
     /// Ends the walk between its last point and one behind which other branches give f: at a corner, if a third branch is zero there.

@@ -301,7 +301,8 @@ fn settle_child(level: &mut FrontLevel, placing: &mut dyn Placing, context: &mut
         ChildLanding::NotConverged => SlotFate::NotConverged,
         ChildLanding::Undefined => SlotFate::Undefined,
         ChildLanding::On(spot)
-            if !level.bounds.contains(spot.position) || !context.probe.is_on_patch(spot.position, patch) =>
+            if !level.bounds.contains(spot.position)
+                || !context.probe.is_on_patch(spot.position, spot.normal, spot.radius, patch) =>
         {
             SlotFate::Outside
         }

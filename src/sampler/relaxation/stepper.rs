@@ -211,7 +211,7 @@ impl Stepper {
                 && is_free
                 && self.limits.bounds.contains(position)
                 && cosine > 0.0
-                && probe.is_on_patch(position, particles.patch_of(i));
+                && probe.is_on_patch(position, normal, law.radius(particles, i), particles.patch_of(i));
             if landing.ok[k] {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
