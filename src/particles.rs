@@ -1,7 +1,7 @@
 //! The particles of a run as a structure of arrays: a column for each attribute. Rows are in the order in which the front placed the
 //! particles, so generation levels are contiguous; particles that fill gaps come last.
 
-use crate::math::{Bounds, FNV_START, fnv};
+use crate::math::{Bounds, FNV_START, NONE, fnv};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 
@@ -161,7 +161,7 @@ impl Slots {
 
 impl Particles {
     /// Parent index of a seed.
-    pub const NO_PARENT: u32 = u32::MAX;
+    pub const NO_PARENT: u32 = NONE;
 
     /// Returns the number of rows: of particles, on a surface that is smooth everywhere. [`Report::count`] is the number of particles on any.
     ///

@@ -6,6 +6,7 @@
 
 use super::placement::{Placement, Unit};
 use super::record::RecordText;
+use crate::math::NONE;
 use crate::particles::Particles;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -37,7 +38,6 @@ pub(super) fn write(
 }
 
 fn model(particles: &Particles, triangles: &[[u32; 3]], unit: Unit, record: &RecordText) -> String {
-    const NONE: u32 = u32::MAX;
     let mut number = vec![NONE; particles.len()];
     let mut vertices = 0;
     let mut text = format!(

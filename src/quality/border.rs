@@ -1,7 +1,7 @@
 //! The border along which a clip box cuts the surface, and the points near it.
 
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, NONE};
 use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
@@ -60,9 +60,7 @@ impl Border {
             return true;
         }
         let margin_sq = (self.margin * self.margin) as f32;
-        self.curve.len() > 0
-            && inside <= self.margin
-            && self.curve.nearest_sq(p, u32::MAX, margin_sq) < margin_sq
+        self.curve.len() > 0 && inside <= self.margin && self.curve.nearest_sq(p, NONE, margin_sq) < margin_sq
     }
 }
 

@@ -2,11 +2,8 @@
 
 use super::gaps::LONG;
 use super::points::MeasuredPoints;
-use crate::math::Forest;
+use crate::math::{Forest, NONE};
 use crate::slices::{MEDIUM, pause};
-
-/// Label of a point that belongs to no component because its position is not finite.
-pub(super) const NO_LABEL: u32 = u32::MAX;
 
 /// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points;
 /// ties are in the order of the points as given.
@@ -42,7 +39,7 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
 
     // At the root of each component: the number of points, and the first of them in the order given.
     let mut count = vec![0_u32; n];
-    let mut first = vec![u32::MAX; n];
+    let mut first = vec![NONE; n];
     for (i, (&r, &origin)) in root.iter().zip(&points.tree.origin).enumerate() {
         count[r as usize] += u32::from(points.creases.is_first(i));
         first[r as usize] = first[r as usize].min(origin);
@@ -53,6 +50,6 @@ pub(super) async fn label(points: &MeasuredPoints, spacing: &[f32], mesh: &[[u32
     order.sort_unstable();
     let label = |r: u32| order.partition_point(|&other| other < key(r)) as u32;
     let labels: Vec<u32> =
-        (0..n as u32).map(|r| if count[r as usize] > 0 { label(r) } else { NO_LABEL }).collect();
+        (0..n as u32).map(|r| if count[r as usize] > 0 { label(r) } else { NONE }).collect();
     (root.iter().map(|&r| labels[r as usize]).collect(), order.len())
 }

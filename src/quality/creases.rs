@@ -1,7 +1,7 @@
 //! The rows of particles on creases: which are of one patch, and which of one particle.
 
 use crate::field::Field;
-use crate::math::{Bounds, sort_pairs, unkey};
+use crate::math::{Bounds, NONE, sort_pairs, unkey};
 use crate::mesh::build;
 use crate::particles::Particles;
 use crate::spatial::tree::Tree;
@@ -30,12 +30,12 @@ impl CreaseRows {
         let particle = |row: u32| rows.first_row(row as usize) as u32;
         let joints = rows.joints();
         let vertex = |row: u32| joints.get(row as usize).copied().unwrap_or(row);
-        let mut place = vec![u32::MAX; rows.patch.len()];
+        let mut place = vec![NONE; rows.patch.len()];
         for (k, &row) in (0..).zip(&tree.origin) {
             place[row as usize] = k;
         }
         let first = |(k, &row): (u32, &u32)| match place[vertex(row) as usize] {
-            u32::MAX => k,
+            NONE => k,
             first => first,
         };
         let mut on_creases: Vec<(u32, u32)> =
@@ -82,14 +82,14 @@ impl CreaseRows {
     }
 
     /// Squared distance of the nearest point that is of another particle than point `i`, and that point or another row of its
-    /// particle; infinite and `u32::MAX` if there is none.
+    /// particle; infinite and [`NONE`] if there is none.
     pub(super) fn nearest(&self, tree: &Tree, i: usize) -> (f32, u32) {
         if self.is_empty() {
             return tree.nearest(tree.position[i], i as u32, f32::INFINITY);
         }
         let mut keys = Vec::new();
         tree.nearest_many(tree.position[i], 1, |j| !self.are_one(i, j as usize), &mut keys);
-        keys.first().map_or((f32::INFINITY, u32::MAX), |&key| unkey(key))
+        keys.first().map_or((f32::INFINITY, NONE), |&key| unkey(key))
     }
 
     /// Whether point `i` is at a tip, where f has no gradient and the sheet is a cone.
@@ -200,7 +200,7 @@ impl CreaseRows {
         // Rows that are left out have no position.
         let (position, normals) = (vec![Vec3::NAN; count], vec![Vec3::ZERO; count]);
         let mut particles = Particles { position, normal: normals, ..rows.clone() };
-        let mut place = vec![u32::MAX; count];
+        let mut place = vec![NONE; count];
         for (k, &row) in tree.origin.iter().enumerate() {
             let row = row as usize;
             (particles.position[row], particles.normal[row]) = (tree.position[k], normal[k]);

@@ -8,7 +8,7 @@ use super::projection::{LAST_STEP, is_reached, project};
 use super::sizes::WantedRadii;
 use super::triangles::area_vector;
 use crate::field::{BATCH, Field};
-use crate::math::Bounds;
+use crate::math::{Bounds, NONE};
 use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{DVec3, Vec3};
@@ -128,8 +128,8 @@ impl Holes {
         for chunk in probe::crossings(field, bounds).await.chunks(HEAVY) {
             for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
                 all += 1.0;
-                let (gap_sq, index) = cover.tree.nearest(p, u32::MAX, f32::INFINITY);
-                if index == u32::MAX {
+                let (gap_sq, index) = cover.tree.nearest(p, NONE, f32::INFINITY);
+                if index == NONE {
                     continue;
                 }
                 let gap = f64::from(gap_sq).sqrt();
@@ -225,13 +225,13 @@ impl HoleSearch {
             }
             let corner_sq = cover.nearest_of(p, triangle);
             let (gap_sq, nearer) = if self.around.may_be_nearer(cover.tree, p, corner_sq, leash) {
-                cover.tree.nearest(p, u32::MAX, corner_sq)
+                cover.tree.nearest(p, NONE, corner_sq)
             } else {
-                (corner_sq, u32::MAX)
+                (corner_sq, NONE)
             };
             let mut ideal = cover.ideal(triangle);
             // The circumcentre of a long triangle may come to a far place, where other points are larger.
-            if nearer != u32::MAX {
+            if nearer != NONE {
                 ideal = ideal.max(cover.ideal(&[nearer]));
             }
             let ideal_sq = ideal * ideal;

@@ -48,7 +48,7 @@ pub use spacing::Histogram;
 
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale};
-use crate::math::{Bounds, SQRT_3};
+use crate::math::{Bounds, NONE, SQRT_3};
 use crate::slices::{self, MEDIUM, pause, ranges};
 use crate::topology::Topology;
 use accuracy::{first_order_height, height_along};
@@ -103,7 +103,7 @@ pub struct Measurements {
 
 impl Measurements {
     /// Component of a point that is left out.
-    pub const NO_COMPONENT: u32 = components::NO_LABEL;
+    pub const NO_COMPONENT: u32 = NONE;
 }
 
 /// Places away from the border of a clipped surface where the triangles of natural neighbours do not close it.
@@ -182,7 +182,7 @@ pub(crate) async fn in_slices(
         }
         points.creases.release(field);
         report.residual[i] = height.abs() as f32;
-        let (_, equal) = points.tree.nearest(position[i], u32::MAX, f32::INFINITY);
+        let (_, equal) = points.tree.nearest(position[i], NONE, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(Measurements::NO_COMPONENT);
         if let Some(&twin) = points.tree.origin.get(equal as usize) {
             pairs.add(0.0, twin, i as u32);

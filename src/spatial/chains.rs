@@ -1,7 +1,8 @@
 //! Linked lists of points by cell, which are made in one pass and take little memory. The points stay in their columns;
 //! the lists hold their indices.
 
-use super::{NONE, coordinate};
+use super::coordinate;
+use crate::math::NONE;
 use glam::Vec3;
 
 /// Points for each list head. With more heads most would stay empty, with fewer many cells would share one. With half and double

@@ -11,11 +11,9 @@ pub(crate) mod chains;
 pub(crate) mod tree;
 
 use crate::math::functions::ROUNDER;
-use crate::math::{GOLDEN_RATIO, LANES, Lanes, push_gently};
+use crate::math::{GOLDEN_RATIO, LANES, Lanes, NONE, push_gently};
 use glam::{Vec3, Vec4};
 
-/// Marks that there is no block.
-const NONE: u32 = u32::MAX;
 /// Bits of a cell coordinate: three coordinates form one hash key.
 const COORDINATE_BITS: u32 = 21;
 const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;

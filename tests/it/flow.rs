@@ -1,8 +1,8 @@
 //! Tests of particles that follow a moving surface.
 
 use marching_particles::field::formula::Formula;
-use marching_particles::math::Bounds;
-use marching_particles::mesh::half_edge::{HalfEdges, NONE};
+use marching_particles::math::{Bounds, NONE};
+use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::quality::figures::Coverage;
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};

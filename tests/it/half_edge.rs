@@ -1,6 +1,7 @@
 //! Every operation on half-edges is held to the invariants, on surfaces with and without a border.
 
-use marching_particles::mesh::half_edge::{HalfEdges, NONE, Subdivision, next};
+use marching_particles::math::NONE;
+use marching_particles::mesh::half_edge::{HalfEdges, Subdivision, next};
 use proptest::prelude::*;
 
 /// An octahedron: closed, Euler number 2.

@@ -14,7 +14,7 @@ use super::data::RbfData;
 use super::frame::CentredFrame;
 use super::kernel::{self, LocalPoint, LocalPoints, Near};
 use super::taylor::{Polynomial, TERMS, Taylor};
-use crate::math::{LANES, Lanes, Sym3};
+use crate::math::{LANES, Lanes, NONE, Sym3};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
@@ -44,8 +44,6 @@ const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 /// single ones.
 const MIN_TOGETHER: usize = 3;
 
-/// Index of a child that does not exist yet.
-const NONE: u32 = u32::MAX;
 /// Bit that marks the index of a child as that of a leaf.
 const LEAF: u32 = 1 << 31;
 

@@ -1,12 +1,10 @@
 //! The triangles on which stars agree, and changes to them in a few places.
 
 use super::stars::Stars;
-use crate::math::{sort_few, tangent_frame};
+use crate::math::{NONE, sort_few, tangent_frame};
 use crate::slices::{LIGHT, MEDIUM, pause, ranges};
 use glam::{DVec3, Vec3};
 
-/// No triangle, no list.
-pub(super) const NONE: u32 = u32::MAX;
 /// A triangle that has been removed.
 const REMOVED: [u32; 3] = [NONE; 3];
 

@@ -1,8 +1,8 @@
 //! The rim of a surface: edges along which it is known to end, such as the creases around a patch. Each of them becomes a side of a
 //! triangle on its left, and no triangle stays beyond.
 
-use super::patch::{Gap, NONE, Patch, quarter_turns};
-use crate::math::{sort_by_key, sort_pairs, tangent_frame};
+use super::patch::{Gap, Patch, quarter_turns};
+use crate::math::{NONE, sort_by_key, sort_pairs, tangent_frame};
 use crate::slices::{MEDIUM, pause};
 use glam::Vec3;
 

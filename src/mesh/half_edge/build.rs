@@ -1,6 +1,7 @@
 //! Construction of half-edges from a list of triangles.
 
-use super::{HalfEdges, NONE, next};
+use super::{HalfEdges, next};
+use crate::math::NONE;
 
 impl HalfEdges {
     /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside. Face `f` is triangle `f`. None if

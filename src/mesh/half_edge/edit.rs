@@ -1,7 +1,7 @@
 //! Local operations, and a journal by which they can be taken back.
 
-use super::{Change, HalfEdges, NONE, next, previous};
-use crate::math::grow;
+use super::{Change, HalfEdges, next, previous};
+use crate::math::{NONE, grow};
 
 impl HalfEdges {
     /// Begins a journal: every change from now on can be taken back by [`HalfEdges::undo`]. An earlier journal is dropped.

@@ -24,8 +24,7 @@ mod subdivide;
 
 pub use subdivide::Subdivision;
 
-/// No half-edge, vertex or face.
-pub const NONE: u32 = u32::MAX;
+use crate::math::NONE;
 
 /// A surface of triangles.
 #[derive(Clone, Debug, Default)]

@@ -1,6 +1,7 @@
 //! Subdivision of every face into four, with a new vertex on the middle of every edge.
 
-use super::{HalfEdges, NONE, next};
+use super::{HalfEdges, next};
+use crate::math::NONE;
 
 /// A subdivision under way: it can be left and gone on with.
 ///

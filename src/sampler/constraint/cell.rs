@@ -5,7 +5,7 @@
 
 use super::{Corner, Crease, Creases, ONE_END};
 use crate::field::UnitCell;
-use crate::math::sort_by_key;
+use crate::math::{NONE, sort_by_key};
 use crate::particles::{OppositeFaces, Particles};
 use crate::sampler::probe::Probe;
 use glam::{DVec3, Vec3};
@@ -191,7 +191,6 @@ impl Creases {
         if repeats.is_empty() {
             return false;
         }
-        const NONE: u32 = Particles::NO_PARENT;
         let face_at = |row: usize, side: usize| {
             repeats.iter().position(|pair| pair.patches[side] == particles.patch[row])
         };

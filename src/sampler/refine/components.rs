@@ -11,9 +11,8 @@
 use super::coarse::{self, FrontPart, halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target};
-use crate::math::{Bounds, Forest};
+use crate::math::{Bounds, Forest, NONE};
 use crate::mesh::build::triangulate;
-use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
 use crate::sampler::constraint::CreaseLadder;
 use crate::sampler::probe::Probe;

@@ -37,8 +37,8 @@ pub(crate) use components::{CoarseFronts, Components, Next, SurfaceFacts};
 pub(crate) use moving::MovingMesh;
 pub use refusal::{Refusal, Spot};
 
-use crate::math::SQRT_3;
-use crate::mesh::half_edge::{NONE, Subdivision};
+use crate::math::{NONE, SQRT_3};
+use crate::mesh::half_edge::Subdivision;
 use crate::particles::Particles;
 use crate::sampler::probe::Probe;
 use crate::sampler::sizing::Sizing;

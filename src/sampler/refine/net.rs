@@ -2,8 +2,8 @@
 
 use super::walls::{Planes, Site, Walls};
 use crate::differential::Curvature;
-use crate::math::grow;
-use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
+use crate::math::{NONE, grow};
+use crate::mesh::half_edge::{HalfEdges, next, previous};
 use crate::particles::Slots;
 use crate::sampler::constraint::{CreaseLadder, tips::LEAST_RING};
 use crate::sampler::probe::{BATCH, Probe};

@@ -1,7 +1,7 @@
 //! The particles of a level in the order of their rings around the first one, as a run shows them.
 
 use super::net::Net;
-use crate::mesh::half_edge::NONE;
+use crate::math::NONE;
 use crate::particles::Particles;
 
 /// A breadth-first walk over the surface that fills the columns.

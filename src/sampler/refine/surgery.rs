@@ -2,8 +2,8 @@
 
 use super::net::{Ground, Net, Springs};
 use super::walls::{Planes, Site};
-use crate::math::{grow, sort_by_key};
-use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
+use crate::math::{NONE, grow, sort_by_key};
+use crate::mesh::half_edge::{HalfEdges, next, previous};
 use core::cmp::Ordering;
 use glam::Vec3;
 

@@ -1,8 +1,7 @@
 //! The box that cuts a net, and the planes of it on which the particles lie.
 
 use crate::field::descent;
-use crate::math::Bounds;
-use crate::mesh::half_edge::NONE;
+use crate::math::{Bounds, NONE};
 use glam::Vec3;
 
 /// Particles may be beyond a plane by this share of the spacing before they are put back onto it: rounding and the last step of

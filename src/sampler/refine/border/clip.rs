@@ -8,8 +8,8 @@ use super::super::net::{Ground, Net};
 use super::super::refusal::Refusal;
 use super::super::walls::{Planes, Site};
 use super::land_on;
-use crate::math::Bounds;
-use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
+use crate::math::{Bounds, NONE};
+use crate::mesh::half_edge::{HalfEdges, next, previous};
 use glam::Vec3;
 
 /// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away. From 1 to 6 the

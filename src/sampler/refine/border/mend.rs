@@ -3,7 +3,7 @@
 
 use super::super::net::Net;
 use super::super::surgery::Operation;
-use crate::mesh::half_edge::NONE;
+use crate::math::NONE;
 use core::cmp::Ordering;
 
 /// Edges of the border outside this range of lengths, in spacings, are tried even where there is no defect. Without it the longest is
