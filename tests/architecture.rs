@@ -55,7 +55,7 @@ const ROOMS: [Room; 4] = [
             ("session", &["math", "slices", "field", "extent", "sampler", "run", "export"]),
             // The paper written for reading, and the oracle of the fast fronts: it knows nothing of them.
             ("paper", &["math", "field", "differential", "particles"]),
-            // The lesson shares some words with the sampler, no algorithm.
+            // The lesson shares some words and numbers with the sampler, no algorithm.
             ("lesson", &["math", "field", "differential", "particles", "paper", "sampler"]),
             // Compiled for tests alone: the types of the page.
             (
@@ -149,7 +149,7 @@ const ROOMS: [Room; 4] = [
             ("triangles", &["figures", "moments", "one_rings"]),
             // The points, prepared; the figures below are made from them.
             ("points", &["options", "creases", "accuracy", "sheets", "one_rings"]),
-            ("gaps", &["points"]),
+            ("gaps", &["points", "projection"]),
             ("prepared", &["figures", "options", "points", "gaps", "triangles"]),
             ("components", &["points", "gaps", "triangles"]),
             ("order", &["figures", "moments", "one_rings", "points"]),

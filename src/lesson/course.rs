@@ -10,18 +10,13 @@ use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder, S
 use crate::field::Field;
 use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle};
 use crate::sampler::GapPolicy;
+use crate::sampler::sheet::UNCOVERED;
 use glam::DVec3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use serde::Serialize;
 use std::collections::VecDeque;
 use std::rc::Rc;
-
-/// With a stack there are no rings: a chapter is this many particles, as many as a ring of a run of some thousand has.
-const STACK_CHAPTER: u32 = 100;
-
-/// A candidate for a seed is covered by a particle of its sheet within this many radii: a closed cover has no hole wider than 1.85.
-const COVERED: f64 = 2.0;
 
 /// Distance at which the size of f tells a zero from a pole, in radii: ten times the residual, where f beside a pole has a tenth of its
 /// size and f beside a zero ten times as much.
@@ -220,16 +215,14 @@ impl Course {
         let part = self.part;
         self.part += 1;
         let front = self.fronts - 1;
+        self.left = waiting;
         match self.setup.settings.order {
             QueueOrder::Queue => {
-                self.left = waiting;
                 self.run.seen.push(Event::LevelBegins { level, waiting });
                 ChapterKind::Level { front, level }
             }
-            QueueOrder::Stack => {
-                self.left = STACK_CHAPTER;
-                ChapterKind::Stack { front, part }
-            }
+            // There are no rings: a chapter takes as many particles as waited when it began.
+            QueueOrder::Stack => ChapterKind::Stack { front, part },
         }
     }
 
@@ -323,9 +316,6 @@ impl Course {
         if self.run.seen.is_capped {
             self.waiting.clear();
             self.predicted.clear();
-        }
-        // A stack may be empty before the end of its chapter.
-        if self.waiting.is_empty() {
             self.left = 0;
         }
     }
@@ -358,7 +348,7 @@ impl Course {
 
     /// Whether a particle of its sheet is so near to a seed that its front has come by.
     fn is_covered(&self, seed: &Particle) -> bool {
-        let near = self.run.buckets.near(&self.run.particles, seed.p(), COVERED * seed.radius);
+        let near = self.run.buckets.near(&self.run.particles, seed.p(), f64::from(UNCOVERED) * seed.radius);
         near.iter().any(|near| self.run.particles[near.particle as usize].n().dot(seed.n()) > 0.0)
     }
 

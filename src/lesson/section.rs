@@ -19,14 +19,11 @@ pub struct Iterate {
     pub slope: f64,
 }
 
-/// Largest number of cells along a side of a section: more of them are no longer seen in a drawing of a few hundred pixels.
-const MAX_CELLS: u32 = 200;
-
 impl Lesson {
     /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of half side `half` around the
-    /// point: line segments as x₀, y₀, x₁, y₁, x along `right` and y along `up`, from a grid of `cells`² cells (at most 200²).
+    /// point: line segments as x₀, y₀, x₁, y₁, x along `right` and y along `up`, from a grid of `cells`² cells, at least one.
     pub fn section(&self, centre: Vector, right: Vector, up: Vector, half: f64, cells: u32) -> Vec<[f64; 4]> {
-        let cells = cells.clamp(1, MAX_CELLS) as usize;
+        let cells = cells.max(1) as usize;
         let mut surface = self.course.run.surface.clone();
         let [centre, right, up] = [centre, right, up].map(DVec3::from);
         let at = |k: usize| half * (2.0 * k as f64 / cells as f64 - 1.0);

@@ -1,5 +1,6 @@
 //! Intervals of numbers.
 
+use super::ROUNDING;
 use core::ops::{Add, Mul, Neg};
 
 /// A closed interval of numbers. It is empty where the lower end is the larger one.
@@ -78,8 +79,6 @@ impl Interval {
     /// (Moore 1966), where this bounds a function in the middle of a box and the function changes by at most `swing` from there.
     #[must_use]
     pub fn mean_value(self, swing: f64) -> Self {
-        /// Bound of the relative error of sixteen operations.
-        const ROUNDING: f64 = 16.0 * f64::EPSILON;
         let slack = ROUNDING * (swing + self.lo.abs() + self.hi.abs());
         Self::new(self.lo - swing - slack, self.hi + swing + slack)
     }

@@ -31,6 +31,11 @@ pub(crate) fn step_to_corner(slopes: [Slope; 3]) -> (DVec3, f64) {
     (rows.inverse() * DVec3::new(f, g, h), rows.determinant().abs())
 }
 
+/// Largest number of evaluations of Newton's method from a good guess, which takes two to five: each step doubles the digits. With half
+/// of them 5 of 33 random surfaces get other particles, and one another number of components; twice as many change the particles of 3,
+/// and no figure beyond scatter.
+pub(crate) const STEPS: u32 = 12;
+
 /// Limits of the way of a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepLimits {

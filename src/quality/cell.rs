@@ -2,8 +2,11 @@
 
 use glam::DVec2;
 
-/// Largest number of corners of a cell: the 200 nearest points can each add one, and the starting square has four.
-const CORNERS: usize = 208;
+/// Largest number of points by which a cell is clipped. With half of it 6 of 36 runs on random surfaces have more open cells, with double
+/// none; to try a few points first takes as many instructions within 0.2 % on smooth surfaces, and 2 % more where there are creases.
+pub(super) const MOST_POINTS: usize = 200;
+/// Largest number of corners of a cell: each of the points can add one, and the starting square has four.
+const CORNERS: usize = MOST_POINTS + 8;
 /// Label of an edge of the starting square.
 const SQUARE: u32 = u32::MAX;
 /// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share is far above the

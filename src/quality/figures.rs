@@ -15,7 +15,7 @@ pub struct Figures {
     pub d_hex: f64,
     /// Area, as given or of the triangles found, in the field's units.
     pub area: f64,
-    /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
+    /// Points that differ from an earlier one by no more than rounding; dropped before the triangulation.
     pub dup: usize,
     /// Points with a non-finite coordinate; left out of everything.
     pub not_finite: usize,

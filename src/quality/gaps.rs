@@ -2,6 +2,7 @@
 //! gap are natural neighbours, and nothing between them is surface.
 
 use super::points::MeasuredPoints;
+use super::projection::STEPS;
 use crate::field::descent::{Descent, descend};
 use crate::field::{BATCH, Field};
 use crate::math::{Bounds, sort_few};
@@ -14,9 +15,6 @@ pub(super) const LONG: f32 = 2.0;
 /// The distance of the natural neighbour with this rank is the spacing at a point, of fewer that of the last: a single neighbour may be
 /// far too near. With 2 the figures of 7 of 34 random surfaces are others, with 4 those of 5, in the fourth digit.
 const RANK: usize = 3;
-/// Evaluations on the way from the middle of an edge to the surface: after three Newton steps. One fewer or one more gives the
-/// same figures on 34 random surfaces.
-const STEPS: u32 = 4;
 /// Largest distance of the surface from the middle of an edge, lifted to the circle through its ends, over the edge's length: the
 /// sagitta of an arc that turns by one radian is an eighth of its chord. Half of it changes figures on 2 of 34 random surfaces,
 /// twice as much on 3.

@@ -1,6 +1,6 @@
 //! One-rings: the natural neighbours of every point, counter-clockwise around its normal.
 
-use super::cell::VoronoiCell;
+use super::cell::{MOST_POINTS, VoronoiCell};
 use super::sheets::Sheets;
 use crate::field::Field;
 use crate::math::{LANES, key, tangent_frame, unkey};
@@ -8,10 +8,6 @@ use crate::slices::pause;
 use crate::spatial::tree::{Leaf, PointsInBox, Tree};
 use glam::{DVec2, DVec3, Vec3};
 
-/// Numbers of nearest points that are tried in turn while a cell is not proven complete, each about three times the one before.
-/// The first try takes the points in the ball of the leaf. A complete cell does not depend on the try that
-/// completed it.
-const TRIES: [usize; 3] = [24, 64, 200];
 /// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are on
 /// one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the mean
 /// is 1/12 where the curvature changes by its own size between the points. Half of it leaves more open edges on 5 of 12 random
@@ -123,20 +119,17 @@ impl OneRings {
             };
             let mut known_sq = f64::from(reach_sq);
             let mut closed = fill(cell, tree, normal[i], i, keys, known_sq, &mut is_stranger);
-            for count in TRIES {
-                // The ball may have held more points than this try takes.
-                if closed || count <= keys.len() {
-                    continue;
-                }
+            // The points in the ball of the leaf are enough for most cells.
+            if !closed && keys.len() < MOST_POINTS {
                 let accept = |j: u32| {
                     let distance_sq = (tree.position[j as usize] - p).length_squared();
                     j as usize != i
                         && creases.is_one_patch(i, j as usize)
                         && is_one_sheet(sheets, i, j as usize, distance_sq)
                 };
-                tree.nearest_many(p, count, accept, keys);
+                tree.nearest_many(p, MOST_POINTS, accept, keys);
                 known_sq = match keys.last() {
-                    Some(&last) if keys.len() == count => f64::from(unkey(last).0),
+                    Some(&last) if keys.len() == MOST_POINTS => f64::from(unkey(last).0),
                     _ => f64::INFINITY, // Every point is known.
                 };
                 closed = fill(cell, tree, normal[i], i, keys, known_sq, &mut is_stranger);

@@ -6,13 +6,9 @@ use super::options::MeasureOptions;
 use super::points::MeasuredPoints;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
-use crate::math::{Bounds, IndexTable, hash};
+use crate::math::{Bounds, IndexTable, SINGLE_ROUNDING, hash};
 use crate::slices::pause;
 use glam::Vec3;
-
-/// Points closer than this many d_hex to an earlier one are duplicates of it. It is the last digit, in single precision, of a
-/// coordinate of 8 d_hex: in most boxes only equal positions are as near.
-const DUPLICATE: f64 = 1e-6;
 
 /// The points without duplicates and non-finite positions, and their triangles.
 pub(super) struct Prepared {
@@ -69,7 +65,7 @@ impl Prepared {
             let area = options.area.unwrap_or_else(|| area(&points.tree.position, &mesh));
             let d_hex = hexagonal_spacing(area, position.len() - not_finite - further);
             pause().await;
-            if !drop_close(&points, (DUPLICATE * d_hex) as f32, &mut drop) {
+            if !drop_close(&points, (SINGLE_ROUNDING * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - points.tree.len();
                 return Self { points, spacing, triangles, mesh, duplicates, not_finite, drop };
             }

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 /// Largest number of Newton steps of a projection. With two the figures of 4 of 34 random surfaces change in the sixth digit,
 /// with four that of one.
-const STEPS: u32 = 3;
+pub(super) const STEPS: u32 = 3;
 /// A step shorter than this share of the leash is the last one.
 ///
 /// A step of length s is about the sagitta κℓ²/2 of a chord of the length ℓ of the leash. The error that it leaves is

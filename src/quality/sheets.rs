@@ -9,6 +9,7 @@
 
 use super::creases::CreaseRows;
 use crate::field::Field;
+use crate::math::SINGLE_ROUNDING;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
@@ -16,9 +17,6 @@ use glam::{DVec3, Vec3};
 /// farther apart than that. Half of it changes `edge_cv` of 3 of 34 random surfaces by up to 0.012; with twice as much one of
 /// them has another number of components.
 const SHARE: f64 = 0.5;
-/// Lift, over the distance of two points, that the rounding of their normals may leave: some ten times the last digit of a
-/// component in single precision. Half and double give the same figures on 34 random surfaces.
-const ROUNDING: f64 = 1e-6;
 /// Steps of the way along the surface from one point to another. At an eighth of the distance d a step leaves the surface by
 /// d³/3000 times the change of the curvature, which must be less than the distance to another sheet.
 const STEPS: u32 = 8;
@@ -61,7 +59,7 @@ impl Sheets<'_> {
         }
         let ((p, n), (q, m)) = (self.on_surface(i), self.on_surface(j));
         let lift = (0.5 * (q - p).dot(n + m)).abs();
-        if lift <= SHARE * facing_away || lift <= ROUNDING * (q - p).length() {
+        if lift <= SHARE * facing_away || lift <= SINGLE_ROUNDING * (q - p).length() {
             return false;
         }
         let (mut at, mut normal) = (p, n);

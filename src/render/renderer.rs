@@ -85,9 +85,6 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Largest number of records of each kind: particles, which take 144 MiB on the GPU, faces, which take 396 MiB, and pieces of creases.
-    pub const MAX: u32 = MOST_RECORDS;
-
     /// Opens a device that can draw on `surface_target`.
     ///
     /// # Errors
@@ -185,7 +182,7 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If a column is shorter than that of the radii, or they end beyond [`Renderer::MAX`].
+    /// If a column is shorter than that of the radii, or they end beyond [`MOST_RECORDS`].
     pub fn write(&mut self, first: u32, columns: Columns<'_>, birth_s: f64) {
         if self.is_lost() || columns.radii.is_empty() {
             return;
@@ -203,7 +200,7 @@ impl Renderer {
 
     /// Writes the colours of particles from `first` on. Particles beyond the capacity of the buffers are skipped.
     pub fn write_colours(&mut self, first: u32, colours: &[u32]) {
-        if !self.is_lost() && (first as usize + colours.len()) <= Self::MAX as usize {
+        if !self.is_lost() && (first as usize + colours.len()) <= MOST_RECORDS as usize {
             let bytes = bytemuck::cast_slice(colours);
             self.content.particles.write(&self.gpu.queue, Part::Colours, first, bytes);
         }
@@ -211,7 +208,7 @@ impl Renderer {
 
     /// Sets the number of particles that are drawn. The buffers keep their size.
     pub fn set_count(&mut self, count: u32) {
-        self.content.particles.count = count.min(Self::MAX);
+        self.content.particles.count = count.min(MOST_RECORDS);
     }
 
     /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from outside. `marks` has the
@@ -219,7 +216,7 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If a column is shorter than that of the radii, or they end beyond [`Renderer::MAX`].
+    /// If a column is shorter than that of the radii, or they end beyond [`MOST_RECORDS`].
     pub fn write_faces(&mut self, first: u32, corners: Columns<'_>, marks: &[u32]) {
         let count = (corners.radii.len() / 3) as u32;
         if self.is_lost() || count == 0 {
@@ -238,7 +235,7 @@ impl Renderer {
     /// Writes the colours of faces from `first` on, and those of their marks, three each. Faces beyond the capacity of the buffers
     /// are skipped.
     pub fn tint_faces(&mut self, first: u32, colours: &[u32], marks: &[u32]) {
-        if self.is_lost() || (first as usize + colours.len() / 3) > Self::MAX as usize {
+        if self.is_lost() || (first as usize + colours.len() / 3) > MOST_RECORDS as usize {
             return;
         }
         let (colours, marks) = (colours.as_chunks::<3>().0, marks.as_chunks::<3>().0);
@@ -251,7 +248,7 @@ impl Renderer {
     /// buffers are given back.
     pub fn set_faces(&mut self, count: u32, particles: u32) {
         let Content { faces, face_particles, .. } = &mut self.content;
-        (faces.count, *face_particles) = (count.min(Self::MAX), particles);
+        (faces.count, *face_particles) = (count.min(MOST_RECORDS), particles);
         if count == 0 {
             faces.release();
             self.face_scratch = Vec::new();
@@ -263,7 +260,7 @@ impl Renderer {
     ///
     /// # Panics
     ///
-    /// If the columns differ in length or there are more than [`Renderer::MAX`].
+    /// If the columns differ in length or there are more than [`MOST_RECORDS`].
     pub fn write_lines(&mut self, ends: &[f32], colours: &[u32]) {
         assert_eq!(ends.len(), 8 * colours.len(), "numbers of ends, for as many colours times 8");
         if self.is_lost() {

@@ -5,6 +5,7 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
+use crate::sampler::sheet::repulsion_weight;
 use crate::slices::{self, HEAVY, Work, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
@@ -112,8 +113,6 @@ impl MeasuringInput {
 
 /// Number of particles nearer than 2r to one of the same patch that faces the other way.
 async fn facing_another_sheet(particles: &Particles) -> usize {
-    /// Normals at more than 120° face each other: across a sharp edge they are nearer.
-    const FACING: f32 = -0.5;
     let tree = Tree::in_slices(particles.position.iter().copied().zip(0..).collect()).await;
     let mut near = Vec::new();
     let mut count = 0;
@@ -127,7 +126,7 @@ async fn facing_another_sheet(particles: &Particles) -> usize {
             tree.within_box(p - Vec3::splat(reach), p + Vec3::splat(reach), &mut near);
             let is_facing = near.iter().any(|&k| {
                 let j = tree.origin[k as usize] as usize;
-                particles.normal[j].dot(n) < FACING
+                repulsion_weight(particles.normal[j].dot(n)) <= 0.0
                     && particles.patch.get(j) == particles.patch.get(i)
                     && tree.position[k as usize].distance_squared(p) < reach * reach
             });

@@ -24,7 +24,7 @@ use crate::field::Field;
 use crate::math::functions::{atan2, cos, sin};
 use crate::math::{Bounds, refill, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::survey::Survey;
+use crate::sampler::discovery::survey::{SAMPLES, Survey};
 use crate::sampler::front::widest_gap;
 use crate::sampler::neighbours::constants::GAUSSIAN_RANGE;
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids, RadiusRange};
@@ -36,7 +36,7 @@ use crate::sampler::relaxation::repulsion::{END_ENERGY, pair_energy};
 use crate::sampler::sheet::{OrientedPoint, SheetRule, UNCOVERED, is_cover, is_level};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::{FRAC_PI_3, PI, TAU};
 use core::f64::consts::E;
 use glam::{Vec2, Vec3};
 
@@ -79,7 +79,6 @@ const OPEN_SECTOR: f32 = 100.0 / 180.0 * PI;
 /// A child is placed 60° beside the neighbour at which an open sector begins, as in a front. In a sector too narrow for two it is placed in
 /// the middle: below half-way between 120° and the 180° that two take. From 120° to 180° the mean figures of 16 random motions are the same
 /// within 1 %.
-const SLOT_ANGLE: f32 = PI / 3.0;
 const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 
 /// Distance that a child in an open sector needs from all others, over the sum of the radii. On 16 random motions the count is off by 1.3 %
@@ -379,7 +378,7 @@ impl Flow {
             if let Some(sector) = widest_sector(&self.around) {
                 self.open.push(i as u32);
                 self.columns.is_open[i] = true;
-                self.columns.energy[i] *= TAU / (TAU + SLOT_ANGLE - sector.width);
+                self.columns.energy[i] *= TAU / (TAU + FRAC_PI_3 - sector.width);
             }
         }
     }
@@ -480,7 +479,7 @@ impl Flow {
         self.gather_neighbours(particles, parent);
         self.look_around(particles, parent);
         while let Some(sector) = widest_sector(&self.around) {
-            let turn = if sector.width < NARROW_SECTOR { 0.5 * sector.width } else { SLOT_ANGLE };
+            let turn = if sector.width < NARROW_SECTOR { 0.5 * sector.width } else { FRAC_PI_3 };
             let angle = (sector.from + turn) % TAU;
             let direction = u * cos(angle) + w * sin(angle);
             let circle = circle_around(particles, parent, direction, 1.0);
@@ -609,9 +608,7 @@ fn direction_angle(x: f32, y: f32) -> f32 {
 
 /// Whether most particles are near enough to the surface of a field to be transported to it: a few that are not may lie where it vanishes.
 pub(crate) fn is_near(field: &mut dyn Field, particles: &Particles) -> bool {
-    /// Particles that are looked at, spread over all: a share of them is that of all to about 3 %.
-    const LOOKS: usize = 256;
-    let step = particles.len().div_ceil(LOOKS);
+    let step = particles.len().div_ceil(SAMPLES);
     let near = |i: &usize| {
         let (value, gradient) = field.value_and_gradient(particles.position[*i].as_dvec3());
         let reach = f64::from(TRANSPORT_REACH * particles.radius[*i]);

@@ -22,9 +22,6 @@ use rand_core::SeedableRng;
 /// from the pace of the front must not wait. On 14 random surfaces a unit takes 0.04 to 0.5 µs natively in the mean, so many 0.3 to 4 ms. It
 /// changes no particle.
 const SLICE: u32 = 8_192;
-/// Distance within which a singular point is a tip, as a share of the one within which it was searched for: far above rounding. From
-/// a millionth to 1 the particles of 16 random cones are the same.
-const SAME_TIP: f64 = 1e-3;
 /// Seeds that may be taken back in an attempt, and one more for every particle. Half and double give the same particles on 34
 /// random surfaces.
 const MOST_LONE_SEEDS: usize = 256;
@@ -459,7 +456,7 @@ impl Sampler {
     /// Why the front is not refined, if there is a singular point without a particle: no tip, or one without room for it.
     fn unpinned(&self) -> Option<Refusal> {
         let Output { particles, .. } = &self.output;
-        let is_near = |point: &Singular, p: DVec3| point.position.distance(p) <= SAME_TIP * point.reach;
+        let is_near = |point: &Singular, p: DVec3| point.position.distance(p) <= singular::SAME * point.reach;
         let is_pinned = |point: &&Singular| {
             (0..particles.twins.len()).any(|row| is_near(point, particles.position[row].as_dvec3()))
         };

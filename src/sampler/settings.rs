@@ -135,12 +135,17 @@ type Number = (&'static str, f64, f64, fn(&Settings) -> f64);
 const NUMBERS: [Number; 11] = [
     ("radius_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_share),
     ("count", 1.0, MOST_WANTED, |s| s.count.into()),
+    // On a sphere that fills its box, radii of 2·10⁻⁴ to 0.065 of the diagonal.
     ("chord_error", 1e-7, 0.01, |s| s.chord_error),
+    // On such a sphere from 3·10⁻⁴ on, up to 57° between the normals of neighbours: from 60° on they may be on two sheets.
     ("curvature_scale", 1e-3, 0.5, |s| s.curvature_scale),
     ("radius_min_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_min_share),
     ("radius_max_share", LEAST_SHARE, MOST_SHARE, |s| s.radius_max_share),
+    // The radii of neighbours differ by 2 % to a factor of three.
     ("grading", 0.01, 0.5, |s| s.grading),
+    // A limit on time: a hundred times the paper's steps.
     ("relax_steps", 0.0, 1000.0, |s| s.relax_steps.into()),
+    // Below, children overlap by half; at 1 they are taken for the particles beside them in a lattice.
     ("match_tolerance", 0.5, 0.9, |s| s.match_tolerance),
     ("seed", 0.0, u64::MAX as f64, |s| s.seed as f64),
     ("max_particles", 1.0, COUNT_ROOM * MOST_WANTED, |s| s.max_particles.into()),
@@ -185,7 +190,9 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
-    /// The values that `Default` gives.
+    /// The values that `Default` gives. The radius is the smaller one of the paper (§6). At the median 21 random surfaces take 21,600 particles
+    /// by the chord error, which is the default count too, and 55,000 by the largest curvature; their radii lie between the limits, of which
+    /// the smaller one gives 300,000 particles on a sphere and the larger one 340. There is room for ten times the default count.
     pub const DEFAULT: Self = Self {
         bounds: None,
         sampling: Sampling::Uniform,

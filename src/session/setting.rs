@@ -392,6 +392,7 @@ pub fn settings() -> Vec<Setting> {
             ))
         },
         Setting {
+            // On a slider to the largest value accepted, the paper's ten steps would be at its very beginning.
             max: 100.0,
             step: 1.0,
             unit: "steps",
@@ -428,6 +429,7 @@ pub fn settings() -> Vec<Setting> {
             GAPS,
         )),
         Setting {
+            // Six digits, which a person can copy.
             max: 999_999.0,
             step: 1.0,
             ..advanced(number(

@@ -3,6 +3,7 @@
 //! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
 //! picture may be on its way while the next frame is drawn.
 
+use crate::render::chunks::MOST_RECORDS;
 use crate::render::style::{ClipBoxStyle, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
 use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
@@ -105,7 +106,7 @@ impl Renderer {
 
     /// Largest number of particles that `write` takes.
     pub fn max_particles(&self) -> u32 {
-        Inner::MAX
+        MOST_RECORDS
     }
 
     /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
@@ -176,7 +177,7 @@ impl Renderer {
 
     /// Largest number of faces that `write_faces` takes.
     pub fn max_faces(&self) -> u32 {
-        Inner::MAX
+        MOST_RECORDS
     }
 
     /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
@@ -393,7 +394,7 @@ fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), Js
 
 /// Refuses more records than a renderer draws of either kind.
 fn check_end(first: u32, count: u32, what: &str) -> Result<(), JsError> {
-    let (end, most) = (u64::from(first) + u64::from(count), Inner::MAX);
+    let (end, most) = (u64::from(first) + u64::from(count), MOST_RECORDS);
     if end > u64::from(most) {
         return Err(JsError::new(&format!("{end} {what}, at most {most} are drawn")));
     }

@@ -3,8 +3,9 @@
 use core::cell::Cell;
 use glam::{DVec3, Vec3};
 use marching_particles::export;
+use marching_particles::field::model::MAX_FILE_BYTES;
 use marching_particles::particles::{Particles, Slots};
-use marching_particles::pointcloud::read::{FileMesh, InputFormat, MAX_BYTES, ReadError, Reader, check_size};
+use marching_particles::pointcloud::read::{FileMesh, InputFormat, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
 use marching_particles::quality;
 use marching_particles::slices::complete;
@@ -521,7 +522,7 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
         assert!(message.contains(part), "{message}");
     }
     assert_eq!(check_size(0), Err(ReadError::Empty));
-    assert_eq!(check_size(MAX_BYTES), Ok(()));
+    assert_eq!(check_size(MAX_FILE_BYTES.into()), Ok(()));
     let error = check_size(2_000_000_001).expect_err("two gigabytes");
     assert_eq!(
         error.to_string(),

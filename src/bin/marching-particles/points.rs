@@ -2,9 +2,10 @@
 
 use crate::failure::Failure;
 use indicatif::ProgressBar;
+use marching_particles::field::model;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::{Job, JobError};
-use marching_particles::pointcloud::read::{MAX_BYTES, check_size};
+use marching_particles::pointcloud::read::check_size;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -23,7 +24,7 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
         check_size(metadata.len()).map_err(|error| wrong(error.into()))?;
     }
     let mut bytes = Vec::new();
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    file.take(u64::from(model::MAX_FILE_BYTES) + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
 }

@@ -54,10 +54,6 @@ const RIDGE: f64 = 1e-8;
 /// strongest one moves across.
 const IDLE: f64 = 1e-3;
 
-/// Steps of Newton's method to the place of a point. Near the surface each doubles the digits, so that most of them may lead there.
-/// Half of them bring the same pulls to places as near, twice as many to farther ones where the surface cannot be brought to the point.
-const MOST_PLACE_STEPS: u32 = 20;
-
 /// f as a function of the parameters, three at a time.
 struct ByParameters {
     /// The graph of f in which three parameters and the coordinates have changed places.
@@ -283,7 +279,7 @@ impl Formula {
     /// A point of the surface near a point, both in the coordinates of the formula; the point itself if none is found.
     fn place_near(&mut self, p: DVec3) -> DVec3 {
         let at_rest = NEAR * p.length().max(1.0);
-        let limits = StepLimits { at_rest, ..StepLimits::steps(MOST_PLACE_STEPS) };
+        let limits = StepLimits { at_rest, ..StepLimits::steps(newton::STEPS) };
         let origin = self.origin;
         let step_at = |place| Some((step_to_surface(self.value_and_gradient(place)), ()));
         newton::land(p - origin, limits, step_at).map_or(p, |(place, ())| origin + place)

@@ -12,9 +12,9 @@ use super::compiled::Compiled;
 use super::graph::{Id, MIN_BLEND_WIDTH, Node};
 use super::operations::Unary;
 use super::{interval, scalar};
-use crate::field::BranchNumbers;
+use crate::field::{BranchNumbers, SHARP};
 use crate::math::Bounds;
-use crate::math::newton::step_to_curve;
+use crate::math::newton::{STEPS, step_to_curve};
 use crate::slices::pause;
 use glam::DVec3;
 
@@ -31,10 +31,6 @@ const MAX_CELLS: usize = 1 << DEPTH;
 
 /// Maximum number of cells that are visited to narrow creases down: those of a gyroid in its box take 50,000.
 const MOST_VISITED: usize = 1 << 18;
-
-/// Least jump of the gradient, as a share of it, that is a crease: an angle of 0.6°, less than light and shadow show. A tenth and ten
-/// times change no figure beyond scatter on 60 random solids, products and powers of a thickness.
-const LEAST_JUMP: f64 = 0.01;
 
 /// Distance from the tie at which the gradients are taken, and a hundred times the error of its place; as a share of the diagonal of
 /// the box. On the same surfaces ten times this and a tenth of it change no figure beyond scatter.
@@ -364,8 +360,6 @@ impl TieSearch<'_> {
         scratch: &mut TieScratch,
         jets: &mut Vec<scalar::ForwardJet<0>>,
     ) -> Option<TieKind> {
-        // Enough for Newton's method, which doubles the digits with each step, from a start that is not too bad.
-        const STEPS: usize = 12;
         let graph = &self.base.graph;
         // A place that is farther away is found from another cell.
         let reach = 2.0 * cell.diagonal();
@@ -414,7 +408,7 @@ impl TieSearch<'_> {
                 }
                 let across = h * (STEP * size / hh.sqrt());
                 let [one, other] = [p + across, p - across].map(|p| at(p).0.1);
-                if (one - other).length() > LEAST_JUMP * one.length().max(other.length()) {
+                if (one - other).length() > SHARP * one.length().max(other.length()) {
                     return Some(TieKind::Crease);
                 }
                 best = Some(TieKind::Seam);

@@ -2,13 +2,12 @@
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use crate::math::SINGLE_ROUNDING;
 use core::f64::consts::{PI, TAU};
 
 /// Largest numerator and denominator of the ratio of two periods that have a common multiple. What comes together only after
 /// more of them is taken for not periodic: of 20,000 particles each of 12³ small cells in a large one has a dozen.
 const MOST_PERIODS: u32 = 12;
-/// Largest relative error of such a ratio, by rounding: far below 1/144, by which two of them differ at least.
-const ROUNDING: f64 = 1e-9;
 
 /// The dependence of a value on one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,14 +61,10 @@ pub(super) fn period(graph: &Graph, root: Id, axis: u8, parameters: &[f64]) -> O
     }
 }
 
-/// Largest part of a width by which it may miss a whole number of periods: single precision, in which particles are kept, holds no
-/// more, and seven digits of a period are enough.
-const SLACK: f64 = 1e-6;
-
 /// Whether a width is a whole number of periods, of which 0 is that of what does not change.
 pub(super) fn is_whole(width: f64, period: f64) -> bool {
     let whole = (width / period).round();
-    period == 0.0 || whole >= 1.0 && (whole * period - width).abs() <= SLACK * width
+    period == 0.0 || whole >= 1.0 && (whole * period - width).abs() <= SINGLE_ROUNDING * width
 }
 
 fn negated(value: Along) -> Along {
@@ -120,7 +115,7 @@ fn common(a: f64, b: f64) -> Option<f64> {
         let whole = f64::from(n) * a;
         let times = whole / b;
         let nearest = times.round();
-        let is_whole = nearest >= 1.0 && (times - nearest).abs() <= ROUNDING * nearest;
+        let is_whole = nearest >= 1.0 && (times - nearest).abs() <= SINGLE_ROUNDING * nearest;
         (is_whole && nearest <= f64::from(MOST_PERIODS)).then_some(whole)
     })
 }

@@ -5,7 +5,8 @@ use crate::spatial::LANES_OF;
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{Vec3, Vec4};
 
-/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds some 18.
+/// Largest number of points in a ball. In a hexagonal lattice the first ball that is searched holds some 18. With half of it 6 of 24 unrelaxed
+/// random runs have another mesh, with double 2, in as many instructions within 0.1 %.
 pub(super) const MOST: usize = 64;
 /// Numbers that are worked on at once: the lanes of a SIMD register.
 const WIDTH: usize = 4;

@@ -20,9 +20,6 @@ use super::thin;
 use crate::field::model::MAX_FILE_BYTES;
 use input::Input;
 
-/// Maximum size of a file in bytes.
-pub const MAX_BYTES: u64 = MAX_FILE_BYTES as u64;
-
 /// Why a file cannot be read. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -30,10 +27,10 @@ pub enum ReadError {
     /// The file is empty.
     #[error("the file is empty; choose one that holds points")]
     Empty,
-    /// The file is larger than [`MAX_BYTES`].
+    /// The file is larger than [`MAX_FILE_BYTES`].
     #[error(
         "the file has {} MB, and up to {} MB are read; keep fewer points, for example every tenth",
-        bytes.div_ceil(1_000_000), MAX_BYTES / 1_000_000
+        bytes.div_ceil(1_000_000), MAX_FILE_BYTES / 1_000_000
     )]
     TooLarge {
         /// Size of the file.
@@ -97,11 +94,11 @@ pub enum ReadError {
 ///
 /// # Errors
 ///
-/// If the file is empty or larger than [`MAX_BYTES`].
+/// If the file is empty or larger than [`MAX_FILE_BYTES`].
 pub fn check_size(bytes: u64) -> Result<(), ReadError> {
     match bytes {
         0 => Err(ReadError::Empty),
-        1..=MAX_BYTES => Ok(()),
+        _ if bytes <= MAX_FILE_BYTES.into() => Ok(()),
         _ => Err(ReadError::TooLarge { bytes }),
     }
 }

@@ -1,13 +1,10 @@
 //! Points where branches of f are zero together.
 
-use super::{AT_REST, STEPS};
-use crate::math::newton::{self, StepLimits, step_to_corner, step_to_curve, step_to_surface};
+use super::AT_REST;
+use crate::math::newton::{self, STEPS, StepLimits, step_to_corner, step_to_curve, step_to_surface};
 use crate::sampler::probe::Probe;
 use glam::DVec3;
 
-/// Sine of the angle between two branches from which on they make a crease: one degree. Half and double give the same particles on
-/// 24 random solids.
-pub(super) const SHARP: f64 = 0.0175;
 /// Sine of that angle down to which a crease is followed, where it fades out. At [`ASIDE`] the angle then still outweighs the bend of a
 /// branch, which is half of `ASIDE` squared where the radius of curvature is the reach.
 pub(super) const FADED: f64 = 10.0 * ASIDE;

@@ -24,19 +24,20 @@ mod tests;
 pub(super) mod tips;
 mod trace;
 
+use crate::field::SHARP;
 use crate::math::{Bounds, Forest};
 use crate::sampler::probe::Probe;
 use crate::slices::pause;
 use cell::{FacePair, Image};
 use glam::{DVec3, Vec3};
 pub(super) use ladder::CreaseLadder;
-use meeting::{Meeting, SHARP};
+use meeting::Meeting;
 
 /// Side of the smallest cells of the search, and about twice the step along a curve, as a share of the diagonal of the box. Half and
 /// double find as many creases and corners of 24 random solids.
 const CELL: f64 = 1.0 / 128.0;
-/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. Half and double
-/// give the same particles on 24 random solids.
+/// Corners nearer to each other than this share of a step are one: the width of the smallest crease that is followed. So are a corner and
+/// a tip nearer than this share of a radius. Half and double give the same particles on 24 random solids.
 const ONE_CORNER: f64 = 1e-3;
 /// Distance from a corner, in steps, at which the creases that end there are looked for: ten times the width of the smallest one.
 const BESIDE: f64 = 10.0 * ONE_CORNER;
@@ -49,9 +50,6 @@ const ONE_END: f64 = 0.1;
 /// 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
 const NEAR: f64 = 0.2;
 
-/// Steps of Newton's method to a crease or a corner, and along a sphere around a tip. From a cell that a crease crosses five are enough;
-/// where two branches touch without an angle each step halves the distance.
-const STEPS: u32 = 12;
 /// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding. With
 /// ten times and a tenth of it the particles of 24 random solids are the same.
 const AT_REST: f64 = 1e-9;

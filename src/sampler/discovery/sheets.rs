@@ -3,10 +3,9 @@
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::newton::{self, StepLimits, step_to_surface};
-use crate::math::{Bounds, Interval};
+use crate::math::{Bounds, Interval, ROUNDING};
 use crate::sampler::discovery::cell::rise;
 use crate::sampler::discovery::octree::Region;
-use crate::sampler::projection::MAX_NEWTON_STEPS;
 use glam::DVec3;
 
 /// Largest number of segments that are tested in one call, and so of the nearest points to which a connection is tried. With 5 and with 20 the same
@@ -128,7 +127,7 @@ impl Prover<'_> {
 
     /// The point of the surface that Newton's method along the gradient finds from `p`, to the precision of a number.
     fn land(&mut self, p: DVec3) -> Option<ExactPoint> {
-        let limits = StepLimits { share_at_rest: 1e-12, ..StepLimits::steps(MAX_NEWTON_STEPS) };
+        let limits = StepLimits { share_at_rest: ROUNDING, ..StepLimits::steps(newton::STEPS) };
         let (position, gradient) = newton::land(p, limits, |p| Some(self.newton_step(p)))?;
         gradient.try_normalize().map(|normal| ExactPoint { position, normal })
     }

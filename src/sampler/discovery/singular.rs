@@ -13,9 +13,8 @@
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
 use crate::field::{Bounded, Enclosure, Field};
-use crate::math::{Bounds, Forest, Interval, Sym3, sort_few};
+use crate::math::{Bounds, Forest, Interval, ROUNDING, Sym3, sort_few};
 use crate::particles::{Particles, Slots};
-use crate::sampler::discovery::interval_newton::ROUNDING;
 use crate::sampler::probe::BATCH;
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
@@ -56,8 +55,8 @@ const DAMPED: f64 = 0.1;
 /// step is lengthened to where the steps would end. Without, 5 of 50 random surfaces with cusps no longer show theirs.
 const SLOW: core::ops::Range<f64> = 0.45..0.88;
 /// Two singular points count as one if they are nearer to each other than this share of the search distance: Newton's method ends at
-/// 10⁻¹² of it. A tenth and ten times give the same particles on 20 random cones.
-pub(super) const SAME: f64 = 1e-6;
+/// 10⁻¹² of it. A tenth and ten times give the same particles on 20 random cones. A tip as near to one is that point.
+pub(crate) const SAME: f64 = 1e-6;
 /// Distance from a point of the survey within which a singular point is searched, in spacings of its grid: the diagonal of a cell.
 const NEAR: f64 = 1.75;
 /// Extent of linked points that are no curve, as a share of the search distance: at a point where sheets touch, Newton's method ends

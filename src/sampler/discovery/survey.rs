@@ -3,13 +3,13 @@
 
 use crate::field::Field;
 use crate::field::descent::Descent;
-use crate::math::{Bounds, median, sort_numbers};
+use crate::math::{Bounds, median, newton, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
 use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
 use crate::sampler::discovery::nearness::{Nearness, STEPS, UNRESOLVED, nearest};
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{MAX_NEWTON_STEPS, ResidualLimits, Tolerance, tolerance};
+use crate::sampler::projection::{ResidualLimits, Tolerance, tolerance};
 use crate::sampler::sheet::OrientedPoint;
 use glam::{DVec3, Vec3};
 use rand_core::Rng;
@@ -267,7 +267,7 @@ fn project(
 ) {
     out.residual = ResidualLimits::UNLIMITED.residual(spacing).max(ulps(bounds));
     let limits = Descent { residual: out.residual, reach: 2.0 * spacing, trust: 0.0 };
-    let landed = probe.land_all(start, out.tolerance().min_gradient, limits, MAX_NEWTON_STEPS);
+    let landed = probe.land_all(start, out.tolerance().min_gradient, limits, newton::STEPS);
     for ((&position, area), normal) in start.iter().zip(areas).zip(landed) {
         if let Some(normal) = normal
             && bounds.contains(position)
@@ -385,7 +385,7 @@ impl Survey {
                     continue;
                 }
                 let mut place = [p[0].lerp(p[1], f[0] / (f[0] - f[1]))];
-                let landed = probe.land_all(&mut place, min_gradient, limits, MAX_NEWTON_STEPS);
+                let landed = probe.land_all(&mut place, min_gradient, limits, newton::STEPS);
                 if let (&[Some(normal)], [position]) = (&landed[..], place)
                     && bounds.contains(position)
                     && normal.dot(along).abs() >= LEAST_COSINE
@@ -411,12 +411,12 @@ impl Survey {
 /// Largest distance at which f is looked at on either side of a point, as a share of the grid's spacing: it halves from there. For
 /// surfaces that only touch zero a sixth of it tells the same on 223 random surfaces.
 const LARGEST: f32 = 0.125;
-/// Number of points at which the resolution is measured: an upper quartile rests on 12 of them. Half and twice as many change no particle on
-/// 43 random surfaces.
-const RESOLUTION_SAMPLES: usize = 48;
-/// Number of points at which near sheets are looked for. Half of it gives the same particles in 72 runs on 36 random surfaces, many of which
-/// have some, twice as many others on one.
-const SAMPLES: usize = 256;
+/// Number of points at which a median or a quartile is taken, which then rests on 12 of them. Half and twice as many at which the
+/// resolution is measured change no particle on 43 random surfaces.
+pub(super) const FEW: usize = 48;
+/// Number of points or particles that are looked at, spread over all: a share of them is that of all to 3 %. Half as many at which near
+/// sheets are looked for give the same particles in 72 runs on 36 random surfaces, many of which have some, twice as many others on one.
+pub(crate) const SAMPLES: usize = 256;
 /// Distance, in resolutions, below which rounding may decide the sign of f: that at which sheets are told apart.
 const NOISE: f32 = UNRESOLVED[0] as f32;
 
@@ -483,8 +483,8 @@ fn land_anew(probe: &mut Probe, out: &mut Survey) {
 /// may be another sheet.
 fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     let (mut same, mut seen) = (0, 0);
-    let normals = selection(&survey.normal, RESOLUTION_SAMPLES);
-    for (&p, &n) in selection(&survey.position, RESOLUTION_SAMPLES).zip(normals) {
+    let normals = selection(&survey.normal, FEW);
+    for (&p, &n) in selection(&survey.position, FEW).zip(normals) {
         let mut is_same_at = |d: f32| {
             let (value, _) = probe.gradients(&[p + n * d, p - n * d]);
             value[0] * value[1] > 0.0
@@ -513,7 +513,7 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
     let mut points: Vec<Vec3> = selection(&survey.position, SAMPLES).copied().collect();
     // The points may be as far from their sheets as those are from each other. One that cannot come nearer tells nothing.
     let limits = Descent { residual: 2.0 * survey.resolution, reach: survey.residual, trust: 0.0 };
-    let landed = probe.land_all(&mut points, survey.tolerance().min_gradient, limits, MAX_NEWTON_STEPS);
+    let landed = probe.land_all(&mut points, survey.tolerance().min_gradient, limits, newton::STEPS);
     for (p, normal) in points.into_iter().zip(landed) {
         let Some(n) = normal else { continue };
         let mut nearest = [f32::INFINITY; 2];
@@ -539,7 +539,7 @@ fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
 
 /// Upper quartile of the distance between the surface in single and in double precision, doubled.
 fn rounding(probe: &mut Probe, points: &[Vec3]) -> f32 {
-    let mut distance: Vec<f32> = selection(points, RESOLUTION_SAMPLES)
+    let mut distance: Vec<f32> = selection(points, FEW)
         .filter_map(|&p| {
             let (value, gradient) = probe.gradient(p);
             let exact = probe.field.jet(p.as_dvec3());

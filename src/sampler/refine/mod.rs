@@ -53,7 +53,8 @@ use tally::Tally;
 /// that edges of the border have among the faces: with one in ten, four leave 10⁻⁵ of it.
 const BORDER_ROUNDS: u32 = 4;
 
-/// Units that a trial of surgery counts for: it moves some twenty particles twice.
+/// Units that a trial of surgery counts for. On random surfaces one takes 83,000 to 89,000 instructions, and a unit of the front
+/// 2,400 to 5,100.
 const TRIAL_UNITS: u32 = 32;
 /// Half-edges looked at for a unit. An edge takes 120 instructions, a particle of a sweep 1,500, and a face that is measured 1,600.
 const HALF_EDGES_PER_UNIT: u32 = 12;

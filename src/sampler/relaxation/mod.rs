@@ -33,9 +33,9 @@ use crate::particles::Particles;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
-use crate::sampler::projection::{ResidualLimits, Tolerance};
+use crate::sampler::projection::{ResidualLimits, TRUSTED_CORRECTION, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
-use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
+use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion};
 use crate::sampler::relaxation::stepper::{Stepper, batch};
 use crate::sampler::sheet;
 use crate::sampler::sizing::Sizing;
@@ -313,7 +313,7 @@ impl Relaxation {
         budget -= paid;
         let steps = self.stepper.done();
         while budget > 0 && self.stage != RelaxationStage::Done && self.stepper.done() == steps {
-            let (last, units) = self.affordable::<L>(budget, n);
+            let (last, units) = self.affordable(budget, n);
             let range = self.next..last;
             self.debt = units.saturating_sub(budget);
             budget = budget.saturating_sub(units);
@@ -349,10 +349,9 @@ impl Relaxation {
 
     /// Returns how far this stage comes with a budget, and the units that takes: the last particle may go beyond the
     /// budget.
-    fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
+    fn affordable(&self, budget: u32, n: usize) -> (usize, u32) {
         let cost = |i: usize| match self.stage {
             RelaxationStage::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
-            RelaxationStage::Polish => L::POLISH_UNITS,
             _ => 1,
         };
         let (mut last, mut units) = (self.next, 0);

@@ -21,10 +21,6 @@ const MAX_NEWTON: u32 = 6;
 /// much give the same figures on random surfaces within 0.5 %.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
-/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves
-/// is of the order of its square.
-pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
-
 /// A batch of particles that return to the surface.
 pub(crate) struct LandingBatch {
     /// Number of particles.
@@ -69,8 +65,6 @@ pub(crate) trait Repulsion {
     const SKIN: f32;
     /// Distance that particles may travel until the grid from which lists are renewed is filled again.
     const SLACK: f32;
-    /// Units of work that polishing a particle counts for.
-    const POLISH_UNITS: u32;
     /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
@@ -121,7 +115,6 @@ impl Repulsion for Gaussian {
     const SKIN: f32 = GAUSSIAN_SKIN;
     /// Half of it takes 0 to 1.2 % more instructions in runs on six random surfaces, double of it as many within 0.3 %.
     const SLACK: f32 = 0.5;
-    const POLISH_UNITS: u32 = 1;
     /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
     /// below 0.9 are stable there, and steps below 0.7 where rows are squeezed to 1.7σ. Longer steps reach no lower
     /// energy in ten steps, and the squeezed rows oscillate.
@@ -213,8 +206,6 @@ impl Repulsion for Overlap<'_> {
     const SKIN: f32 = OVERLAP_SKIN;
     /// The grid is filled again each time: it is arranged by radii, which change.
     const SLACK: f32 = 0.0;
-    /// Polishing evaluates a Hessian for every particle.
-    const POLISH_UNITS: u32 = 8;
     /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the share by which the
     /// lattice is compressed, so steps below 0.36 are stable. Shorter steps mend less in ten.
     const STEP: f32 = 0.33;

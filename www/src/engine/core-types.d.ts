@@ -191,7 +191,7 @@ export type Figures = {
   d_hex: number,
   /** Area, as given or of the triangles found, in the field's units. */
   area: number,
-  /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
+  /** Points that differ from an earlier one by no more than rounding; dropped before the triangulation. */
   dup: number,
   /** Points with a non-finite coordinate; left out of everything. */
   not_finite: number,

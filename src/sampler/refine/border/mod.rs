@@ -14,20 +14,14 @@ pub(crate) use clip::grown;
 
 use super::net::{Ground, Net};
 use super::refusal::Refusal;
-use super::walls::{Planes, Site, Walls};
+use super::walls::{AT_REST, Planes, Site, Walls};
 use crate::field::descent;
 use crate::math::NONE;
+use crate::math::newton::STEPS;
 use crate::mesh::half_edge::{next, previous};
 use crate::particles::{SlotFate, Slots};
 use core::ops::Range;
 use glam::Vec3;
-
-/// Steps of Newton's method to a curve or a corner. It doubles the right digits in each, so that four or five do unless it begins far from
-/// both.
-const STEPS: u32 = 8;
-/// A landing is at its end when a step is shorter than this share of its reach. The next one would be shorter than the square of it, which
-/// single precision does not tell from none.
-const AT_REST: f32 = 1e-4;
 
 /// Moves a point onto the surface and planes of the box; none if it would move by more than `reach`, or out of the box.
 fn land_on(walls: &Walls, ground: &mut Ground, planes: Planes, start: Vec3, reach: f32) -> Option<Site> {
