@@ -25,9 +25,9 @@ use std::io::{self, Write};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
-    /// Binary little-endian PLY with the [`COLUMNS`].
+    /// Binary little-endian PLY with all columns.
     Ply,
-    /// Comma-separated values of the [`COLUMNS`], with a header line.
+    /// Comma-separated values of all columns, with a header line.
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,

@@ -12,7 +12,9 @@ const SECOND: f64 = 20.0;
 ///
 /// f is negative inside the surface; where it is undefined it returns NaN. Derivatives that are not given are found by central
 /// differences, with seven evaluations for a gradient and nineteen for a Hessian: a gradient makes sampling several times as fast.
-/// There are no bounds to prove by that every component of the surface was found.
+/// There are no bounds to prove by that every component of the surface was found, and edges are not known: a surface with edges, as the
+/// union of two bodies by `min`, is sampled as if it were smooth, and its mesh may be open there. A [`Formula`](crate::Formula) with `min`,
+/// `max` and `abs` has its edges.
 ///
 /// ```
 /// use glam::DVec3;

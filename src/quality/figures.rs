@@ -116,7 +116,7 @@ pub struct Spacing {
     pub rho: f64,
     /// First percentile of the nearest-neighbour distance.
     pub rho_1: f64,
-    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+    /// Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the sum of
     /// their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
     /// there are no distances.
     pub crowded: Option<usize>,
@@ -137,7 +137,7 @@ pub struct Coverage {
     /// Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
     /// whose discs touch.
     pub uncovered: f64,
-    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+    /// Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
     /// none has its middle in a wider one. None where `cover` is undefined.
     pub wide_holes: Option<usize>,
 }

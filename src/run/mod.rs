@@ -25,6 +25,7 @@ use crate::sampler::{
     self, Creases, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
 };
 use crate::slices::{self, Work};
+use core::fmt::{self, Debug, Formatter};
 use glam::DVec3;
 use measuring::Measuring;
 use mesh::Meshing;
@@ -117,11 +118,17 @@ pub struct Run<F> {
     meshing: Meshing,
 }
 
+impl<F> Debug for Run<F> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Run").field("bounds", &self.bounds).field("last", &self.last).finish_non_exhaustive()
+    }
+}
+
 impl<F: Field> Run<F> {
     /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the surface.
     ///
-    /// The start surveys the box, with some 40,000 evaluations, and fixes the radius. A fitted box is found by bounds of the field where it
-    /// has any, and by the signs of f on grids where it has none.
+    /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field where it has any, and by the signs of f
+    /// on grids where it has none, with some hundred thousand evaluations.
     ///
     /// # Errors
     ///
@@ -207,8 +214,9 @@ impl<F: Field> Run<F> {
     /// [`Run::step`] does it. Each call is a frame of a motion: the transport of the particles, births and deaths where they become sparse
     /// or crowd, and a step of relaxation. The same sequence of fields gives the same particles to the last bit.
     ///
-    /// Returns whether the particles can follow. If not, a run on the new field has to be started: the surface is gone or has creases or
-    /// tips, or it lies farther from the particles than they from each other. Either way the field is the run's from then on.
+    /// Returns whether the particles can follow. If not, a run on the new field has to be started: the run has not ended, the surface is gone or
+    /// has creases or tips, or most of it lies farther from the particles than they from each other. Either way the field is the run's from
+    /// then on. The box stays what it is: one that was fitted to the first surface cuts what grows out of it.
     ///
     /// The order of the fronts is lost where particles are born and die; those of a refined run move with its mesh, and keep
     /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey, and there is nothing more to

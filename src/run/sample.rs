@@ -10,8 +10,8 @@ use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::Settings;
 use crate::slices;
-use std::cell::OnceCell;
 use std::io::{self, Write};
+use std::sync::OnceLock;
 
 /// Samples the surface f = 0 of a field with evenly spaced particles, and measures them.
 ///
@@ -50,7 +50,7 @@ pub struct Sample {
     bounds: Bounds,
     /// The triangles that a refined run has led to.
     known: Vec<[u32; 3]>,
-    mesh: OnceCell<Triangulation>,
+    mesh: OnceLock<Triangulation>,
 }
 
 impl Sample {
@@ -61,7 +61,7 @@ impl Sample {
             particles: run.sampler.into_particles(),
             measured: run.measuring.measured,
             report,
-            mesh: run.meshing.into_joined().map_or_else(OnceCell::new, OnceCell::from),
+            mesh: run.meshing.into_joined().map_or_else(OnceLock::new, OnceLock::from),
         }
     }
 
@@ -121,7 +121,10 @@ impl Sample {
     }
 
     /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a [`MeshFormat`](crate::MeshFormat), or as a
-    /// [`MeshFile`] with a size, an upward axis and a record.
+    /// [`MeshFile`] with a size, an upward axis and a record. A mesh that is open is written as it is: see [`Sample::mesh_warnings`].
+    ///
+    /// A particle on a crease is a vertex for each patch that meets there, with the normal of that patch, in the formats that have
+    /// normals. Who needs one vertex joins those of equal positions.
     ///
     /// # Errors
     ///

@@ -33,7 +33,8 @@ pub enum SizeMode {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum LawKind {
-    /// The largest radius at which every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
+    /// The radius at which an equilateral triangle of neighbours has its middle at the distance [`Settings::chord_error`] from a surface of the
+    /// larger curvature. Triangles of other shapes come up to twice as far from it.
     ChordError,
     /// The radius is [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
     MaxCurvature,
@@ -90,7 +91,7 @@ pub struct Settings {
     pub count: u32,
     /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,
-    /// Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal. With the default the ellipsoid of
+    /// Distance aimed at between the surface and a triangle of neighbours, as a share of the box diagonal; the limits on the radii go before it. With the default the ellipsoid of
     /// the gallery takes about 16,000 particles, the sphere 13,000.
     pub chord_error: f64,
     /// Radius of a particle over the radius of curvature under it.
@@ -221,7 +222,8 @@ impl Settings {
         Self { size_mode: SizeMode::Count, count, max_particles, ..Self::DEFAULT }
     }
 
-    /// Default settings for particles whose repulsion radius is this share of the box diagonal.
+    /// Default settings for particles whose repulsion radius is this share of the box diagonal: a length over [`Bounds::diagonal`] of the box
+    /// that is given. Adaptive sampling takes its radii from the curvature instead.
     #[must_use]
     pub fn with_radius(share: f64) -> Self {
         Self { radius_share: share, ..Self::DEFAULT }

@@ -17,6 +17,18 @@ fn outward(p: DVec3) -> DVec3 {
 }
 
 #[test]
+fn runs_and_samples_are_printed_and_shared_between_threads() {
+    let settings = Settings::with_count(100);
+    let mut run = Run::start(Formula::parse("x^2 + y^2 + z^2 = 1").unwrap(), &settings).unwrap();
+    assert!(format!("{run:?}").starts_with("Run {"));
+    while run.step(u32::MAX).stop_reason.is_none() {}
+    let sample = std::sync::Arc::new(run.finish().unwrap());
+    let other = sample.clone();
+    let joined = std::thread::spawn(move || other.mesh().triangles.len());
+    assert_eq!(joined.join().unwrap(), sample.mesh().triangles.len());
+}
+
+#[test]
 fn a_closure_is_sampled_as_evenly_as_the_formula_of_its_surface() {
     let settings = Settings::with_count(FEW);
     let formula = sample(Formula::parse("x^2 + y^2 + z^2 = 1").unwrap(), &settings).unwrap();

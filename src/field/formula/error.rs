@@ -12,7 +12,7 @@ pub enum FormulaErrorKind {
     Empty,
     /// The text is longer than [`MAX_FORMULA_BYTES`](super::MAX_FORMULA_BYTES). It is refused before parsing.
     TooLong,
-    /// The formula is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
+    /// The formula is nested too deep.
     TooDeep,
     /// The formula has more than [`MAX_OPERATIONS`](super::MAX_OPERATIONS) operations.
     TooComplex,
@@ -44,7 +44,7 @@ pub enum FormulaErrorKind {
     BadParameter,
 }
 
-/// Error of [`Formula::as_written`](super::Formula::as_written) and of the other operations on formulas.
+/// Error of [`Formula::parse`](super::Formula::parse) and of the other operations on formulas.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 #[non_exhaustive]

@@ -119,18 +119,15 @@ impl Parameter {
 /// Batched evaluation does not allocate once it is warm; the Hessian and the bounds are compiled when first asked for.
 ///
 /// ```
-/// use marching_particles::field::Field;
-/// use marching_particles::field::formula::Formula;
+/// use marching_particles::{Field, Formula};
 ///
-/// let mut field = Formula::as_written("x^2/a^2 + y^2 + z^2 = 1", &[])?;
-/// assert_eq!(field.auto(), ["a"]);
-/// field.set_parameter("a", 2.0)?;
+/// let mut field = Formula::parse("x^2/a^2 + y^2 + z^2 = 1")?.with("a", 2.0)?;
 /// let jet = field.jet((2.0, 0.0, 0.0).into());
 /// assert_eq!((jet.value, jet.gradient.x), (0.0, 1.0));
 ///
-/// let error = Formula::as_written("x^2 + sin y z", &[]).unwrap_err();
+/// let error = Formula::parse("x^2 + sin y z").unwrap_err();
 /// assert_eq!((error.span.clone(), error.suggestion.as_deref()), (6..11, Some("sin(y)")));
-/// # Ok::<(), marching_particles::field::formula::FormulaError>(())
+/// # Ok::<(), marching_particles::FormulaError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Formula {

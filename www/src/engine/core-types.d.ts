@@ -219,7 +219,7 @@ export type Figures = {
   rho: number,
   /** First percentile of the nearest-neighbour distance. */
   rho_1: number,
-  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+  /** Pairs of points nearer than 0.75: over d_hex, as `nn_min`, or of natural neighbours over the sum of
   * their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
   * there are no distances. */
   crowded: number | null,
@@ -234,7 +234,7 @@ export type Figures = {
   /** Share of the surface that no disc of a point around it covers, where the discs are known: 1 - π/(2√3) = 0.093 in a lattice
   * whose discs touch. */
   uncovered: number,
-  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+  /** Holes wider than 1.4, as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
   * none has its middle in a wider one. None where `cover` is undefined. */
   wide_holes: number | null,
   /** Fraction of the points with exactly six natural neighbours. */
