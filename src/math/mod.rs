@@ -70,10 +70,10 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
 /// The index of nothing: no particle, triangle, block or component.
 pub const NONE: u32 = u32::MAX;
 
-/// What rounding may leave of a number that took as many operations as the longest formula has, as a share of it: each rounds once.
+/// Largest relative error of a result in double precision after as many operations as the longest formula has: each rounds once.
 pub(crate) const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
-/// What rounding may leave of a few operations in single precision, as a share of the operands.
+/// Largest relative error of a result in single precision after a few operations.
 pub(crate) const SINGLE_ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.

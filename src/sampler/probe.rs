@@ -51,10 +51,13 @@ impl<'a> Probe<'a> {
     ///
     /// It is asked a little outside: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
-        /// Far above the residual of a point, and far below the distance of sheets that particles of this size tell apart.
+        /// Distance outside, in sizes of a particle. It is far above the residual of a point, and far below the distance of sheets that
+        /// such particles tell apart.
         const OUTSIDE: f64 = 1e-4;
-        let outward = || normal.as_dvec3() * (OUTSIDE * f64::from(size));
-        patch.is_none_or(|patch| self.field.branch_at(point.as_dvec3() + outward()) == patch)
+        patch.is_none_or(|patch| {
+            let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
+            self.field.branch_at(point.as_dvec3() + outward) == patch
+        })
     }
 
     /// Counts evaluations that were made of the field directly.

@@ -190,7 +190,8 @@ impl Creases {
         self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
     }
 
-    /// Number of the first corner, none of the `others`, that a crease of these branches meets behind one of its points and up to the next.
+    /// Returns the number of the first corner that lies on a crease of these branches after one of its points and up to the next, and is
+    /// none of the `others`.
     fn corner_on(
         &self,
         probe: &mut Probe,
@@ -231,7 +232,7 @@ impl Creases {
             }
             self.add_pieces(curve, &cuts, ONE_CORNER * step);
         }
-        // Of other patches a corner may lie on the sheet, but f is theirs on none of it there.
+        // A corner may also lie on the sheet of a branch that gives f nowhere around it, and that has no patch there.
         for (index, corner) in self.corners.iter_mut().enumerate() {
             let ending = self.curves.iter().filter(|curve| curve.corners.contains(&Some(index)));
             let patches: Vec<u32> = ending.flat_map(|curve| curve.patches.iter().copied()).collect();
