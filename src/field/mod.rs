@@ -80,7 +80,7 @@ impl Enclosure {
 ///
 /// A batched method reads `points` and writes the first `points.len()` entries of each output. It takes `&mut self`
 /// because an implementation keeps scratch memory, so that evaluation does not allocate once it is warm. The result at
-/// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. It
+/// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. Its value
 /// is NaN where the field is undefined.
 ///
 /// # Panics

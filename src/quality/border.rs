@@ -117,9 +117,10 @@ impl Face {
             self.points[column] = self.node(column, row).as_vec3();
         }
         field.values(&self.points, &mut self.value);
-        let mut crossing = |a: DVec3, fa: f32, b: DVec3, fb: f32| {
+        let mut crossing = |a: [usize; 2], fa: f32, b: [usize; 2], fb: f32| {
             // This is false where either is NaN.
             if fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0 {
+                let [a, b] = [a, b].map(|[column, row]| self.node(column, row));
                 let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
                 if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
                     curve.push(p.as_vec3());
@@ -127,12 +128,12 @@ impl Face {
             }
         };
         for column in 0..=self.columns {
-            let p = self.node(column, row);
+            let value = self.value[column];
             if row > 0 {
-                crossing(self.node(column, row - 1), self.above[column], p, self.value[column]);
+                crossing([column, row - 1], self.above[column], [column, row], value);
             }
             if column > 0 {
-                crossing(self.node(column - 1, row), self.value[column - 1], p, self.value[column]);
+                crossing([column - 1, row], self.value[column - 1], [column, row], value);
             }
         }
         core::mem::swap(&mut self.above, &mut self.value);

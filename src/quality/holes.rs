@@ -3,12 +3,11 @@
 use super::border::Border;
 use super::creases::CreaseRows;
 use super::places::{Hole, WIDE};
-use super::probe;
 use super::projection::{LAST_STEP, is_reached, project};
 use super::sizes::WantedRadii;
 use super::triangles::area_vector;
 use crate::field::{BATCH, Field};
-use crate::math::{Bounds, NONE};
+use crate::math::NONE;
 use crate::slices::{HEAVY, pause};
 use crate::spatial::tree::{PointsInBox, Tree};
 use glam::{DVec3, Vec3};
@@ -94,12 +93,13 @@ pub(super) struct Holes {
     pub(super) found: Vec<Hole>,
 }
 
-/// Measures the holes by about `count` random samples on the triangles and by their Voronoi corners and, in a box, by random lines.
+/// Measures the holes by about `count` random samples on the triangles, by their Voronoi corners and at `crossings`, random samples of the
+/// surface.
 pub(super) async fn measure(
     field: &mut dyn Field,
     cover: &Cover<'_>,
     count: usize,
-    bounds: Option<&Bounds>,
+    crossings: &[Vec3],
 ) -> Holes {
     let mut search = HoleSearch::default();
     search.add_samples(field, cover, count).await;
@@ -112,20 +112,18 @@ pub(super) async fn measure(
         bare: search.bare as f64 / samples,
         found: search.found,
     };
-    if let Some(bounds) = bounds {
-        holes.add_missed(field, cover, bounds).await;
-    }
+    holes.add_missed(cover, crossings).await;
     holes
 }
 
 impl Holes {
     /// Takes in what the triangles cannot show: components without a point, and regions where the points end. The part of the surface
     /// that is farther from every point than any sample on the triangles counts by its share of the area.
-    async fn add_missed(&mut self, field: &mut dyn Field, cover: &Cover<'_>, bounds: &Bounds) {
+    async fn add_missed(&mut self, cover: &Cover<'_>, crossings: &[Vec3]) {
         // The hundredth allows for the rounding of the samples.
         let (widest, relative) = (1.01 * self.widest, 1.01 * self.relative);
         let (mut all, mut far, mut sum_sq) = (0.0, 0.0, 0.0);
-        for chunk in probe::crossings(field, bounds).await.chunks(HEAVY) {
+        for chunk in crossings.chunks(HEAVY) {
             for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
                 all += 1.0;
                 let (gap_sq, index) = cover.tree.nearest(p, NONE, f32::INFINITY);
@@ -224,12 +222,15 @@ impl HoleSearch {
                 continue;
             }
             let corner_sq = cover.nearest_of(p, triangle);
+            let mut ideal = cover.ideal(triangle);
+            if !random && !self.matters(corner_sq, ideal * ideal) {
+                continue;
+            }
             let (gap_sq, nearer) = if self.around.may_be_nearer(cover.tree, p, corner_sq, leash) {
                 cover.tree.nearest(p, NONE, corner_sq)
             } else {
                 (corner_sq, NONE)
             };
-            let mut ideal = cover.ideal(triangle);
             // The circumcentre of a long triangle may come to a far place, where other points are larger.
             if nearer != NONE {
                 ideal = ideal.max(cover.ideal(&[nearer]));

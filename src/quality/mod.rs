@@ -135,22 +135,24 @@ pub fn measure(
     bounds: Option<&Bounds>,
     options: &MeasureOptions,
 ) -> Measurements {
-    slices::complete(in_slices(position, normal, field, bounds, options))
+    slices::complete(in_slices(position, normal, field, bounds, options, &mut None))
 }
 
-/// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
+/// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each. `crossings` are random samples of the surface in
+/// the box, which are found if there are none yet: all measurements of one surface share them.
 pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
     options: &MeasureOptions<'_>,
+    crossings: &mut Option<Vec<Vec3>>,
 ) -> Measurements {
     let factor = comfortable_scale(field, position.iter().copied());
     let field: &mut dyn Field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, bounds, options).await;
     let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening } =
-        figures_of(&prepared, field, bounds, options).await;
+        figures_of(&prepared, field, bounds, options, crossings).await;
     let Prepared { points, drop, .. } = &prepared;
     let n = position.len();
     let mut report = Measurements {
@@ -234,6 +236,7 @@ async fn figures_of(
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
     options: &MeasureOptions<'_>,
+    crossings: &mut Option<Vec<Vec3>>,
 ) -> DistinctFigures {
     let Prepared { points, mesh, duplicates, not_finite, .. } = prepared;
     let mut figures = Figures { dup: *duplicates, not_finite: *not_finite, ..Figures::default() };
@@ -274,7 +277,13 @@ async fn figures_of(
             discs: options.rows.map_or(&[], |rows| &rows.radius),
             lattice,
         };
-        measured.holes = measure_holes(&cover, field, bounds, &mut figures).await;
+        if let Some(bounds) = bounds
+            && crossings.is_none()
+        {
+            *crossings = Some(probe::crossings(field, bounds).await);
+        }
+        let crossings = crossings.as_deref().unwrap_or_default();
+        measured.holes = measure_holes(&cover, field, crossings, &mut figures).await;
     }
     DistinctFigures { figures, ..measured }
 }
@@ -387,11 +396,11 @@ fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[V
 async fn measure_holes(
     cover: &Cover<'_>,
     field: &mut dyn Field,
-    bounds: Option<&Bounds>,
+    crossings: &[Vec3],
     figures: &mut Figures,
 ) -> Vec<Hole> {
     let n = cover.tree.len() - cover.creases.further();
-    let holes = holes::measure(field, cover, n.clamp(LEAST_SAMPLES, MOST_SAMPLES), bounds).await;
+    let holes = holes::measure(field, cover, n.clamp(LEAST_SAMPLES, MOST_SAMPLES), crossings).await;
     figures.coverage.cover = holes.widest / (figures.d_hex / SQRT_3);
     if cover.wanted.is_some() {
         figures.coverage.cover_local = holes.relative;

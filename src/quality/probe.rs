@@ -6,7 +6,7 @@
 //! whole surface.
 
 use super::projection::project;
-use crate::field::Field;
+use crate::field::{BATCH, Field};
 use crate::math::Bounds;
 use crate::slices::{MEDIUM, pause};
 use glam::{DVec3, Vec3};
@@ -20,7 +20,7 @@ const LINES: usize = 4096;
 /// than a 64th of the box may be missed.
 const STATIONS: usize = 64;
 /// Lines that are evaluated together, in one slice of work.
-const BATCH: usize = MEDIUM / STATIONS;
+const LINES_AT_ONCE: usize = MEDIUM / STATIONS;
 /// A crossing counts if its first-order distance from the surface after projection is below this share of the step along the
 /// line: at poles and jumps the sign changes too. Half and double give the same figures on 34 random surfaces.
 const RESIDUAL: f32 = 1e-2;
@@ -32,50 +32,73 @@ pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds) -> Vec<Vec
     let mut found = Vec::new();
     if bounds.is_valid() {
         let mut random = Pcg32::seed_from_u64(STREAM);
-        for _ in 0..LINES / BATCH {
-            cross(field, bounds, &mut random, &mut found);
+        let mut changes = SignChanges::default();
+        for _ in 0..LINES / LINES_AT_ONCE {
+            changes.add_lines(field, bounds, &mut random);
+            if changes.position.len() >= BATCH {
+                changes.settle(field, bounds, &mut found);
+            }
             pause().await;
         }
+        changes.settle(field, bounds, &mut found);
     }
     found
 }
 
-/// Appends the crossings of the next [`BATCH`] lines with the surface.
-fn cross(field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32, found: &mut Vec<Vec3>) {
-    let mut points = [Vec3::ZERO; BATCH * STATIONS];
-    let mut values = [0.0_f32; BATCH * STATIONS];
-    for line in points.chunks_exact_mut(STATIONS) {
-        let (from, to) = chord(random, bounds);
-        for (k, point) in line.iter_mut().enumerate() {
-            *point = from.lerp(to, (k as f64 + 0.5) / STATIONS as f64).as_vec3();
+/// Changes of the sign of f between neighbouring points of lines.
+#[derive(Default)]
+struct SignChanges {
+    /// Where f is 0 if it is linear between both points.
+    position: Vec<Vec3>,
+    /// The distance between both points.
+    leash: Vec<f32>,
+    /// The larger |f| of both.
+    ends: Vec<f32>,
+}
+
+impl SignChanges {
+    /// Adds those on the next [`LINES_AT_ONCE`] lines.
+    fn add_lines(&mut self, field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32) {
+        let mut points = [Vec3::ZERO; MEDIUM];
+        let mut values = [0.0_f32; MEDIUM];
+        for line in points.chunks_exact_mut(STATIONS) {
+            let (from, to) = chord(random, bounds);
+            for (k, point) in line.iter_mut().enumerate() {
+                *point = from.lerp(to, (k as f64 + 0.5) / STATIONS as f64).as_vec3();
+            }
         }
-    }
-    field.values(&points, &mut values);
-    let (mut crossing, mut leash, mut ends) = (Vec::new(), Vec::new(), Vec::new());
-    for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
-        for k in 1..STATIONS {
-            let (a, b) = (value[k - 1], value[k]);
-            // This is false where either is NaN.
-            if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
-                let share = a / (a - b);
-                crossing.push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
-                leash.push((line[k] - line[k - 1]).length());
-                ends.push(a.abs().max(b.abs()));
+        field.values(&points, &mut values);
+        for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
+            for k in 1..STATIONS {
+                let (a, b) = (value[k - 1], value[k]);
+                // This is false where either is NaN.
+                if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
+                    let share = a / (a - b);
+                    self.position
+                        .push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
+                    self.leash.push((line[k] - line[k - 1]).length());
+                    self.ends.push(a.abs().max(b.abs()));
+                }
             }
         }
     }
-    // All steps are taken: near a pole they lead away from it, by as much again at each step.
-    project(field, &mut crossing, &leash, 0.0);
-    let mut value = vec![0.0; crossing.len()];
-    let mut gradient = vec![Vec3::ZERO; crossing.len()];
-    field.gradients(&crossing, &mut value, &mut gradient);
-    for (k, &p) in crossing.iter().enumerate() {
-        // Towards a pole |f| grows beyond its values at the ends of the step, even where |f|/|∇f| becomes small.
-        let on_surface =
-            value[k].abs() <= RESIDUAL * leash[k] * gradient[k].length() && value[k].abs() <= ends[k];
-        if on_surface && bounds.contains(p) {
-            found.push(p);
+
+    /// Appends those to `found` that lead to the surface, and forgets all.
+    fn settle(&mut self, field: &mut dyn Field, bounds: &Bounds, found: &mut Vec<Vec3>) {
+        // All steps are taken: near a pole they lead away from it, by as much again at each step.
+        project(field, &mut self.position, &self.leash, 0.0);
+        let mut value = vec![0.0; self.position.len()];
+        let mut gradient = vec![Vec3::ZERO; self.position.len()];
+        field.gradients(&self.position, &mut value, &mut gradient);
+        for (k, &p) in self.position.iter().enumerate() {
+            // Towards a pole |f| grows beyond its values at the ends of the step, even where |f|/|∇f| becomes small.
+            let on_surface = value[k].abs() <= RESIDUAL * self.leash[k] * gradient[k].length()
+                && value[k].abs() <= self.ends[k];
+            if on_surface && bounds.contains(p) {
+                found.push(p);
+            }
         }
+        *self = Self::default();
     }
 }
 

@@ -59,17 +59,18 @@ pub(super) fn measured_columns(particles: &Particles) -> Particles {
     }
 }
 
-/// [`quality::measure`], a slice at a time.
+/// [`quality::measure`], a slice at a time; see [`quality::in_slices`] for `crossings`.
 pub(super) async fn measure(
     particles: &Particles,
     field: &mut dyn Field,
     bounds: &Bounds,
     sampling: Sampling,
+    crossings: &mut Option<Vec<Vec3>>,
 ) -> quality::Measurements {
     let radii = (sampling == Sampling::Adaptive).then_some(&particles.radius[..]);
     let options =
         quality::MeasureOptions { radii, rows: Some(particles), ..quality::MeasureOptions::default() };
-    quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options).await
+    quality::in_slices(&particles.position, &particles.normal, field, Some(bounds), &options, crossings).await
 }
 
 /// Results of a measurement.
@@ -102,11 +103,12 @@ impl MeasuringInput {
 
     async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
         let Self { front, now, bounds, sampling } = self;
+        let crossings = &mut None;
         let front = match front {
-            Some(front) => Some(measure(&front, field, &bounds, sampling).await.figures),
+            Some(front) => Some(measure(&front, field, &bounds, sampling, crossings).await.figures),
             None => None,
         };
-        let report = measure(&now, field, &bounds, sampling).await;
+        let report = measure(&now, field, &bounds, sampling, crossings).await;
         MeasuringResult { front, now: report, facing: facing_another_sheet(&now).await }
     }
 }

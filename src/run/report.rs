@@ -207,7 +207,8 @@ impl<F: Field> Run<F> {
     pub fn measure_placed(&mut self, placed: &Particles, sampling: Sampling) -> Measures {
         self.measuring.stop();
         let bounds = self.local_bounds();
-        self.measuring.measured = slices::complete(measure(placed, &mut self.field, &bounds, sampling));
+        self.measuring.measured =
+            slices::complete(measure(placed, &mut self.field, &bounds, sampling, &mut None));
         Measures { quality_before: None, ..self.measures() }
     }
 

@@ -501,6 +501,7 @@ impl Sampler {
         (self.survey.scale, self.survey.double) = (scale, double);
         if self.survey.area == 0.0 {
             // What remains is not seen on the grid.
+            probe.field.use_double(known.double);
             self.survey = known;
             return;
         }

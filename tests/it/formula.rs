@@ -623,6 +623,7 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
         let at = if text.starts_with('a') { 1.5 } else { -1.5 };
         assert!(probe(text, at).0.is_nan(), "{text}");
     }
+    assert!(probe("min(ln(x), y)", -1.5).1.is_nan() && probe("max(y, ln(x))", -1.5).1.is_nan());
     assert_eq!(probe("1/x", 0.0).0, f32::INFINITY);
     assert_eq!(probe("1/x^2 - 5", 0.0).0, f32::INFINITY);
     assert_eq!(probe("ln(x)", 0.0).0, f32::NEG_INFINITY);

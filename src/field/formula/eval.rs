@@ -20,13 +20,13 @@ pub(super) const BLOCK: usize = BATCH / LANES;
 /// 0.2 % more instructions, with double they take the same.
 const FILE_BYTES: usize = 16 * 1024;
 
-/// Evaluates `program` at `points`, and calls `store` with the index of each and the first `N` results there. `file` is the memory of the
-/// registers, which grows as needed and is reused.
+/// Evaluates `program` at `points`, and calls `store` with the index of each eighth point and the first `N` results at it and at those that
+/// follow. `file` is the memory of the registers, which grows as needed and is reused.
 pub(super) fn run<const N: usize>(
     program: &Program,
     file: &mut Vec<Lanes>,
     points: &[Vec3],
-    mut store: impl FnMut(usize, [f32; N]),
+    mut store: impl FnMut(usize, [&Lanes; N]),
 ) {
     let bytes_per_group = size_of::<Lanes>() * program.registers.max(1);
     let stride = (FILE_BYTES / bytes_per_group).clamp(1, BLOCK);
@@ -47,11 +47,9 @@ pub(super) fn run<const N: usize>(
         for instruction in &program.instructions {
             execute(instruction, &program.uniforms, &RegisterCells { cells, stride, groups });
         }
-        for (group, points) in block.chunks(LANES).enumerate() {
-            let results: [Lanes; N] =
-                core::array::from_fn(|n| file[program.outputs[n] as usize * stride + group]);
-            (0..points.len()).for_each(|lane| store(first + lane, results.map(|lanes| lanes.0[lane])));
-            first += points.len();
+        for group in 0..groups {
+            store(first, core::array::from_fn(|n| &file[program.outputs[n] as usize * stride + group]));
+            first += LANES;
         }
     }
 }
@@ -160,7 +158,14 @@ fn execute(i: &Instruction, uniforms: &[f32], registers: &RegisterCells<'_>) {
             let [a, b, c] = [i.a, i.b, i.c].map(|operand| registers.get(operand));
             for (k, out) in registers.get(i.out).iter().enumerate() {
                 let [a, b, c] = [a, b, c].map(|operand| operand[k].get().0);
-                let value = |k: usize| if (a[k] <= b[k]) == at_most { c[k] } else { 0.0 };
+                let value = |k: usize| {
+                    let (below, above) = (a[k] <= b[k], a[k] > b[k]);
+                    match if at_most { (below, above) } else { (above, below) } {
+                        (true, _) => c[k],
+                        (_, true) => 0.0,
+                        _ => f32::NAN,
+                    }
+                };
                 out.set(Lanes(core::array::from_fn(value)));
             }
         }

@@ -59,7 +59,7 @@ pub use lex::name_pattern;
 pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Bounded, BranchNumbers, Branched, Enclosure, Field, Jet, UnitCell};
-use crate::math::{Bounds, Interval, Lanes, Sym3};
+use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
 use crate::slices::Work;
 use ast::{COORDINATES, Constant, Equation, Function};
 use branches::Branches;
@@ -555,7 +555,9 @@ impl Field for Formula {
             return;
         }
         let value = &mut value[..points.len()];
-        eval::run(&compiled.value_program, &mut self.scratch.registers, points, |k, [f]| value[k] = f);
+        eval::run(&compiled.value_program, &mut self.scratch.registers, points, |first, [f]| {
+            value[first..].iter_mut().zip(f.0).for_each(|(value, f)| *value = f);
+        });
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
@@ -573,8 +575,11 @@ impl Field for Formula {
             return;
         }
         let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
-        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, |k, [f, x, y, z]| {
-            (value[k], gradient[k]) = (f, Vec3::new(x, y, z));
+        eval::run(&compiled.gradient_program, &mut self.scratch.registers, points, |first, [f, x, y, z]| {
+            let slots = value[first..].iter_mut().zip(&mut gradient[first..]);
+            for (k, (value, gradient)) in slots.take(LANES).enumerate() {
+                (*value, *gradient) = (f.0[k], Vec3::new(x.0[k], y.0[k], z.0[k]));
+            }
         });
     }
 
@@ -595,10 +600,16 @@ impl Field for Formula {
             }
             return;
         }
+        let n = points.len();
+        let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
         let program = compiled.hessian_program(&self.values);
-        let store = |k: usize, [f, x, y, z, xx, xy, xz, yy, yz, zz]: [f32; 10]| {
-            (value[k], gradient[k]) = (f, Vec3::new(x, y, z));
-            hessian[k] = Sym3 { xx, xy, xz, yy, yz, zz };
+        let store = |first: usize, results: [&Lanes; 10]| {
+            let slots = value[first..].iter_mut().zip(&mut gradient[first..]).zip(&mut hessian[first..]);
+            for (k, ((value, gradient), hessian)) in slots.take(LANES).enumerate() {
+                let [f, x, y, z, xx, xy, xz, yy, yz, zz] = results.map(|lanes| lanes.0[k]);
+                (*value, *gradient) = (f, Vec3::new(x, y, z));
+                *hessian = Sym3 { xx, xy, xz, yy, yz, zz };
+            }
         };
         eval::run(program, &mut self.scratch.registers, points, store);
     }

@@ -21,7 +21,7 @@ pub(super) enum Op {
     Binary(Binary),
     /// R[a] ∘ U[b]
     Uniform(Binary),
-    /// R[c] where R[a] ≤ R[b], or, with `false`, where it is not; else 0
+    /// R[c] where R[a] ≤ R[b], or, with `false`, where R[a] > R[b]; else 0, and NaN where either is NaN
     If(bool),
 }
 

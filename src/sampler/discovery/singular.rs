@@ -149,7 +149,7 @@ pub(crate) fn near_survey(
             let is_near = |other: DVec3| other.distance_squared(p) <= spacing * spacing;
             // False for NaN.
             let is_start = slope_sq <= most_sq
-                && !tried.iter().copied().any(is_near)
+                && !tried.iter().rev().copied().any(is_near)
                 && !found.iter().any(|point| is_near(point.position));
             if !is_start {
                 continue;
