@@ -122,10 +122,9 @@ fn row_of<'a, const N: usize>(
                 _ => Row::each(n, |k| a.at(k).unary(operation)),
             }
         }
-        Node::Power(a, 2) => known(a).square(),
         Node::Power(a, exponent) => {
-            let a = known(a);
-            Row::each(n, |k| a.at(k).power(exponent))
+            let power = known(a).power(exponent.unsigned_abs());
+            if exponent < 0 { Row::each(n, |k| power.at(k).reciprocal()) } else { power }
         }
         Node::Binary(operation, a, b) => {
             let (a, b) = (known(a), known(b));

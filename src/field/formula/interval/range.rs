@@ -1,7 +1,7 @@
 //! A single interval, with the operations that are too rare or too long for [rows](super::rows).
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin, whole_power};
+use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
 use crate::field::formula::operations::Unary;
 use crate::math::{Bounds, Interval};
 
@@ -35,7 +35,7 @@ pub(super) fn up(value: f64) -> f64 {
 }
 
 /// `value` moved by `share` of its magnitude, or `otherwise` for NaN.
-fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
+pub(super) fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
     let moved = value + value.abs() * share;
     if moved.is_nan() { otherwise } else { moved }
 }
@@ -298,20 +298,6 @@ impl Range {
         let lo = least(a.lo, b.lo, widest) - scale;
         let hi = least(a.hi, b.hi, narrowest) + scale;
         Self::new(well_below(lo), well_above(hi), flags)
-    }
-
-    /// Range of self^n for an integer n other than 0.
-    pub(super) fn power(self, n: i32) -> Self {
-        let natural = n.unsigned_abs();
-        let even = natural.is_multiple_of(2);
-        let base = if even { self.abs() } else { self };
-        // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
-        let error = 2.0 * f64::from(natural) * f64::EPSILON;
-        let lo = widened(whole_power(1.0, base.bounds.lo, natural), -error, f64::NEG_INFINITY);
-        let hi = widened(whole_power(1.0, base.bounds.hi, natural), error, f64::INFINITY);
-        let flags = joined(self.flags, self.flags) | self.flags & NONZERO;
-        let range = Self { bounds: Interval::new(if even { lo.max(0.0) } else { lo }, hi), flags };
-        if n < 0 { range.reciprocal() } else { range }
     }
 
     /// Range of a choice: `value` where a ≤ b and 0 elsewhere, or the reverse if not `where_at_most`.

@@ -3,11 +3,13 @@
 //! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use super::range::{Range, absolute, down, greatest, least, up};
+use super::range::{Range, absolute, down, greatest, least, up, widened};
+use crate::field::formula::graph::whole_power;
 use crate::field::formula::operations::sign;
 use crate::math::Interval;
 use crate::math::functions::{HALF_PI, ROUNDER_F64};
 use crate::math::interval::product;
+use core::ops::Mul;
 
 /// Bounds of an operation over up to `N` boxes.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +17,17 @@ pub(in crate::field::formula) struct Row<const N: usize> {
     lo: [f64; N],
     hi: [f64; N],
     flags: [u8; N],
+}
+
+/// The lower or the upper ends of a row.
+#[derive(Clone, Copy)]
+struct Ends<const N: usize>([f64; N]);
+
+impl<const N: usize> Mul for Ends<N> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self(core::array::from_fn(|k| self.0[k] * other.0[k]))
+    }
 }
 
 impl<const N: usize> Row<N> {
@@ -103,15 +116,16 @@ impl<const N: usize> Row<N> {
         self.flags[k] & NONZERO | if self.lo[k] > 0.0 || self.hi[k] < 0.0 { NONZERO } else { 0 }
     }
 
-    pub(super) fn square(&self) -> Self {
+    /// Power with a natural exponent.
+    pub(super) fn power(&self, n: u32) -> Self {
         let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]) | self.flags[k] & NONZERO);
+        let base = if n.is_multiple_of(2) { self.abs() } else { *self };
+        let ends = |ends: [f64; N]| whole_power(Ends([1.0; N]), Ends(ends), n).0;
+        let (lo, hi) = (ends(base.lo), ends(base.hi));
+        // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
+        let error = 2.0 * f64::from(n) * f64::EPSILON;
         Self::bounds(
-            |k| {
-                let (a, b) = (self.lo[k], self.hi[k]);
-                let near = greatest(0.0, greatest(a, -b));
-                let far = greatest(-a, b);
-                (down(near * near), up(far * far))
-            },
+            |k| (widened(lo[k], -error, f64::NEG_INFINITY), widened(hi[k], error, f64::INFINITY)),
             flags,
         )
     }
