@@ -154,7 +154,7 @@ fn parts(criterion: &mut Criterion, set: &str, count: u32) {
         bencher.iter_batched(
             || job.run(),
             |mut run| {
-                run.relax(10);
+                assert!(run.relax(10));
                 finish(&mut run);
                 run
             },

@@ -96,10 +96,24 @@
 //! | jet | A value with its gradient and Hessian. |
 //! | batch, lanes | Points evaluated by one call, and those of them computed by one SIMD instruction. |
 //!
-//! # Modules
+//! # What stands at the root
 //!
-//! The items that a program needs stand at the root. The modules behind it are public for the project's own tests, benchmarks and page, without
-//! a promise to stay; ARCHITECTURE.md says what each is for and who may use whom.
+//! | For | Items |
+//! |---|---|
+//! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
+//! | its settings | [`Settings`], [`Sampling`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
+//! | formulas | [`Formula`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
+//! | fields of a program | [`Field`], [`FnField`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
+//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
+//! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
+//! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
+//! | what may be wrong | [`Warning`], [`Doubt`], [`Refusal`], [`Spot`] |
+//! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
+//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
+//!
+//! The modules behind the root are public for the project's own tests, benchmarks and page, without a promise to stay; ARCHITECTURE.md says
+//! what each is for and who may use whom.
 
 #[doc(hidden)]
 pub mod differential;
@@ -147,12 +161,12 @@ pub use export::{Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordTe
 pub use extent::Reach;
 pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
 #[cfg(feature = "points")]
-pub use field::model::{GivenMesh, GivenTopology, ModelInfo, NormalSource};
+pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]
 pub use field::rbf::RbfField;
 pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
 pub use glam;
-pub use math::{Bounds, Interval, Sym3};
+pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::build::Triangulation;
 pub use particles::{OppositeFaces, Particles, SlotFate, Slots};
 #[cfg(feature = "points")]
@@ -164,11 +178,11 @@ pub use pointcloud::fit_points;
 #[cfg(feature = "points")]
 pub use pointcloud::job::JobError;
 #[cfg(feature = "points")]
-pub use pointcloud::read::ReadError;
+pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
 pub use run::{
-    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Run, Sample, Start,
-    Warning, sample,
+    Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run, Sample,
+    Start, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling, Search,

@@ -10,6 +10,8 @@
 mod sampled;
 mod scan;
 
+pub(crate) use sampled::CELLS;
+
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::slices::{self, pause};
@@ -19,7 +21,7 @@ use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one before. With half or twice all of them
 /// a third to a half of 68 random surfaces, most of which go on for ever, have another box: it is that of the cube.
-const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
+pub(crate) const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
 /// Half-width of the box of a surface that goes on for ever and passes near the origin: that of the smallest cube that is searched. A gyroid
 /// has one and a quarter periods in it.
 const USUAL_HALF: f64 = HALVES[HALVES.len() - 1];
@@ -50,7 +52,7 @@ const SHORT: usize = 64;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Reach {
-    /// The surface within ±10⁴ lies in the box.
+    /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no bounds decide.
     Bounded,
     /// The surface goes on beyond the box.
     Endless,

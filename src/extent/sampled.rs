@@ -7,15 +7,17 @@ use crate::slices::pause;
 use glam::{DVec3, Vec3};
 
 /// Cells along a side of a grid: as many as those of the survey.
-const CELLS: usize = 32;
+pub(crate) const CELLS: usize = 32;
 /// The grid is laid anew over what it found, with a cell around it, until that fills this share of it: further grids would hardly be
 /// smaller. Of 68 random surfaces the box of one is found by grids; with half of it the box is the same.
 const FULL: f64 = 0.6;
 
-/// Finds the smallest cube through whose faces the surface does not pass, and its box in it.
+/// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The surface goes on if the grid of a larger cube
+/// shows more.
 pub(super) async fn find(field: &mut dyn Field) -> Extent {
     let mut seen = None;
-    for half in HALVES.into_iter().rev() {
+    let mut halves = HALVES.into_iter().rev();
+    while let Some(half) = halves.next() {
         let cube = Bounds::cube(half);
         let Some((mut hull, passes)) = changes(field, &cube).await else { continue };
         seen = seen.or(Some(half));
@@ -30,7 +32,16 @@ pub(super) async fn find(field: &mut dyn Field) -> Extent {
             let Some((finer, _)) = changes(field, &over).await else { break };
             hull = finer;
         }
-        return Extent { bounds: placeable(&hull), reach: Reach::Bounded };
+        let extent = Extent { bounds: placeable(&hull), reach: Reach::Bounded };
+        for half in halves {
+            let cube = Bounds::cube(half);
+            // What a grid finds is less than two cells away, of which one is room.
+            let near = hull.enlarged(2.0 * cube.size().x / CELLS as f64);
+            if changes(field, &cube).await.is_some_and(|(all, _)| near.joined(&all) != near) {
+                return Extent { bounds: extent.with_room(|_| 0.0), reach: Reach::Endless };
+            }
+        }
+        return extent;
     }
     match seen {
         Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },

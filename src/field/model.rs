@@ -6,7 +6,7 @@ use crate::math::Bounds;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
-/// Numbers of centres that can be asked for.
+/// Numbers of centres that can be asked for, of [`fit_points`](crate::fit_points) for example.
 pub const CENTRES: RangeInclusive<u32> = 100..=800;
 /// Maximum size of a file of points in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
 /// interpolant can have centres.

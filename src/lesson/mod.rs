@@ -171,9 +171,7 @@ impl Lesson {
         settings: &LessonSettings,
     ) -> Result<Self, LessonError> {
         settings.validate()?;
-        if !bounds.is_valid() {
-            return Err(LessonError::Box);
-        }
+        bounds.check()?;
         let mut surface = ImplicitSurface::new(field, bounds);
         let patches = survey(&mut surface);
         check_count(&patches, &mut surface, settings)?;

@@ -3,7 +3,7 @@
 use super::prediction::predicted_angles;
 use crate::differential::Curvature;
 use crate::field::formula::Parameter;
-use crate::math::Bounds;
+use crate::math::{Bounds, BoxError};
 use crate::paper::{RadiusRule, Rules, sum_of_curvatures};
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use glam::DVec3;
@@ -321,9 +321,9 @@ pub enum LessonError {
         /// Largest value allowed.
         max: f64,
     },
-    /// The box is not valid.
-    #[error("the box {}", Bounds::REQUIREMENT)]
-    Box,
+    /// No particles can be put in the box.
+    #[error(transparent)]
+    Box(#[from] BoxError),
     /// Placing level by level goes with one choice of the others.
     #[error("placing level by level needs a queue, the circle, and matched particles that stay")]
     Levels,

@@ -249,20 +249,46 @@ impl Bounds {
     /// particle of the default radius by a hundredth of it.
     pub const FARTHEST_CORNER: f64 = 1e3;
 
-    /// Whether particles can be put in the box and drawn there: every side has positive length,
-    /// the diagonal is one of [`Bounds::DIAGONALS`], and no coordinate is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
+    /// Whether [`Bounds::check`] finds no fault.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let diagonal = self.diagonal();
-        // No corner with a NaN gets through: it makes the diagonal one.
-        Self::DIAGONALS.contains(&diagonal)
-            && self.farthest() <= Self::FARTHEST_CORNER * diagonal
-            && (0..3).all(|k| self.min[k] < self.max[k])
+        self.check().is_ok()
     }
 
-    /// Conditions of [`Bounds::is_valid`], as the end of a sentence about the box.
-    pub const REQUIREMENT: &str = "must have a positive size on every axis, a diagonal between 1e-12 and 1e12, and lie within \
-        1,000 diagonals of the origin";
+    /// Checks that particles can be put in the box and drawn there: every side has positive length, the diagonal is one of
+    /// [`Bounds::DIAGONALS`], and no coordinate is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
+    ///
+    /// # Errors
+    ///
+    /// The first of these that does not hold.
+    pub fn check(&self) -> Result<(), BoxError> {
+        let (lo, hi, diagonal) = (self.lo(), self.hi(), self.diagonal());
+        let faults = [
+            (!(lo.is_finite() && hi.is_finite()), BoxError::NotFinite),
+            (lo.cmpge(hi).any(), BoxError::Empty),
+            (!Self::DIAGONALS.contains(&diagonal), BoxError::Size),
+            (self.farthest() > Self::FARTHEST_CORNER * diagonal, BoxError::Far),
+        ];
+        faults.into_iter().find(|&(is_there, _)| is_there).map_or(Ok(()), |(_, fault)| Err(fault))
+    }
+}
+
+/// Why particles cannot be put in a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BoxError {
+    /// A coordinate is NaN or infinite.
+    #[error("the box has a corner that is not finite")]
+    NotFinite,
+    /// The corners are the same along an axis, or the other way round.
+    #[error("the box must have a positive size on every axis")]
+    Empty,
+    /// The diagonal is not one of [`Bounds::DIAGONALS`].
+    #[error("the box must have a diagonal between {:e} and {:e}", Bounds::DIAGONALS.start(), Bounds::DIAGONALS.end())]
+    Size,
+    /// A corner is farther from the origin than [`Bounds::FARTHEST_CORNER`] diagonals.
+    #[error("the box must lie within {} diagonals of the origin", Bounds::FARTHEST_CORNER)]
+    Far,
 }
 
 /// A symmetric 3×3 matrix, by its upper triangle.

@@ -16,7 +16,7 @@ use crate::field::Field;
 use crate::field::rbf::{CentredFrame, RbfData, RbfField};
 use crate::math::{Bounds, sort_numbers};
 use crate::slices::{HEAVY, LIGHT, pause, ranges};
-use glam::{DVec3, Vec3};
+use glam::{BVec3, DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
@@ -149,7 +149,7 @@ pub async fn approximate(
         condition,
         ..info
     };
-    Ok(reported(&field, given, residuals, info))
+    Ok(reported(&mut field, given, residuals, info))
 }
 
 /// A point in local coordinates.
@@ -242,7 +242,7 @@ fn field_of(x: &DVector<f64>, centres: &[DVec3], frame: &CentredFrame) -> Result
 }
 
 /// The fit with its report.
-fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
+fn reported(field: &mut RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info: ModelInfo) -> Fit {
     let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
     let bounds = Bounds::around(given.iter().copied().chain(centres));
     let diagonal = bounds.diagonal();
@@ -260,7 +260,17 @@ fn reported(field: &RbfField, given: &[DVec3], mut residuals: Vec<f32>, mut info
             info.condition
         ));
     }
-    Fit { data: field.data().clone(), bounds: bounds.enlarged(MARGIN * diagonal), info }
+    let bounds = bounds.enlarged(MARGIN * diagonal);
+    let [lo, hi] = [bounds.lo(), bounds.hi()];
+    let corner = |k: u32| DVec3::select(BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), hi, lo);
+    if (0..8).all(|k| field.value_and_gradient(corner(k)).0 < 0.0) {
+        info.warnings.push(
+            "The normals point inward: the solid is what lies around the points, and the volume of its mesh is negative. Turn them round if \
+             the inside is meant."
+                .into(),
+        );
+    }
+    Fit { data: field.data().clone(), bounds, info }
 }
 
 /// The equations for the unknowns α and −β of each centre: the means of f and ∇f over the cell of every centre.

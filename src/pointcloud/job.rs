@@ -51,7 +51,7 @@ pub enum JobError {
         /// The identifier.
         id: String,
     },
-    /// The number of centres is not from 100 to 800.
+    /// The number of centres is not one of [`CENTRES`](crate::CENTRES).
     #[error("{count} centres: choose {} to {}", CENTRES.start(), CENTRES.end())]
     Centres {
         /// Number of centres that was given.

@@ -22,7 +22,7 @@ use glam::DVec3;
 use job::{Job, JobError};
 
 /// Fits a surface to the points of a file: PLY, OBJ, STL, XYZ or CSV, as the `name` or the content says. A function with as many
-/// `centres`, 100 to 800, is fitted to all of them: noise is smoothed as cross-validation tells. Normals come from the file, else from its
+/// `centres`, a number of [`CENTRES`](crate::CENTRES), is fitted to all of them: noise is smoothed as cross-validation tells. Normals come from the file, else from its
 /// faces, else they are estimated. Large faces are given more points, so that the surface follows them.
 ///
 /// # Errors

@@ -6,7 +6,7 @@ use crate::particles::Particles;
 use crate::quality::{self, Figures};
 use crate::sampler::Sampling;
 use crate::sampler::sheet::repulsion_weight;
-use crate::slices::{self, HEAVY, Work, pause, ranges};
+use crate::slices::{HEAVY, Work, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 use std::sync::Arc;
@@ -21,9 +21,12 @@ pub(super) struct Measuring {
     /// The particles after the front, until they are measured.
     pub(super) front: Option<Arc<Particles>>,
     pub(super) front_figures: Option<Figures>,
+    /// The measurement of a copy of the field that is under way.
     pub(super) work: Option<Work<'static, MeasuringResult>>,
     /// The figures and columns of the last measurement; empty before the first.
     pub(super) measured: quality::Measurements,
+    /// Number of particles that face another sheet; none if the present particles are still to be measured.
+    pub(super) facing: Option<usize>,
 }
 
 impl Measuring {
@@ -34,9 +37,9 @@ impl Measuring {
         }
     }
 
-    /// Gives a measurement under way up.
+    /// Gives a measurement under way up, and says that the last one is of other particles or another field.
     pub(super) fn stop(&mut self) {
-        self.work = None;
+        (self.work, self.facing) = (None, None);
     }
 
     /// The particles of the front that are still to be measured.
@@ -91,17 +94,12 @@ pub(super) struct MeasuringInput {
 
 // These functions are not generic, so that the measurement is compiled once and not with every type of field.
 impl MeasuringInput {
-    /// Measures all at once.
-    pub(super) fn measure(self, field: &mut dyn Field) -> MeasuringResult {
-        slices::complete(self.in_slices(field))
-    }
-
     /// The measurement in slices.
     pub(super) fn work(self, mut field: Box<dyn Field>) -> Work<'static, MeasuringResult> {
         Box::pin(async move { self.in_slices(&mut *field).await })
     }
 
-    async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
+    pub(super) async fn in_slices(self, field: &mut dyn Field) -> MeasuringResult {
         let Self { front, now, bounds, sampling } = self;
         let crossings = &mut None;
         let front = match front {

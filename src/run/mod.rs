@@ -11,7 +11,7 @@ mod sample;
 mod warning;
 
 pub use mesh::{MeshAnswer, MeshComponent};
-pub use report::{Cut, Growth, Measures, Proof, Radii, Report};
+pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
 pub use warning::Warning;
 
@@ -45,6 +45,19 @@ pub enum Error {
     /// A setting or the box is out of its range, or the memory does not hold the particles.
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    /// No box was given, and none was found: f changes its sign nowhere on the grids that were laid over cubes around the origin. A surface
+    /// that is smaller than their cells, or farther away, needs its box: [`Settings::in_box`].
+    #[error(
+        "no box was given, and on grids of {cells} cells a side over cubes around the origin, from \u{b1}{} to \u{b1}{}, f changes its sign \
+         nowhere: a surface that is smaller than the cells or farther away needs its box (`Settings::in_box`)",
+        halves[halves.len() - 1], halves[0]
+    )]
+    NoBox {
+        /// Half-widths of the cubes, the largest first.
+        halves: &'static [f64],
+        /// Cells along each side of a cube.
+        cells: usize,
+    },
     /// No particle could be placed.
     #[error("{message}")]
     Nothing {
@@ -128,7 +141,7 @@ impl<F: Field> Run<F> {
     /// Starts a run on the surface of `field`: in the box of the settings, or in one that fits the surface.
     ///
     /// The start surveys the box and fixes the radius. A fitted box is found by bounds of the field where it has any, and by the signs of f
-    /// on grids where it has none, with some hundred thousand evaluations.
+    /// on grids where it has none, with some hundred thousand evaluations: [`FnField`](crate::FnField) says what these can miss.
     ///
     /// # Errors
     ///
@@ -167,9 +180,7 @@ impl<F: Field> Run<F> {
     /// Begins a run in the present box; the survey is kept if field and box are those of the last start.
     pub(crate) fn begin(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         settings.validate()?;
-        if !self.bounds.is_valid() {
-            return Err(SettingsError::Box);
-        }
+        self.bounds.check()?;
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
         self.field.set_origin(self.bounds.local_origin());
         let bounds = self.bounds.relative_to(self.field.origin());
@@ -254,13 +265,16 @@ impl<F: Field> Run<F> {
         can_follow
     }
 
-    /// Asks for more relaxation steps on the particles of a finished run; [`Run::step`] does them.
-    pub fn relax(&mut self, steps: u32) {
-        if self.known != Known::Nothing {
-            self.sampler.relax(steps);
+    /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does them. Returns whether there are
+    /// particles to relax: while the run is under way there are none, and its steps are those of its [settings](Settings::relax_steps).
+    #[must_use]
+    pub fn relax(&mut self, steps: u32) -> bool {
+        let can_relax = self.known != Known::Nothing && self.sampler.relax(steps);
+        if can_relax {
             let progress = self.sampler.progress();
             self.remember(progress);
         }
+        can_relax
     }
 
     /// Ends the run where it is; the particles placed so far stay.
@@ -313,6 +327,9 @@ impl<F: Field> Run<F> {
             return Ok(());
         }
         let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
+        if self.reach == Some(Reach::Unknown) && progress.stop_reason != Some(StopReason::Cancelled) {
+            return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS });
+        }
         let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
         if let Some(cause) =
             self.start.warnings.iter().find(|warning| matches!(warning, Warning::Gradient { .. }))

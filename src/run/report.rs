@@ -8,7 +8,7 @@ use crate::math::Forest;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
-use crate::slices;
+use crate::slices::{self, Work};
 use glam::Vec3;
 use serde::{Serialize, Serializer};
 
@@ -30,9 +30,10 @@ pub struct Report {
     /// Figures of quality.
     #[serde(flatten)]
     pub measures: Measures,
-    /// Volume that the mesh encloses; none where it is open, or the particles are not joined to one.
-    pub volume: Option<f64>,
-    /// Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one.
+    /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined.
+    #[serde(rename = "volume")]
+    pub joined_volume: Option<f64>,
+    /// Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined.
     pub smallest_angle: Option<f64>,
     /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same.
     pub pairs: Option<usize>,
@@ -87,7 +88,7 @@ pub struct Growth {
     pub gaps_filled: u64,
     /// Number of proposed children by fate.
     pub fates: FateCounts,
-    /// Field evaluations of the whole run.
+    /// Field evaluations of the whole run, counted as [`Progress::evaluations`](crate::Progress::evaluations).
     pub evaluations: u64,
     /// Field evaluations of the front per particle.
     pub evaluations_per_particle: f64,
@@ -171,6 +172,20 @@ pub(super) fn creases_of(Particles { twins, segments, sides, .. }: &Particles) -
     }
 }
 
+/// A report that is being made, as [`Run::measure`] begins it. Dropping it gives the measurement up.
+pub struct Reporting<'a>(Work<'a, Report>);
+
+impl Reporting<'_> {
+    /// Does up to `budget` slices, some 10 to 50 microseconds each; the report, once it is complete.
+    ///
+    /// # Panics
+    ///
+    /// If it has given the report already.
+    pub fn step(&mut self, budget: u32) -> Option<Report> {
+        slices::advance(self.0.as_mut(), budget)
+    }
+}
+
 impl<F: Field> Run<F> {
     fn measuring_input(&self) -> MeasuringInput {
         MeasuringInput {
@@ -181,25 +196,38 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended.
+    /// Measures the particles, before and after the relaxation, and reports. Call it when the run has ended. What was measured since the
+    /// particles last changed is not measured again.
     pub fn report(&mut self) -> Report {
-        self.measuring.stop();
-        let measured = self.measuring_input().measure(&mut self.field);
-        self.take(measured)
+        slices::complete(self.measure().0)
     }
 
-    /// [`Run::report`] in slices: up to `budget` of them, some 10 to 50 microseconds each; the report, once it is complete. A
-    /// measurement that anything comes between is given up, and the next call begins anew.
-    pub fn measure(&mut self, budget: u32) -> Option<Report>
+    /// [`Run::report`] in slices, with [`Reporting::step`].
+    pub fn measure(&mut self) -> Reporting<'_> {
+        Reporting(Box::pin(async move {
+            if self.measuring.facing.is_none() {
+                self.measuring.stop();
+                let measured = self.measuring_input().in_slices(&mut self.field).await;
+                self.keep(measured);
+            }
+            self.reported()
+        }))
+    }
+
+    /// [`Run::report`] in slices, up to `budget` of them, of a copy of the field, so that the run is free between them: the report, once it is
+    /// complete. A measurement that anything comes between is given up, and the next call begins anew.
+    pub(crate) fn measure_copy(&mut self, budget: u32) -> Option<Report>
     where
         F: Clone + 'static,
     {
-        if self.measuring.work.is_none() {
-            self.measuring.work = Some(self.measuring_input().work(Box::new(self.field.clone())));
+        if self.measuring.facing.is_none() {
+            let begun = self.measuring.work.take();
+            let work = begun.unwrap_or_else(|| self.measuring_input().work(Box::new(self.field.clone())));
+            let measured = slices::advance(self.measuring.work.insert(work).as_mut(), budget)?;
+            self.measuring.work = None;
+            self.keep(measured);
         }
-        let measured = slices::advance(self.measuring.work.as_mut()?.as_mut(), budget)?;
-        self.measuring.work = None;
-        Some(self.take(measured))
+        Some(self.reported())
     }
 
     /// Measures particles that something else has placed on the surface, one row each, and keeps that as the last measurement. Sizes
@@ -227,22 +255,21 @@ impl<F: Field> Run<F> {
         }
     }
 
-    /// Keeps the measurements and returns the report.
-    fn take(&mut self, MeasuringResult { front, now, facing }: MeasuringResult) -> Report {
+    fn keep(&mut self, MeasuringResult { front, now, facing }: MeasuringResult) {
         if front.is_some() {
             (self.measuring.front, self.measuring.front_figures) = (None, front);
         }
-        self.measuring.measured = now;
-        self.reported(facing)
+        (self.measuring.measured, self.measuring.facing) = (now, Some(facing));
     }
 
     /// The report without measurements.
     pub(crate) fn report_unmeasured(&mut self) -> Report {
         self.measuring = Measuring::default();
-        self.reported(0)
+        self.reported()
     }
 
-    fn reported(&mut self, facing: usize) -> Report {
+    /// The report, with the measurements that are there.
+    fn reported(&mut self) -> Report {
         let is_overflowing = self.sampler.is_open_by_overflow(&mut self.field);
         let blur = self.sampler.blur(&mut self.field);
         let particles = self.sampler.particles();
@@ -250,13 +277,15 @@ impl<F: Field> Run<F> {
         let measured = &self.measuring.measured;
         let proof = self.proof(measured.figures.connectivity.components);
         let border = self.at_border();
-        let mut warnings = self.warnings_of_run(&proof.sampled, facing);
+        let mut warnings = self.warnings_of_run(&proof.sampled, self.measuring.facing.unwrap_or(0));
         warnings.extend(blur.map(|Blur { particle, distance }| Warning::Digits {
             position: particles.place(particle).to_array(),
             distance,
             spacing: 2.0 * f64::from(particles.radius[particle]),
         }));
         warnings.extend(self.meshing.joined().into_iter().flat_map(|mesh| Warning::of_mesh(measured, mesh)));
+        let is_beyond = self.reach == Some(Reach::Endless) && border == 0 && count > 0;
+        warnings.extend(is_beyond.then_some(Warning::Beyond { bounds: self.bounds }));
         warnings.extend(is_overflowing.then_some(Warning::Overflow));
         Report {
             count,
@@ -265,7 +294,7 @@ impl<F: Field> Run<F> {
             warnings,
             proof,
             measures: self.measures(),
-            volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
+            joined_volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             pairs: particles.pairs(),
             border,

@@ -16,7 +16,8 @@ use std::sync::OnceLock;
 /// Samples the surface f = 0 of a field with evenly spaced particles, and measures them.
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
-/// on for ever a part. The same field, settings and seed give the same particles to the last bit, on every platform. For progress,
+/// on for ever a part. The box of a field without [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
+/// where it is known. The same field, settings and seed give the same particles to the last bit, on every platform. For progress,
 /// cancelling or slices of work take a [`Run`].
 ///
 /// # Errors
@@ -104,7 +105,7 @@ impl Sample {
         Warning::of_mesh(&self.measured, self.mesh())
     }
 
-    /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`].
+    /// Volume that the [mesh](Sample::mesh) encloses, see [`Triangulation::volume`]; [`Report::joined_volume`] is there if the run had joined it.
     #[must_use]
     pub fn volume(&self) -> Option<f64> {
         self.mesh().volume(&self.particles)

@@ -4,7 +4,7 @@ use super::report::{CreaseCounts, creases_of};
 use super::{Report, Run, check};
 use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
-use crate::math::{counted, place_text, shortest_text, text_within};
+use crate::math::{Bounds, counted, place_text, shortest_text, text_within};
 use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality::Measurements;
@@ -47,6 +47,11 @@ pub enum Warning {
     },
     /// f touches zero without changing its sign.
     Touches,
+    /// Parts of the surface are outside of the fitted box, which cuts none of it.
+    Beyond {
+        /// The fitted box.
+        bounds: Bounds,
+    },
     /// Another equation of the same surface is sampled.
     SampledAs {
         /// The equation that is sampled.
@@ -363,6 +368,14 @@ impl fmt::Display for Warning {
                 "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
                  If f is a square, enter what is squared instead.",
             ),
+            Self::Beyond { bounds } => {
+                let [min, max] = [bounds.min, bounds.max].map(|corner| place_text(corner, bounds.diagonal()));
+                write!(
+                    f,
+                    "Parts of the surface lie outside of the box that was fitted, from {min} to {max}, and are not sampled. To \
+                     sample them, give a box that holds them."
+                )
+            }
             Self::SampledAs { equation } => write!(
                 f,
                 "f has powers, roots or absolute values of whole factors, which take its gradient on the surface. The same surface \

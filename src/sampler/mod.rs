@@ -113,6 +113,8 @@ struct Output {
     corners: Vec<u32>,
     /// Whether particles have moved or gone since the last step.
     moved: bool,
+    /// The largest share of the work that was told since work was asked for.
+    fraction: f64,
 }
 
 /// Finds the creases of the surface of a field in a box, in slices. From then on branches of the field that meet smoothly on the surface
@@ -449,9 +451,15 @@ impl Sampler {
             && bytes(more).is_some_and(is_there)
     }
 
-    /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
-    pub fn relax(&mut self, steps: u32) {
-        self.next(RunInput::Relax(steps));
+    /// Asks for `steps` more relaxation steps on the particles of a run that has ended; [`Sampler::step`] does them. Returns whether it has, with
+    /// particles to relax. If not, nothing has changed.
+    #[must_use]
+    pub fn relax(&mut self, steps: u32) -> bool {
+        let can_relax = self.phase.stop_reason().is_some() && self.output.particles.len() > 1;
+        if can_relax {
+            self.next(RunInput::Relax(steps));
+        }
+        can_relax
     }
 
     /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
@@ -541,7 +549,7 @@ impl Sampler {
         self.output.particles.origin = field.origin();
         self.look_inside();
         let progress = self.progress();
-        self.output.moved = false;
+        (self.output.moved, self.output.fraction) = (false, progress.fraction);
         progress
     }
 

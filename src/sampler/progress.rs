@@ -42,9 +42,11 @@ pub struct Progress {
     pub relax_step: u32,
     /// Relaxation steps asked for.
     pub relax_steps: u32,
-    /// Field evaluations so far, all phases.
+    /// Points at which the survey and all phases have evaluated the field so far, whatever derivatives they asked for. A function is called
+    /// more often: several times for each derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the proof,
+    /// which are not counted.
     pub evaluations: u64,
-    /// Estimated share of the work done.
+    /// Estimated share of the work done. It does not go back before more is asked for.
     pub fraction: f64,
     /// Set once the run has ended.
     pub stop_reason: Option<StopReason>,
@@ -104,7 +106,7 @@ impl Sampler {
             relax_step: self.tools.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
             evaluations: self.tools.memory.evaluations,
-            fraction: self.fraction(settled),
+            fraction: self.fraction(settled).max(self.output.fraction),
             stop_reason: self.phase.stop_reason(),
             message: self.message(),
             radius: self.attempt.radius,
@@ -134,10 +136,14 @@ impl Sampler {
             PhaseState::Audit(_) | PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
-                // A coarse front is the smaller part of its run. Any front may place more particles than are expected.
-                let refining = self.attempt.refining.as_ref();
-                let share = refining.map_or(generation, |refining| refine::coarse_share(refining.halvings));
-                share * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
+                // A coarse front is the smaller part of its run, and so is a pilot. Any front may place more particles than are expected.
+                let (share, expected) = match &self.attempt.refining {
+                    Some(refining) => {
+                        (refine::coarse_share(refining.halvings), self.attempt.expected_count())
+                    }
+                    None => (generation, self.attempt.predicted_count(&self.settings)),
+                };
+                share * (particles as f64 / expected.max(1.0)).min(0.99)
             }
         }
     }

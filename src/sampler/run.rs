@@ -32,7 +32,7 @@ pub(super) enum RunInput<'a> {
     Start,
     /// There is no memory for the run.
     Refuse,
-    /// The caller asks for so many more relaxation steps.
+    /// The caller asks for so many more relaxation steps of a run that has ended.
     Relax(u32),
     /// The surface of a finished run has moved, but its particles can follow.
     Follow,
@@ -45,16 +45,14 @@ pub(super) enum RunInput<'a> {
 impl Sampler {
     /// Makes the transition that the input asks for: the only place where the phase changes.
     pub(super) fn next(&mut self, input: RunInput) {
+        if !matches!(input, RunInput::Work { .. } | RunInput::Cancel) {
+            self.output.fraction = 0.0;
+        }
         let phase = core::mem::replace(&mut self.phase, PhaseState::Idle);
         self.phase = match input {
             RunInput::Start => self.begin_attempt(),
             RunInput::Refuse => PhaseState::Idle,
-            RunInput::Relax(steps) => match phase {
-                PhaseState::Marking(_) | PhaseState::Done(_) if self.output.particles.len() > 1 => {
-                    self.relax_again(steps)
-                }
-                _ => phase,
-            },
+            RunInput::Relax(steps) => self.relax_again(steps),
             RunInput::Follow => self.begin_flow(),
             RunInput::Cancel => match phase {
                 PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_) => phase,

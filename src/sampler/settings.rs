@@ -1,6 +1,6 @@
 //! Settings of a run, with the paper's values as defaults.
 
-use crate::math::{Bounds, shortest_text};
+use crate::math::{Bounds, BoxError, shortest_text};
 use core::fmt;
 use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
@@ -69,8 +69,8 @@ pub enum GapPolicy {
 /// ```
 /// use marching_particles::{Bounds, Settings};
 ///
-/// let mut settings = Settings::with_count(5_000).in_box(Bounds::cube(1.2));
-/// settings.seed = 7;
+/// let mut settings = Settings::with_count(5_000).in_box(Bounds::cube(1.2)).seeded(7);
+/// settings.relax_steps = 20;
 /// assert!(settings.validate().is_ok());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -174,9 +174,9 @@ pub enum SettingsError {
         /// Largest value allowed.
         max: f64,
     },
-    /// The clip box is not [valid](Bounds::is_valid).
-    #[error("the box {}", Bounds::REQUIREMENT)]
-    Box,
+    /// No particles can be put in the clip box.
+    #[error(transparent)]
+    Box(#[from] BoxError),
     /// The columns of that many particles do not fit into the memory.
     #[error("there is not enough memory for about {particles} particles: choose fewer, or a larger radius")]
     Memory {
@@ -229,6 +229,13 @@ impl Settings {
         Self { radius_share: share, ..Self::DEFAULT }
     }
 
+    /// Default settings for adaptive sampling in which triangles of neighbours keep this distance from the surface: a length over
+    /// [`Bounds::diagonal`] of the box that is given.
+    #[must_use]
+    pub fn with_chord_error(share: f64) -> Self {
+        Self { radius_law: LawKind::ChordError, chord_error: share, ..Self::DEFAULT.adaptive() }
+    }
+
     /// Sets the box that is sampled and returns the settings.
     #[must_use]
     pub fn in_box(self, bounds: Bounds) -> Self {
@@ -245,6 +252,12 @@ impl Settings {
     #[must_use]
     pub fn refined(self) -> Self {
         Self { method: Method::Refined, ..self }
+    }
+
+    /// Sets the seed of the random choice of the point where the front begins, and returns the settings.
+    #[must_use]
+    pub fn seeded(self, seed: u64) -> Self {
+        Self { seed, ..self }
     }
 
     /// Smallest and largest value of a setting that is a number; none for another one.
@@ -280,9 +293,6 @@ impl Settings {
                 return Err(SettingsError::OutOfRange { name, value, min, max });
             }
         }
-        if self.bounds.is_some_and(|bounds| !bounds.is_valid()) {
-            return Err(SettingsError::Box);
-        }
-        Ok(())
+        Ok(self.bounds.map_or(Ok(()), |bounds| bounds.check())?)
     }
 }

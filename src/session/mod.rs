@@ -16,11 +16,11 @@ pub use setting::{
 };
 
 use crate::extent::{FALLBACK, Reach};
-use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
+use crate::field::{Field, pointer_to_field};
 use crate::math::Bounds;
 use crate::run::{Error, Report, Run, Sample, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
@@ -119,6 +119,8 @@ impl DerefMut for Source {
         }
     }
 }
+
+pointer_to_field!(Source);
 
 /// A run whose field is changed by requests.
 pub struct Session {
@@ -407,10 +409,10 @@ impl Session {
         can_follow
     }
 
-    /// [`Run::measure`], with what the session knows of the surface. Of one of the gallery or a model, whose box was chosen for it, no cause
+    /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery or a model, whose box was chosen for it, no cause
     /// is told why particles lie at the border.
     pub fn measure(&mut self, budget: u32) -> Option<Report> {
-        self.run.measure(budget).map(|report| self.completed(report))
+        self.run.measure_copy(budget).map(|report| self.completed(report))
     }
 
     fn completed(&self, mut report: Report) -> Report {
@@ -448,6 +450,5 @@ impl Session {
 
 /// Checks that a box can be sampled.
 fn check_box(bounds: &Bounds) -> Result<(), Fault> {
-    let fault = || Fault::new(FaultKind::Box, &format_args!("the box {}", Bounds::REQUIREMENT));
-    bounds.is_valid().then_some(()).ok_or_else(fault)
+    bounds.check().map_err(|error| Fault::new(FaultKind::Box, &error))
 }

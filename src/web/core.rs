@@ -129,7 +129,7 @@ impl Core {
 
     /// Queues relaxation steps on the present particles.
     pub fn relax(&mut self, steps: u32) {
-        self.session.run.relax(steps);
+        let _ = self.session.run.relax(steps);
     }
 
     /// Ends the run and keeps the particles: `Progress`.

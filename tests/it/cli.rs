@@ -358,9 +358,14 @@ fn each_invalid_argument_has_its_message() {
     assert!(fails(2, &["sample", "--radius", "1e-9"]).contains("between 0.01% and 20%"));
     assert!(fails(2, &["sample", "--radius", "1%", "--count", "10"]).contains("cannot be used with"));
     assert!(fails(2, &["sample", "--box", "1,2"]).contains("one, three or six"));
-    for bad in ["1,1,0", "1e39", "1e-310", "1e9,0,0,1000000001,1,1"] {
+    for (bad, fault) in [
+        ("1,1,0", "have a positive size on every axis"),
+        ("1e39", "have a diagonal between 1e-12 and 1e12"),
+        ("1e-310", "have a diagonal between 1e-12 and 1e12"),
+        ("1e9,0,0,1000000001,1,1", "lie within 1000 diagonals of the origin"),
+    ] {
         let message = fails(2, &["sample", "--formula", "x + y + z", "--box", bad]);
-        assert!(message.contains("a diagonal between 1e-12 and 1e12"), "{bad}: {message}");
+        assert!(message.contains(&format!("the box must {fault}: give half-widths")), "{bad}: {message}");
     }
     for (option, range) in
         [("--match-tolerance", "0.5 and 0.9"), ("--relax", "0 and 1000"), ("--count", "1 and 4000000")]

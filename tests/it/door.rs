@@ -2,9 +2,11 @@
 
 use marching_particles::glam::DVec3;
 use marching_particles::{
-    Bounds, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles, Run, Settings,
+    Bounds, BoxError, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles, Run, Settings,
     SettingsError, StopReason, Warning, sample,
 };
+use std::cell::Cell;
+use std::ops::{Deref, DerefMut};
 
 const FEW: u32 = 1_500;
 
@@ -54,7 +56,7 @@ fn a_run_that_borrows_its_field_is_the_same_as_the_whole_job() {
     while run.step(37).stop_reason.is_none() {}
     assert_eq!(run.particles().digest(), whole.particles().digest());
     // More steps, and a cancelled run, are measured as they stand.
-    run.relax(2);
+    assert!(run.relax(2));
     while run.step(1_000).stop_reason.is_none() {}
     assert_eq!(run.report().growth.energy.map(|energy| energy.len()), Some(13));
     run.restart(&Settings::with_count(4 * FEW)).unwrap();
@@ -102,13 +104,130 @@ fn a_box_that_is_given_is_kept_and_one_that_is_not_is_fitted() {
     }
     let settings = Settings::with_count(FEW).in_box(Bounds { min: far.min, max: far.max });
     let far = sample(FnField::new(|p: DVec3| sphere(p - centre)), &settings);
-    assert_eq!(far.err(), Some(Error::Settings(SettingsError::Box)));
+    assert_eq!(far.err(), Some(Error::Settings(SettingsError::Box(BoxError::Far))));
     let near = DVec3::new(100.0, -200.0, 0.0);
     let around = Bounds { min: (near - 1.2).to_array(), max: (near + 1.2).to_array() };
     let sampled =
         sample(FnField::new(|p: DVec3| sphere(p - near)), &Settings::with_count(FEW).in_box(around)).unwrap();
     let off = (0..sampled.particles().len()).map(|i| sphere(sampled.particles().place(i) - near).abs());
     assert!(off.fold(0.0, f64::max) < 1e-5);
+}
+
+#[test]
+fn a_closure_far_away_needs_its_box_and_a_part_beyond_the_box_is_told() {
+    let far = FnField::new(|p: DVec3| sphere(p - DVec3::new(1000.0, -2000.0, 3000.0)));
+    let error = sample(far, &Settings::with_count(FEW)).unwrap_err();
+    assert!(matches!(error, Error::NoBox { cells: 32, .. }), "{error:?}");
+    let said =
+        "no box was given, and on grids of 32 cells a side over cubes around the origin, from ±4 to ±10000, ";
+    assert!(error.to_string().starts_with(said), "{error}");
+    // The second sphere is wider than two cells of the cube in which it lies.
+    for (distance, radius) in [(12.0, 2.1), (60.0, 8.0), (1_500.0, 150.0)] {
+        let second = DVec3::new(0.6, 0.0, 0.8) * distance;
+        let two = FnField::new(|p: DVec3| sphere(p).min((p - second).length() - radius));
+        let sample = sample(two, &Settings::with_count(FEW)).unwrap();
+        let bounds = sample.bounds();
+        assert_eq!(sample.report().warnings, [Warning::Beyond { bounds }], "at {distance}");
+    }
+}
+
+thread_local! {
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn counted_sphere(p: DVec3) -> f64 {
+    CALLS.set(CALLS.get() + 1);
+    sphere(p)
+}
+
+#[test]
+fn any_field_is_measured_in_slices_and_none_is_measured_twice() {
+    let settings = Settings::with_count(FEW);
+    let whole = sample(FnField::new(sphere), &settings).unwrap();
+    // A box has no copy.
+    let field: Box<dyn Field> = Box::new(FnField::new(counted_sphere));
+    let mut run = Run::start(field, &settings).unwrap();
+    while run.step(1_000).stop_reason.is_none() {}
+    assert!(run.measure().step(3).is_none(), "a measurement that is given up");
+    let mut measuring = run.measure();
+    let mut steps = 1;
+    let report = loop {
+        match measuring.step(10) {
+            Some(report) => break report,
+            None => steps += 1,
+        }
+    };
+    assert!(steps > 10, "{steps}");
+    drop(measuring);
+    assert_eq!(format!("{report:?}"), format!("{:?}", whole.report()));
+    let calls = CALLS.replace(0);
+    let again = [run.report(), run.measure().step(1).unwrap()];
+    let sample = run.finish().unwrap();
+    assert_eq!(format!("{again:?}"), format!("{:?}", [&report, sample.report()]));
+    assert!(CALLS.get() < calls / 100, "{} calls after {calls}", CALLS.get());
+}
+
+#[test]
+fn the_fraction_goes_forward_alone_and_relaxation_is_refused_under_way() {
+    let by_count = Settings::with_count(10_000);
+    for settings in [by_count, by_count.adaptive(), by_count.refined(), Settings::with_radius(0.02)] {
+        let mut run = Run::start(FnField::new(sphere).with_gradient(outward), &settings).unwrap();
+        let mut last = 0.0;
+        loop {
+            let progress = run.step(500);
+            assert!((last..=1.0).contains(&progress.fraction), "{} after {last}", progress.fraction);
+            last = progress.fraction;
+            if progress.stop_reason.is_some() {
+                break;
+            }
+            assert!(!run.relax(2));
+        }
+        assert_eq!(last, 1.0);
+        assert!(run.relax(2));
+        assert!(run.step(500).fraction < 1.0);
+    }
+}
+
+/// A field that points to the one within.
+struct Wrapper<F>(F);
+
+impl<F> Deref for Wrapper<F> {
+    type Target = F;
+
+    fn deref(&self) -> &F {
+        &self.0
+    }
+}
+
+impl<F> DerefMut for Wrapper<F> {
+    fn deref_mut(&mut self) -> &mut F {
+        &mut self.0
+    }
+}
+
+impl<F: Field> Field for Wrapper<F> {
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        let (value, gradient) = self.0.value_and_gradient(p);
+        (-value, -gradient)
+    }
+}
+
+#[test]
+fn a_wrapper_that_points_to_its_field_is_a_field_of_its_own() {
+    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.2));
+    let hollow = sample(Wrapper(FnField::new(sphere)), &settings).unwrap();
+    assert!(hollow.volume().is_some_and(|volume| volume < -4.0));
+}
+
+#[test]
+fn a_size_and_a_seed_are_chosen_in_one_line() {
+    let by_hand = settings!(seed: 7, chord_error: 1e-3; ..Settings::default()).adaptive();
+    assert_eq!(Settings::with_chord_error(1e-3).seeded(7), by_hand);
+    let taken = |seed| {
+        let settings = Settings::with_chord_error(1e-3).seeded(seed);
+        sample(FnField::new(sphere), &settings).unwrap().report().digest.clone()
+    };
+    assert_ne!(taken(7), taken(8));
 }
 
 #[test]
@@ -216,9 +335,16 @@ fn settings_out_of_range_are_refused_before_any_work() {
     settings.grading = 2.0;
     let error = sample(untouched(), &settings).unwrap_err();
     assert_eq!(error.to_string(), "grading is 2, but must lie between 0.01 and 0.5");
-    let flat = Bounds { min: [0.0; 3], max: [1.0, 1.0, 0.0] };
-    let error = sample(untouched(), &Settings::with_count(FEW).in_box(flat)).unwrap_err();
-    assert_eq!(error, Error::Settings(SettingsError::Box));
+    for (max, fault) in [
+        ([1.0, 1.0, 0.0], BoxError::Empty),
+        ([1.0, -1.0, 1.0], BoxError::Empty),
+        ([1.0, f64::NAN, 1.0], BoxError::NotFinite),
+        ([3e-13; 3], BoxError::Size),
+    ] {
+        let bounds = Bounds { min: [0.0; 3], max };
+        let error = sample(untouched(), &Settings::with_count(FEW).in_box(bounds)).unwrap_err();
+        assert_eq!(error, Error::Settings(SettingsError::Box(fault)));
+    }
     let error = sample(untouched(), &Settings::with_radius(0.5)).unwrap_err();
     assert!(
         matches!(error, Error::Settings(SettingsError::OutOfRange { name: "radius_share", .. })),

@@ -239,7 +239,7 @@ fn particles_that_have_followed_can_be_relaxed() {
     let mut run = started(ELLIPSOID, 1.0, 1.5, &Settings::with_count(1_000));
     sweep(&mut run, ELLIPSOID, [1.0, 1.3], 40, u32::MAX);
     let before = (run.count(), run.report().measures.quality.expect("figures").spacing.nn_cv);
-    run.relax(20);
+    assert!(run.relax(20));
     finish(&mut run, u32::MAX);
     let after = (run.count(), run.report().measures.quality.expect("figures").spacing.nn_cv);
     assert_eq!(before.0, after.0);

@@ -107,7 +107,7 @@ fn what_is_cancelled_can_be_relaxed() {
         }
         sampler.cancel();
         assert!(sampler.step(&mut field, 0).stop_reason.is_some());
-        sampler.relax(1);
+        assert!(sampler.relax(1));
         while sampler.step(&mut field, 500).stop_reason.is_none() {}
         assert!(sampler.particles().position.iter().all(|p| p.is_finite()));
     }

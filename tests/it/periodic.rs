@@ -167,7 +167,7 @@ fn relaxing_further_keeps_opposite_faces_the_same() {
         .expect("the settings are valid");
     for _ in 0..2 {
         while run.step(5000).stop_reason.is_none() {}
-        run.relax(3);
+        assert!(run.relax(3));
     }
     while run.step(5000).stop_reason.is_none() {}
     let sample = run.finish().expect("there is a surface");

@@ -138,6 +138,21 @@ fn a_field_passes_through_its_points_and_is_bounded() {
 }
 
 #[test]
+fn normals_that_all_point_inward_are_told() {
+    let inward: String = (ellipsoid(8, true).lines())
+        .map(|line| {
+            let n: Vec<f64> = line.split(' ').map(|x| x.parse().expect("a number")).collect();
+            format!("{} {} {} {} {} {}\n", n[0], n[1], n[2], -n[3], -n[4], -n[5])
+        })
+        .collect();
+    let warnings = file(&inward, 200).expect("a good cloud").info.warnings;
+    assert!(
+        matches!(&warnings[..], [warning] if warning.starts_with("The normals point inward")),
+        "{warnings:?}"
+    );
+}
+
+#[test]
 fn flipped_normals_are_turned_round_and_an_outlier_is_left_out() {
     let right = ellipsoid(8, true);
     let fit = file(&right, 200).expect("a good cloud");

@@ -365,12 +365,9 @@ fn bounds(text: &str) -> Result<Bounds, String> {
         [x0, y0, z0, x1, y1, z1] => Bounds { min: [x0, y0, z0], max: [x1, y1, z1] },
         _ => return Err(format!("a box takes one, three or six numbers, not {}", numbers.len())),
     };
-    if bounds.is_valid() {
-        Ok(bounds)
-    } else {
-        let how = "give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1";
-        Err(format!("the box {}: {how}", Bounds::REQUIREMENT))
-    }
+    let how = "give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1";
+    bounds.check().map_err(|error| format!("{error}: {how}"))?;
+    Ok(bounds)
 }
 
 #[cfg(test)]

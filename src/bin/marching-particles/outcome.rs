@@ -77,7 +77,7 @@ impl MeshCounts {
             borders: topology.borders.len() - unfilled.len(),
             holes: unfilled.len(),
             left_out: left_out.len(),
-            volume: report.volume,
+            volume: report.joined_volume,
             smallest_angle: report.smallest_angle,
         }
     }
