@@ -17,9 +17,9 @@ const SECOND: f64 = 20.0;
 /// `max` and `abs` has its edges.
 ///
 /// Give the box of the surface where it is known ([`Settings::in_box`](crate::Settings::in_box)). Without one, grids of 32 cells a side look
-/// for changes of sign over cubes around the origin, whose half-widths are 4, 16, 80, 400, 2,000 and 10,000. The box is fitted to what lies
-/// in the smallest cube through whose faces the surface does not pass. What is smaller than the cells of its grid is not seen, and a small
-/// part far away is missed without a word. Where a larger grid shows more, a warning says so
+/// for changes of sign over cubes around the origin, from ±4 to ±10,000, each four or five times as wide as the one before. The box is fitted to
+/// what lies in the smallest cube through whose faces the surface does not pass. What is smaller than the cells of its grid is not seen, and a
+/// small part far away is missed without a word. Where a larger grid shows more, a warning says so
 /// ([`Warning::Beyond`](crate::Warning::Beyond)); where none shows anything, [`Error::NoBox`](crate::Error::NoBox) does.
 ///
 /// ```

@@ -118,6 +118,7 @@ fn a_closure_far_away_needs_its_box_and_a_part_beyond_the_box_is_told() {
     let far = FnField::new(|p: DVec3| sphere(p - DVec3::new(1000.0, -2000.0, 3000.0)));
     let error = sample(far, &Settings::with_count(FEW)).unwrap_err();
     assert!(matches!(error, Error::NoBox { cells: 32, .. }), "{error:?}");
+    // The numbers that the documentation of `FnField` has.
     let said =
         "no box was given, and on grids of 32 cells a side over cubes around the origin, from ±4 to ±10000, ";
     assert!(error.to_string().starts_with(said), "{error}");

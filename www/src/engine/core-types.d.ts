@@ -997,9 +997,11 @@ export type Progress = {
   relax_step: number,
   /** Relaxation steps asked for. */
   relax_steps: number,
-  /** Field evaluations so far, all phases. */
+  /** Points at which the survey and all phases have evaluated the field so far, whatever derivatives they asked for. A function is called
+  * more often: several times for each derivative by differences ([`FnField`](crate::FnField)), and for the box, the set-up and the proof,
+  * which are not counted. */
   evaluations: number,
-  /** Estimated share of the work done. */
+  /** Estimated share of the work done. It does not go back before more is asked for. */
   fraction: number,
   /** Set once the run has ended. */
   stop_reason: StopReason | null,
@@ -1028,9 +1030,9 @@ export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
 export type Report = {
   /** Number of particles. */
   count: number,
-  /** Volume that the mesh encloses; none where it is open, or the particles are not joined to one. */
+  /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined. */
   volume: number | null,
-  /** Smallest angle of the triangles of the mesh in degrees, those at its border among them; none where the particles are not joined to one. */
+  /** Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined. */
   smallest_angle: number | null,
   /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same. */
   pairs: number | null,
@@ -1061,7 +1063,7 @@ export type Report = {
   gaps_filled: number,
   /** Number of proposed children by fate. */
   fates: FateCounts,
-  /** Field evaluations of the whole run. */
+  /** Field evaluations of the whole run, counted as [`Progress::evaluations`](crate::Progress::evaluations). */
   evaluations: number,
   /** Field evaluations of the front per particle. */
   evaluations_per_particle: number,
