@@ -16,6 +16,7 @@ pub use function::FnField;
 
 use crate::math::{Bounds, Interval, Sym3};
 use crate::slices::Work;
+use core::ops::DerefMut;
 use glam::{DVec3, Vec3};
 
 /// Largest number of points in a call of a field: large enough to hide the cost of a call, and of decoding a formula,
@@ -230,86 +231,70 @@ pub(crate) fn jet_by_differences<F: Field + ?Sized>(field: &mut F, p: DVec3) -> 
     Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
 }
 
-/// Makes a field of what points to one. It is no implementation for everything that does: a wrapper may point to its field and be a
-/// field of its own.
-macro_rules! pointer_to_field {
-    ($pointer:ty $(, $F:ident)?) => {
-        const _: () = {
-            use $crate::field::{Bounded, Branched, Field, Jet, UnitCell};
-            use $crate::glam::{DVec3, Vec3};
-            use $crate::math::Sym3;
+/// A pointer to a field is a field.
+impl<P: DerefMut<Target: Field> + Send> Field for P {
+    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+        (**self).value_and_gradient(p)
+    }
 
-            impl$(<$F: Field + ?Sized>)? Field for $pointer {
-                fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-                    (**self).value_and_gradient(p)
-                }
+    fn jet(&mut self, p: DVec3) -> Jet {
+        (**self).jet(p)
+    }
 
-                fn jet(&mut self, p: DVec3) -> Jet {
-                    (**self).jet(p)
-                }
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        (**self).values(points, value);
+    }
 
-                fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-                    (**self).values(points, value);
-                }
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        (**self).gradients(points, value, gradient);
+    }
 
-                fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-                    (**self).gradients(points, value, gradient);
-                }
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        (**self).hessians(points, value, gradient, hessian);
+    }
 
-                fn hessians(
-                    &mut self,
-                    points: &[Vec3],
-                    value: &mut [f32],
-                    gradient: &mut [Vec3],
-                    hessian: &mut [Sym3<f32>],
-                ) {
-                    (**self).hessians(points, value, gradient, hessian);
-                }
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        (**self).exact_gradients(points, value, gradient);
+    }
 
-                fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
-                    (**self).exact_gradients(points, value, gradient);
-                }
+    fn use_double(&mut self, scale: Option<f64>) {
+        (**self).use_double(scale);
+    }
 
-                fn use_double(&mut self, scale: Option<f64>) {
-                    (**self).use_double(scale);
-                }
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        (**self).bounded()
+    }
 
-                fn bounded(&mut self) -> Option<&mut dyn Bounded> {
-                    (**self).bounded()
-                }
+    fn origin(&self) -> DVec3 {
+        (**self).origin()
+    }
 
-                fn origin(&self) -> DVec3 {
-                    (**self).origin()
-                }
+    fn set_origin(&mut self, origin: DVec3) {
+        (**self).set_origin(origin);
+    }
 
-                fn set_origin(&mut self, origin: DVec3) {
-                    (**self).set_origin(origin);
-                }
+    fn sampled_as(&self) -> Option<String> {
+        (**self).sampled_as()
+    }
 
-                fn sampled_as(&self) -> Option<String> {
-                    (**self).sampled_as()
-                }
+    fn branched(&mut self) -> Option<&mut dyn Branched> {
+        (**self).branched()
+    }
 
-                fn branched(&mut self) -> Option<&mut dyn Branched> {
-                    (**self).branched()
-                }
+    fn periods(&self) -> [Option<f64>; 3] {
+        (**self).periods()
+    }
 
-                fn periods(&self) -> [Option<f64>; 3] {
-                    (**self).periods()
-                }
-
-                fn unit_cell(&self) -> Option<UnitCell> {
-                    (**self).unit_cell()
-                }
-            }
-        };
-    };
+    fn unit_cell(&self) -> Option<UnitCell> {
+        (**self).unit_cell()
+    }
 }
-
-pub(crate) use pointer_to_field;
-
-pointer_to_field!(&mut F, F);
-pointer_to_field!(Box<F>, F);
 
 /// A field that bounds its values and derivatives over boxes, rounded outward: what the proofs about its surface rest on.
 ///

@@ -16,11 +16,11 @@ pub use setting::{
 };
 
 use crate::extent::{FALLBACK, Reach};
+use crate::field::Field;
 use crate::field::formula::{Formula, FormulaError, FormulaErrorKind, Grip, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
-use crate::field::{Field, pointer_to_field};
 use crate::math::Bounds;
 use crate::run::{Error, Report, Run, Sample, Start, Warning};
 use crate::sampler::{Settings, SettingsError};
@@ -119,8 +119,6 @@ impl DerefMut for Source {
         }
     }
 }
-
-pointer_to_field!(Source);
 
 /// A run whose field is changed by requests.
 pub struct Session {

@@ -6,7 +6,6 @@ use marching_particles::{
     SettingsError, StopReason, Warning, sample,
 };
 use std::cell::Cell;
-use std::ops::{Deref, DerefMut};
 
 const FEW: u32 = 1_500;
 
@@ -187,37 +186,6 @@ fn the_fraction_goes_forward_alone_and_relaxation_is_refused_under_way() {
         assert!(run.relax(2));
         assert!(run.step(500).fraction < 1.0);
     }
-}
-
-/// A field that points to the one within.
-struct Wrapper<F>(F);
-
-impl<F> Deref for Wrapper<F> {
-    type Target = F;
-
-    fn deref(&self) -> &F {
-        &self.0
-    }
-}
-
-impl<F> DerefMut for Wrapper<F> {
-    fn deref_mut(&mut self) -> &mut F {
-        &mut self.0
-    }
-}
-
-impl<F: Field> Field for Wrapper<F> {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let (value, gradient) = self.0.value_and_gradient(p);
-        (-value, -gradient)
-    }
-}
-
-#[test]
-fn a_wrapper_that_points_to_its_field_is_a_field_of_its_own() {
-    let settings = Settings::with_count(FEW).in_box(Bounds::cube(1.2));
-    let hollow = sample(Wrapper(FnField::new(sphere)), &settings).unwrap();
-    assert!(hollow.volume().is_some_and(|volume| volume < -4.0));
 }
 
 #[test]
