@@ -376,6 +376,7 @@ impl Sampler {
                 let is_tip = |tip: &Tip| Some(tip.patch) == patch && tip.position == point.position;
                 self.tips.iter().any(is_tip)
                     || probe.is_on_patch(point.position.as_vec3(), Vec3::ZERO, 0.0, patch)
+                        && probe.may_have_zeros(patch, &Bounds::point(point.position).enlarged(spacing))
             });
             self.singular.extend_from_slice(&near.points);
         }

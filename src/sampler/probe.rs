@@ -4,7 +4,7 @@ pub(crate) use crate::field::BATCH;
 
 use crate::field::Field;
 use crate::field::descent::Descent;
-use crate::math::Sym3;
+use crate::math::{Bounds, Sym3};
 use glam::Vec3;
 
 /// State that outlasts a [`Probe`]: the buffers of a batch, and the count of all evaluations.
@@ -58,6 +58,12 @@ impl<'a> Probe<'a> {
             let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
             self.field.branch_at(point.as_dvec3() + outward) == patch
         })
+    }
+
+    /// Whether a patch may have points in a box: the zeros of √(u² + v²) on the edge of other patches are none.
+    pub(crate) fn may_have_zeros(&mut self, patch: Option<u32>, bounds: &Bounds) -> bool {
+        let known = self.field.branched().and_then(|field| field.branches_in(bounds));
+        patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 
     /// Counts evaluations that were made of the field directly.

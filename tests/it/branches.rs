@@ -97,6 +97,28 @@ fn a_box_at_a_tie_has_both_branches() {
     assert_eq!((slabs.branch_at(DVec3::ZERO), slabs.branch_at(-DVec3::X)), (0, 1));
 }
 
+/// The distance to a box, in whose formula operands change sides on the surface itself.
+const DISTANCE: &str = "hypot(max(abs(x) - 1, 0), max(abs(y) - 1, 0), max(abs(z) - 1, 0))
+    + min(max(abs(x) - 1, abs(y) - 1, abs(z) - 1), 0)";
+
+#[test]
+fn the_distance_to_a_box_has_the_zeros_of_its_faces_alone() {
+    let mut distance = field(DISTANCE);
+    let [x, y, z] = DVec3::AXES.map(|axis| distance.branch_at(1.1 * axis));
+    // The same function inside, outside, and where neither side is taken.
+    for at in [0.9, 1.0] {
+        assert_eq!(DVec3::AXES.map(|axis| distance.branch_at(at * axis)), [x, y, z], "{at}");
+    }
+    let mut listed = |p: DVec3| distance.branches_in(&Bounds::new(p - 0.1, p + 0.1));
+    assert_eq!(listed(DVec3::new(1.0, 0.3, 0.2)), Some(vec![x]));
+    let mut edge = vec![x, y];
+    edge.sort_unstable();
+    assert_eq!(listed(DVec3::new(1.0, 1.0, 0.2)), Some(edge));
+    let mut corner = vec![x, y, z];
+    corner.sort_unstable();
+    assert_eq!(listed(DVec3::ONE), Some(corner));
+}
+
 #[test]
 fn too_many_branches_are_not_listed() {
     let mut waves =

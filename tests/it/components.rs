@@ -336,6 +336,29 @@ fn the_branches_of_a_solid_share_the_cells_of_the_search() {
 }
 
 #[test]
+fn the_distance_to_a_solid_is_sampled_whole() {
+    let distance = |u: &[&str]| {
+        let outside: Vec<String> = u.iter().map(|u| format!("max({u}, 0)")).collect();
+        format!("hypot({}) + min(max({}), 0)", outside.join(", "), u.join(", "))
+    };
+    let upright = distance(&["abs(x) - 0.8", "abs(y) - 0.5", "abs(z) - 0.3"]);
+    let turned = distance(&["abs(0.8x + 0.6y) - 0.5", "abs(0.8y - 0.6x) - 0.4", "abs(z) - 0.3"]);
+    let cylinder = distance(&["hypot(x, y) - 0.5", "abs(z) - 0.5"]);
+    for (text, area, creases) in
+        [(upright, 6.32, 12), (turned, 3.76, 12), (cylinder, 1.5 * core::f64::consts::PI, 2)]
+    {
+        let (_, report) = sampled(&text, 1.0, 0.015);
+        let figures = report.measures.quality.expect("figures of particles");
+        let found = (report.proof.components, figures.connectivity.euler, report.proof.creases);
+        assert_eq!(found, (1, 2, Some(creases)), "{text}");
+        assert!((figures.area / area - 1.0).abs() < 0.01, "{text}: {}", figures.area);
+        assert_eq!((report.proof.undecided_cells, &report.warnings[..]), (Some(0), &[][..]), "{text}");
+        // Creases are searched.
+        assert_eq!(report.proof.search, Search::Searched, "{text}");
+    }
+}
+
+#[test]
 fn search_ends_on_singular_surfaces_and_reports_undecided_cells() {
     for (formula, half) in [
         ("y^2 - x^3", 1.0),

@@ -96,9 +96,20 @@ pub(super) struct BranchPart {
     /// The number of the branch; none while choices remain.
     pub(super) number: Option<u32>,
     /// The part for each way in which the conditions hold or do not, in the order of [`BranchWalk`]; sorted.
-    taken: Vec<(Vec<bool>, usize)>,
+    taken: Vec<(Vec<bool>, TakenPart)>,
     /// The branch compiled, once it has been selected.
     compiled: Option<Box<Compiled>>,
+}
+
+/// What a part becomes where its conditions hold or do not.
+#[derive(Clone, Copy, Debug)]
+struct TakenPart {
+    /// Index of the part.
+    index: usize,
+    /// Whether the conditions hold together in no more than ties, as u ≥ 0 and u ≤ 0 do. Others hold around such a place.
+    is_tie: bool,
+    /// Whether zeros of f need it: not those in ties, where other parts give f as well.
+    has_zeros: bool,
 }
 
 /// A walk over the nodes of a part from its root, through the operands that are taken.
@@ -144,7 +155,10 @@ impl BranchWalk {
                 holds = match self.conditions.iter().position(|&known| known == condition) {
                     Some(known) => self.holds[known],
                     None => {
-                        let holds = decide(condition);
+                        let mut holds = decide(condition);
+                        if holds == Holds::Somewhere && base.has_ties {
+                            holds = base.where_free(&self.conditions, &self.holds, condition);
+                        }
                         self.conditions.push(condition);
                         if holds == Holds::Somewhere {
                             // The other walk finds the condition known when it comes to this node again.
@@ -170,6 +184,11 @@ impl BranchWalk {
     }
 }
 
+/// Whether one of these nodes is at most the other, by an order of nodes that became others.
+fn holds_in(ordered: &[[Id; 2]], map: &[Id], pair: [Id; 2]) -> bool {
+    ordered.iter().any(|known| known.map(|id| map[id as usize]) == pair)
+}
+
 /// The graph of f and of its branches.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Base {
@@ -179,6 +198,8 @@ pub(super) struct Base {
     smooth: Vec<Id>,
     /// Values of the nodes that depend on no coordinate; NaN for the others.
     uniforms: Vec<f64>,
+    /// Whether there are conditions that hold together in ties alone, as far as ways have been met.
+    has_ties: bool,
 }
 
 impl Base {
@@ -217,24 +238,27 @@ impl Base {
         }
     }
 
-    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says.
+    /// The root of `part` where the conditions on the way from it hold or do not, as `holds` says. With it, whether they hold together in ties
+    /// alone, and whether the root is zero in ties alone.
     fn specialised(
         &mut self,
         part: &BranchPart,
         holds: &[bool],
         values: &[f64],
         walk: &mut BranchWalk,
-    ) -> Id {
+    ) -> (Id, [bool; 2]) {
         let (mut way, mut rest) = (Vec::new(), holds.iter());
         let mut next = |_| if rest.next() == Some(&true) { Holds::Always } else { Holds::Never };
         walk.begin(part, &self.graph);
         walk.run(&part.nodes, self, &mut next, &mut |id, holds| way.push((id, holds)), &mut Vec::new());
+        let zero = self.graph.constant(0.0);
+        let ordered = self.ordered(&walk.conditions, holds);
         let graph = &mut self.graph;
         let mut map: Vec<Id> = (0..graph.len() as Id).collect();
         for (id, holds) in way.into_iter().rev() {
             let new = |id: Id| map[id as usize];
             let node = graph.node(id);
-            map[id as usize] = match (self.roles[id as usize], node) {
+            let built = match (self.roles[id as usize], node) {
                 (NodeRole::Plain, _) => graph.built(node.mapped(new)),
                 (NodeRole::Raised(u), _) => {
                     let (u, size) = (new(u), graph.find(Node::Unary(Unary::Abs, u)));
@@ -251,10 +275,112 @@ impl Base {
                     None => graph.constant(0.0),
                 },
             };
+            // The root of a square whose sign is known, as that of max(u, 0) is.
+            map[id as usize] = match graph.node(built) {
+                Node::Unary(Unary::Abs, u) if built != id && holds_in(&ordered, &map, [zero, u]) => u,
+                Node::Unary(Unary::Abs, u) if built != id && holds_in(&ordered, &map, [u, zero]) => {
+                    graph.neg(u)
+                }
+                _ => built,
+            };
         }
         let root = map[part.root as usize];
         self.extend(values);
-        root
+        // √(u² + v²) is zero where both are, which is an edge of the part in which one of them is not negative.
+        let squares = self.graph.squares(root);
+        let is_end = |u: &Id| holds_in(&ordered, &map, [zero, *u]) || holds_in(&ordered, &map, [*u, zero]);
+        let is_edge = squares.len() > 1 && squares.iter().any(is_end);
+        (root, [self.are_tied(ordered), is_edge])
+    }
+
+    /// Pairs of nodes of which the first is at most the second where conditions hold or do not.
+    fn ordered(&self, conditions: &[ChoiceCondition], holds: &[bool]) -> Vec<[Id; 2]> {
+        let zero = self.graph.find(Node::constant(0.0));
+        let pairs = conditions.iter().zip(holds).filter_map(|(&condition, &holds)| {
+            let [a, b] = match condition {
+                ChoiceCondition::AtMost(a, b) => [a, b],
+                ChoiceCondition::NotNegative(u) => [zero?, u],
+            };
+            Some(if holds { [a, b] } else { [b, a] })
+        });
+        pairs.collect()
+    }
+
+    /// Where another condition holds beside those of which that is known, ties apart.
+    fn where_free(&self, known: &[ChoiceCondition], holds: &[bool], condition: ChoiceCondition) -> Holds {
+        let [is_tie, is_tie_else] = [true, false].map(|side| {
+            let mut ordered = self.ordered(&[condition], &[side]);
+            ordered.extend(self.ordered(known, holds));
+            self.are_tied(ordered)
+        });
+        match (is_tie, is_tie_else) {
+            (true, false) => Holds::Never,
+            (false, true) => Holds::Always,
+            _ => Holds::Somewhere,
+        }
+    }
+
+    /// Whether nodes of which one is at most the other, in each pair, are equal in one of these.
+    fn are_tied(&self, mut ordered: Vec<[Id; 2]>) -> bool {
+        let pairs = ordered.clone();
+        let mut next = 0;
+        while let Some(&[a, b]) = ordered.get(next) {
+            next += 1;
+            let more = match (self.graph.node(a), self.graph.node(b)) {
+                (Node::Binary(Binary::Max, u, v), _) => [[u, b], [v, b]],
+                (_, Node::Binary(Binary::Min, u, v)) => [[a, u], [a, v]],
+                _ => continue,
+            };
+            for pair in more {
+                if !ordered.contains(&pair) {
+                    ordered.push(pair);
+                }
+            }
+        }
+        let mut found = Vec::new();
+        pairs.into_iter().any(|[a, b]| self.is_at_most(&ordered, &mut found, [b, a]))
+    }
+
+    /// Whether the first node is at most the second, by what is `known` of others, or was `found` of them. Only what is known of a number and
+    /// a function that has it nowhere but on surfaces counts: max(u, v) and u, or |u| and u, may be equal in a solid.
+    fn is_at_most(&self, known: &[[Id; 2]], found: &mut Vec<[Id; 2]>, [a, b]: [Id; 2]) -> bool {
+        let parts = match (self.graph.node(a), self.graph.node(b)) {
+            _ if found.contains(&[a, b]) => return true,
+            (Node::Binary(Binary::Max, u, v), _) => [[u, b], [v, b]],
+            (_, Node::Binary(Binary::Min, u, v)) => [[a, u], [a, v]],
+            _ => {
+                let is_number = [a, b].map(|id| self.graph.is_uniform(id));
+                return known.contains(&[a, b])
+                    && is_number[0] != is_number[1]
+                    && self.is_nowhere_level(if is_number[0] { b } else { a });
+            }
+        };
+        let is_at_most = parts.into_iter().all(|pair| self.is_at_most(known, found, pair));
+        found.extend(is_at_most.then_some([a, b]));
+        is_at_most
+    }
+
+    /// Whether a node is a smooth function, or the absolute value of one, but for numbers that are added or multiplied.
+    fn is_nowhere_level(&self, mut id: Id) -> bool {
+        loop {
+            id = match self.graph.node(id) {
+                Node::Unary(Unary::Neg | Unary::Abs, u) => u,
+                Node::Binary(Binary::Add | Binary::Sub | Binary::Mul, a, b) if self.graph.is_uniform(b) => a,
+                Node::Binary(Binary::Add | Binary::Sub | Binary::Mul, a, b) if self.graph.is_uniform(a) => b,
+                _ => break,
+            }
+        }
+        let is_smooth = |&id: &Id| {
+            let node = self.graph.node(id);
+            !matches!(
+                node,
+                Node::Binary(Binary::Min | Binary::Max, ..)
+                    | Node::Unary(Unary::Abs | Unary::Sign | Unary::Floor, _)
+                    | Node::Smin(..)
+                    | Node::If(..)
+            )
+        };
+        self.graph.needed_by(&[id]).iter().all(is_smooth)
     }
 }
 
@@ -400,15 +526,16 @@ impl Branches {
         index
     }
 
-    /// Index of the part that part `of` becomes where its conditions hold or do not.
-    fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> usize {
+    /// What part `of` becomes where its conditions hold or do not.
+    fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
         let known = &self.parts[of].taken;
         let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
             Ok(place) => return known[place].1,
             Err(place) => place,
         };
-        let root = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
-        let part = self.part(root);
+        let (root, [is_tie, is_edge]) = self.base.specialised(&self.parts[of], holds, values, &mut self.walk);
+        self.base.has_ties |= is_tie;
+        let part = TakenPart { index: self.part(root), is_tie, has_zeros: !(is_tie || is_edge) };
         self.parts[of].taken.insert(place, (holds.to_vec(), part));
         part
     }
@@ -441,7 +568,7 @@ impl Branches {
         }
         for holds in self.ways(of, *left, &mut |_| Holds::Somewhere) {
             let part = self.taken(of, &holds, values);
-            self.number(part, left, values);
+            self.number(part.index, left, values);
         }
     }
 
@@ -468,8 +595,14 @@ impl Branches {
             let mut decide = |condition: ChoiceCondition| condition.at_point(|id| self.doubles[id as usize]);
             self.walk.run(&part.nodes, &self.base, &mut decide, &mut |_, _| {}, &mut Vec::new());
             let holds = core::mem::take(&mut self.walk.holds);
-            at = self.taken(at, &holds, values);
+            let part = self.taken(at, &holds, values);
             self.walk.holds = holds;
+            if part.is_tie
+                && let Some(&number) = self.within(values, &Bounds::point(p)).unwrap_or_default().first()
+            {
+                return number;
+            }
+            at = part.index;
         }
     }
 
@@ -498,7 +631,8 @@ impl Branches {
                 return None;
             }
             for holds in found {
-                open.push(self.taken(at, &holds, values));
+                let part = self.taken(at, &holds, values);
+                open.extend(part.has_zeros.then_some(part.index));
             }
         }
         numbers.sort_unstable();

@@ -194,6 +194,26 @@ impl Graph {
         factors
     }
 
+    /// The functions that are zero together where `root` is, a sum of even powers or a root of one; none if it is no such sum.
+    pub(super) fn squares(&self, root: Id) -> Vec<Id> {
+        let (mut open, mut squares, mut next) = (vec![root], Vec::new(), 0);
+        while let Some(&id) = open.get(next) {
+            next += 1;
+            let mut add = |id: Id| {
+                if !open.contains(&id) {
+                    open.push(id)
+                }
+            };
+            match self.node(id) {
+                Node::Unary(Unary::Sqrt, a) => add(a),
+                Node::Binary(Binary::Add, a, b) => [a, b].into_iter().for_each(add),
+                Node::Power(a, n) if n > 0 && n % 2 == 0 => squares.push(a),
+                _ => return Vec::new(),
+            }
+        }
+        squares
+    }
+
     /// The nodes that `outputs` need, in the order of the graph.
     pub(super) fn needed_by(&self, outputs: &[Id]) -> Vec<Id> {
         let mut needed = vec![false; self.nodes.len()];

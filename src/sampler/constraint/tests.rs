@@ -37,6 +37,20 @@ fn the_creases_of_solids_are_counted() {
             1.9,
             [12, 8],
         ),
+        // The distance from its edges is zero on them alone, and no patch.
+        (
+            "distance to a turned box",
+            "hypot(max(abs(0.8*x+0.6*y)-0.7,0), max(abs(0.8*y-0.6*x)-0.5,0), max(abs(z)-0.4,0))
+                + min(max(abs(0.8*x+0.6*y)-0.7,abs(0.8*y-0.6*x)-0.5,abs(z)-0.4),0)",
+            1.2,
+            [12, 8],
+        ),
+        (
+            "distance to a cone, cut",
+            "hypot(max(hypot(x,y)-0.5+0.3*z,0),max(abs(z)-0.5,0)) + min(max(hypot(x,y)-0.5+0.3*z,abs(z)-0.5),0)",
+            1.0,
+            [2, 0],
+        ),
         ("octahedron", "abs(x)+abs(y)+abs(z)-1", 1.2, [12, 6]),
         ("cylinder", "max(x^2+y^2-1,abs(z)-1)", 1.4, [2, 0]),
         ("union of spheres", "min((x-0.5)^2+y^2+z^2-1,(x+0.5)^2+y^2+z^2-1)", 1.7, [1, 0]),

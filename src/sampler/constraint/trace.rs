@@ -1,15 +1,12 @@
 //! Follows a crease from one of its points to both ends.
 
-use super::meeting::{FADED, Meeting, Third, common_point, touching_point};
+use super::meeting::{FADED, MOST_TURN, Meeting, Third, common_point, touching_point};
 use super::{BESIDE, Crease, Creases, ONE_CORNER, ONE_END};
-use crate::math::{Bounds, SQRT_3};
+use crate::math::Bounds;
 use crate::sampler::probe::Probe;
 use crate::slices::{Work, pause};
 use glam::DVec3;
 
-/// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half of the angle and 45° give the same
-/// particles on 24 random solids.
-const MOST_TURN: f64 = 0.5 * SQRT_3;
 /// Times that a step is halved, at most: a closed crease as wide as a thousandth of the usual step, in twelve turns of 30°, is followed.
 const HALVINGS: u32 = 12;
 /// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.

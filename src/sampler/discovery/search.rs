@@ -109,9 +109,18 @@ impl ComponentSearch {
         let limits = Descent { residual: tolerance.residual, reach, trust: 0.0 };
         let mut points: Vec<Vec3> = starts.iter().map(|start| start.position.as_vec3()).collect();
         let landed = probe.land_all(&mut points, tolerance.min_gradient, limits, newton::STEPS);
-        for ((&Witness { position: exact, factor }, position), normal) in
+        for ((&Witness { position: exact, factor }, mut position), mut normal) in
             starts.iter().zip(points).zip(landed)
         {
+            if normal.is_none() {
+                // Where branches meet smoothly on the surface f may have no gradient there.
+                let branch = probe.field.branch_at(exact);
+                let mut place = [exact.as_vec3()];
+                probe.select(Some(branch));
+                normal = probe.land_all(&mut place, tolerance.min_gradient, limits, newton::STEPS)[0];
+                probe.select(None);
+                [position] = place;
+            }
             match normal.filter(|_| bounds.contains(position)) {
                 Some(normal) => self.points.push(Seed { position, normal, exact, factor }),
                 None => {

@@ -3,7 +3,7 @@
 
 use crate::field::Field;
 use crate::field::descent::Descent;
-use crate::math::{Bounds, median, newton, sort_numbers};
+use crate::math::{Bounds, median, newton, sort_by_key, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Bottom, Crossing, Dip, End};
 use crate::sampler::discovery::grid::{Dense, Grid, GridLayer};
@@ -247,6 +247,9 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Surv
     let spacing = grid.spacing as f32;
     out.gradient_scale = gradient_scale(probe, &found.place, &found.areas);
     project(probe, bounds, &mut found.place, &found.areas, spacing, &mut out);
+    if out.position.is_empty() {
+        project_on_branches(probe, bounds, &found, spacing, &mut out);
+    }
     measure_precision(probe, bounds, spacing, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
@@ -275,6 +278,32 @@ fn project(
             out.push(OrientedPoint { position, normal }, area.unwrap_or(0.0));
         }
     }
+}
+
+/// Moves the candidates onto the surface by the branches that give f there, if there are several. Of the distance to a box,
+/// √(max(u, 0)² + …) + min(max(u, …), 0), the root has no gradient where it is zero, and that is on the surface.
+fn project_on_branches(
+    probe: &mut Probe,
+    bounds: &Bounds,
+    found: &Candidates,
+    spacing: f32,
+    out: &mut Survey,
+) {
+    let places = found.place.iter().zip(&found.areas);
+    let mut candidates: Vec<_> =
+        places.map(|(&place, &area)| (probe.field.branch_at(place.as_dvec3()), place, area)).collect();
+    sort_by_key(&mut candidates, |&(branch, ..)| branch.into());
+    if candidates.first().map(|first| first.0) == candidates.last().map(|last| last.0) {
+        return;
+    }
+    for own in candidates.chunk_by(|a, b| a.0 == b.0) {
+        probe.select(Some(own[0].0));
+        let (mut start, areas): (Vec<Vec3>, Vec<_>) =
+            own.iter().map(|&(_, place, area)| (place, area)).unzip();
+        out.gradient_scale = out.gradient_scale.max(gradient_scale(probe, &start, &areas));
+        project(probe, bounds, &mut start, &areas, spacing, out);
+    }
+    probe.select(None);
 }
 
 /// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient
@@ -330,7 +359,8 @@ impl Survey {
         let mut slopes = Vec::new();
         for (position, normal) in found {
             let jet = field.jet(position.as_dvec3());
-            slopes.push(jet.gradient.length() as f32);
+            // Of f as a whole, which may have no gradient where its branches have one.
+            slopes.extend(Some(jet.gradient.length() as f32).filter(|slope| slope.is_finite()));
             // A sphere of the same curvature has the area 4π/κ².
             let size = jet.gradient.length_squared()
                 / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
