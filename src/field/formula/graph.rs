@@ -201,7 +201,7 @@ impl Graph {
             next += 1;
             let mut add = |id: Id| {
                 if !open.contains(&id) {
-                    open.push(id)
+                    open.push(id);
                 }
             };
             match self.node(id) {
