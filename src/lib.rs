@@ -130,7 +130,9 @@ pub mod math;
 #[doc(hidden)]
 pub mod mesh;
 #[cfg(all(test, feature = "points"))]
-mod page_types;
+mod page_types {
+    mod tests;
+}
 #[doc(hidden)]
 pub mod paper;
 #[doc(hidden)]

@@ -168,7 +168,8 @@ impl Dense {
     }
 }
 
-#[cfg(all(test, feature = "points"))]
+#[cfg(feature = "points")]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::field::Field;
