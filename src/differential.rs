@@ -2,7 +2,7 @@
 //!
 //! With the unit normal n = ∇f/|∇f| and a tangent basis u, v, the shape operator is [a b; b c] =
 //! [uᵀHu uᵀHv; uᵀHv vᵀHv] / |∇f|, and κ = (a + c)/2 ± √(((a − c)/2)² + b²). One formula serves double precision (the
-//! oracle, figures), single precision and lanes.
+//! oracle, figures) and lanes of single precision.
 //!
 //! # Outcomes
 //!
@@ -59,13 +59,6 @@ impl<T: Real + PartialEq, V> Curvature<T, V> {
     }
 }
 
-/// Returns the curvature of the surface through a point with this gradient and Hessian.
-#[must_use]
-pub fn curvature(gradient: Vec3, hessian: &Sym3<f32>) -> Curvature {
-    let [k1, k2, x, y, z] = principal(gradient.to_array(), hessian);
-    Curvature { k1, k2, direction: Vec3::new(x, y, z) }
-}
-
 /// Returns the curvature in double precision: the oracle of the other functions.
 #[must_use]
 pub fn exact_curvature(jet: &Jet) -> Curvature<f64, DVec3> {
@@ -89,7 +82,7 @@ pub fn curvatures(field: &mut dyn Field, points: &[Vec3], out: &mut [Curvature])
     }
 }
 
-/// Computes the [`curvature`] for each pair of a gradient and a Hessian in lanes, with the same bits.
+/// Computes the curvature for each pair of a gradient and a Hessian, in lanes.
 ///
 /// # Panics
 ///

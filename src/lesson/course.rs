@@ -134,15 +134,6 @@ impl Course {
         }
     }
 
-    /// Goes on from particles of one front, of which those from number `first` on wait to be treated.
-    pub(super) fn go_on(&mut self, particles: Vec<Particle>, first: u32) {
-        self.waiting = (first..particles.len() as u32).collect();
-        for particle in particles {
-            self.run.enter(particle);
-        }
-        self.fronts = 1;
-    }
-
     /// Goes on with another surface in the same box. The particles go there by Newton's method; one that does not arrive within its
     /// radius, or comes to another side of the surface, is gone.
     pub(super) fn follow(&mut self, field: Box<dyn Field>) {

@@ -195,26 +195,6 @@ impl Lesson {
         })
     }
 
-    /// Prepares a run as [`Lesson::new`] does that goes on from particles that are there, of which those from number `first` on
-    /// wait to be treated, in their order. A front in single precision can so be followed level by level without its rounding
-    /// adding up.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Lesson::new`].
-    pub fn going_on(
-        field: Box<dyn Field>,
-        bounds: &Bounds,
-        settings: &LessonSettings,
-        particles: Vec<Particle>,
-        first: u32,
-    ) -> Result<Self, LessonError> {
-        let mut run = Self::new(field, bounds, settings)?;
-        run.lives = vec![Life::default(); particles.len()];
-        run.course.go_on(particles, first);
-        Ok(run)
-    }
-
     /// Has the particles of a particle system follow its surface to that of `field`, in the same box, and goes on with the system there. The
     /// run begins anew with them: what happened before is looked at no longer.
     ///
@@ -482,8 +462,12 @@ fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::snapshots::Snapshots;
-    use super::{Event, Lesson, LessonMethod, LessonSettings, digest};
+    use super::{Event, Lesson, LessonMethod, LessonSettings, Life, digest};
     use crate::field::gallery;
+    use crate::paper::Particle;
+    use crate::particles::Particles;
+    use crate::run::Run;
+    use crate::sampler::{GapPolicy, Settings};
 
     #[test]
     fn back_is_exact_where_most_snapshots_have_been_dropped() {
@@ -514,5 +498,73 @@ mod tests {
             event.apply(&mut particles);
         }
         assert!(events.iter().any(|event| matches!(event, Event::Divided { .. })));
+    }
+
+    /// Of each level the reference treats the fast front's own particles, so that rounding does not add up: every particle is held,
+    /// also those that follow the first close call. With larger particles, at whose size the surface folds, the fast search gives
+    /// children up that the reference's finds.
+    #[test]
+    fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
+        for (id, share) in
+            [("tanglecube", 0.006), ("tanglecube", 0.008), ("ellipsoid", 0.012), ("torus", 0.02)]
+        {
+            let surface = gallery::find(id).expect("a gallery surface");
+            let settings = Settings {
+                radius_share: share,
+                relax_steps: 0,
+                gaps: GapPolicy::Leave,
+                ..Settings::default()
+            };
+            let mut sampled =
+                Run::start(surface.field(), &settings.in_box(surface.bounds)).expect("valid settings");
+            while sampled.step(u32::MAX).stop_reason.is_none() {}
+            let (fast, radius) = (sampled.particles(), f64::from(sampled.sampler().radius() as f32));
+            let settings = LessonSettings {
+                radius,
+                seeds: vec![fast.position[0].as_dvec3().to_array()],
+                relax_steps: 0,
+                ..LessonSettings::of_fast_front()
+            };
+            let placed: Vec<Particle> = (0..fast.len())
+                .map(|i| {
+                    let parent = Some(fast.parent[i]).filter(|&parent| parent != Particles::NO_PARENT);
+                    let (position, normal) = (fast.position[i].as_dvec3(), fast.normal[i].as_dvec3());
+                    Particle::placed(position, normal, radius, parent, fast.level[i])
+                })
+                .collect();
+            let mut farthest = 0.0_f64;
+            for level in 0..=*fast.level.last().expect("a level") {
+                let [first, end, next] =
+                    [level, level + 1, level + 2].map(|k| fast.level.partition_point(|&own| own < k));
+                let field = Box::new(surface.field());
+                let mut run = Lesson::new(field, &surface.bounds, &settings)
+                    .unwrap_or_else(|error| panic!("{id}: {error}"));
+                for &particle in &placed[..end] {
+                    run.course.run.enter(particle);
+                }
+                run.lives = vec![Life::default(); end];
+                run.course.waiting = (first as u32..end as u32).collect();
+                run.course.fronts = 1;
+                while !run.chapters().first().is_some_and(|chapter| chapter.is_over) {
+                    run.step(1);
+                }
+                run.seek(u32::MAX);
+                let made = run.particles();
+                assert_eq!(made.len(), next, "{id}, {share}: level {level}");
+                for (i, particle) in made.iter().enumerate().skip(first) {
+                    if i < end {
+                        assert_eq!(
+                            fast.slots[i], particle.slots,
+                            "{id}, {share}: level {level}, particle {i}"
+                        );
+                    } else {
+                        assert_eq!(Some(fast.parent[i]), particle.parent, "{id}, {share}: child {i}");
+                        farthest = farthest.max(fast.position[i].as_dvec3().distance(particle.p()) / radius);
+                    }
+                }
+            }
+            // Children end where f is small enough: within 10⁻⁴ r of the surface, and as much along it.
+            assert!(farthest < 2e-4, "{id}, {share}: a child is {farthest} r apart");
+        }
     }
 }

@@ -180,7 +180,7 @@ pub struct Connectivity {
     pub tri_ok: f64,
     /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners.
     pub agree: f64,
-    /// Euler number of the triangles kept where stars disagree (see `quality::triangles`).
+    /// Euler number of the kept triangles: those on which at least two of their three corners agree.
     pub euler: i64,
     /// Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
     /// all of them.

@@ -202,21 +202,6 @@ pub(crate) async fn in_slices(
     report
 }
 
-/// Returns the triangles of the particles as triples of indices, counter-clockwise seen from outside.
-///
-/// A triangle of natural neighbours is returned if at least two of its three corners agree on it. Conflicts about
-/// nearly cocircular points are resolved, so that every directed edge belongs to at most one triangle. Input and cost
-/// are those of [`measure`], of which this is a part.
-#[must_use]
-pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
-    let factor = comfortable_scale(field, position.iter().copied());
-    let field = &mut Scaled::new(field, factor);
-    let Prepared { points, mesh, .. } =
-        slices::complete(Prepared::new(position, normal, field, None, &MeasureOptions::default()));
-    let origin = &points.tree.origin;
-    mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
-}
-
 /// The measurements of the distinct points, in tree order.
 #[derive(Default)]
 struct DistinctFigures {

@@ -122,6 +122,9 @@ fn drop_close(points: &MeasuredPoints, limit: f32, drop: &mut [bool]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::formula::Formula;
+    use crate::slices::complete;
+    use glam::DVec3;
 
     #[test]
     fn equal_points_are_those_with_equal_coordinates_whatever_the_sign_of_zero() {
@@ -140,6 +143,34 @@ mod tests {
         for i in 0..position.len() {
             assert_eq!(drop[i], !is_first(i), "{i}");
             assert_eq!(has_duplicate[i], is_first(i) && has_later(i), "{i}");
+        }
+    }
+
+    #[test]
+    #[allow(clippy::disallowed_methods, reason = "nothing depends on the last bits of the points")]
+    fn triangles_of_a_sphere_are_closed_and_wind_outward() {
+        let count = 1234;
+        let turn = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+        let points: Vec<Vec3> = (0..count)
+            .map(|i| {
+                let z = 1.0 - f64::from(2 * i + 1) / f64::from(count);
+                let (s, c) = (turn * f64::from(i)).sin_cos();
+                let r = (1.0 - z * z).sqrt();
+                DVec3::new(r * c, r * s, z).as_vec3()
+            })
+            .collect();
+        let mut sphere = Formula::as_written("x^2+y^2+z^2-1", &[]).expect("a formula");
+        let options = MeasureOptions::default();
+        let prepared = complete(Prepared::new(&points, &points, &mut sphere, None, &options));
+        let (found, position) = (prepared.mesh, prepared.points.tree.position);
+        assert_eq!(found.len(), 2 * points.len() - 4);
+        let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        edges.sort_unstable();
+        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "an edge is used twice in one direction");
+        assert!(edges.iter().all(|&[a, b]| edges.binary_search(&[b, a]).is_ok()), "an edge is open");
+        for triangle in found {
+            let [a, b, c] = triangle.map(|i| position[i as usize]);
+            assert!((b - a).cross(c - a).dot(a) > 0.0);
         }
     }
 }

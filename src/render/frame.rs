@@ -1,17 +1,9 @@
 //! The uniform block `Frame` of all shaders.
 //!
-//! The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. The tables of fields are
-//! for a test, which compares them with the shaders.
+//! The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. A test compares them
+//! with the shaders.
 
 use bytemuck::{Pod, Zeroable};
-use core::mem::offset_of;
-
-/// Name and byte offset of each field of a struct, in order.
-pub type Fields = &'static [(&'static str, usize)];
-
-macro_rules! fields {
-    ($type:ty: $($field:ident),+ $(,)?) => { &[$((stringify!($field), offset_of!($type, $field))),+] };
-}
 
 /// Uniform block that all pipelines of a picture share.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -105,19 +97,4 @@ pub struct ClipBox {
     pub hi: [f32; 4],
     /// Colour of the edges, linear, not premultiplied by its opacity.
     pub colour: [f32; 4],
-}
-
-impl Frame {
-    /// Every struct of the block with its fields, `Frame` first.
-    pub const STRUCTS: &'static [(&'static str, Fields)] = &[
-        ("Frame", fields!(Self: camera, light, appearance, look, clip_box, plane)),
-        (
-            "Camera",
-            fields!(Camera: clip_from_world, eye, perspective, forward, pixel_ratio, viewport, padding),
-        ),
-        ("Light", fields!(Light: key, dim, sky, dim_backfaces, background)),
-        ("Appearance", fields!(Appearance: time, fade, level, mute)),
-        ("Look", fields!(Look: disc_scale, flat_faces, edge_px, light_ground)),
-        ("ClipBox", fields!(ClipBox: lo, hi, colour)),
-    ];
 }

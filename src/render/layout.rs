@@ -100,17 +100,6 @@ pub fn oct_encode(n: [f32; 3]) -> [i16; 2] {
     [quantise(x), quantise(y)]
 }
 
-/// Unit vector with the octahedral encoding `e`, as the vertex shader computes it; the inverse of [`oct_encode`].
-#[must_use]
-pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
-    let [x, y] = e.map(|c| (f32::from(c) / f32::from(i16::MAX)).max(-1.0));
-    let z = 1.0 - x.abs() - y.abs();
-    let fold = (-z).max(0.0);
-    let v = [x - fold.copysign(x), y - fold.copysign(y), z];
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    v.map(|c| c / length)
-}
-
 /// Format of a vertex attribute, with its WebGPU name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AttributeFormat {
@@ -170,10 +159,24 @@ pub fn stride(formats: &[AttributeFormat]) -> u64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::disallowed_methods, reason = "the tests go round circles; nothing depends on the last bits")]
 mod tests {
+    #![allow(
+        clippy::disallowed_methods,
+        reason = "the tests go round circles; nothing depends on the last bits"
+    )]
+
     use super::*;
     use core::mem::offset_of;
+
+    /// Unit vector with the octahedral encoding `e`, as the vertex shader computes it; the inverse of [`oct_encode`].
+    fn oct_decode(e: [i16; 2]) -> [f32; 3] {
+        let [x, y] = e.map(|c| (f32::from(c) / f32::from(i16::MAX)).max(-1.0));
+        let z = 1.0 - x.abs() - y.abs();
+        let fold = (-z).max(0.0);
+        let v = [x - fold.copysign(x), y - fold.copysign(y), z];
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        v.map(|c| c / length)
+    }
 
     #[test]
     fn octahedral_normals_come_back_within_five_thousandths_of_a_degree() {

@@ -115,8 +115,7 @@ impl Chains {
 
 #[cfg(test)]
 mod tests {
-    use super::super::gather_naive;
-    use super::super::tests::cloud;
+    use super::super::tests::{cloud, gather_naive};
     use super::*;
 
     #[test]

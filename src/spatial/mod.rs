@@ -141,13 +141,6 @@ impl CellGrid {
         self.blocks.reserve_exact((points / POINTS_PER_BLOCK).saturating_sub(self.blocks.len()));
     }
 
-    /// Frees all memory. The grid can be used again after [`CellGrid::reset`].
-    pub fn release(&mut self) {
-        self.table = Vec::new();
-        self.blocks = Vec::new();
-        self.bricks = 0;
-    }
-
     /// Returns the cell coordinate of `x`.
     fn coordinate(&self, x: f32) -> u32 {
         coordinate(x * self.inverse_cell)
@@ -352,19 +345,18 @@ fn key(x: u32, y: u32, z: u32) -> u64 {
         | (u64::from(z) & COORDINATE_MASK) << (2 * COORDINATE_BITS)
 }
 
-/// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle of [`CellGrid::gather`].
-#[must_use]
-pub fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
-    let near = |p: &Vec3| {
-        let d = *p - centre;
-        d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius
-    };
-    points.iter().enumerate().filter(|(_, p)| near(p)).map(|(i, _)| i as u32).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle of [`CellGrid::gather`].
+    pub(super) fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
+        let near = |p: &Vec3| {
+            let d = *p - centre;
+            d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius
+        };
+        points.iter().enumerate().filter(|(_, p)| near(p)).map(|(i, _)| i as u32).collect()
+    }
 
     pub(super) fn cloud(count: u32) -> Vec<Vec3> {
         // A Weyl sequence: well spread, deterministic, no two points alike.

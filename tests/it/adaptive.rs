@@ -6,8 +6,8 @@ use crate::smooth::smooth;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
+use marching_particles::mesh::build::triangulate;
 use marching_particles::particles::Particles;
-use marching_particles::quality::{self};
 use marching_particles::sampler::{GapPolicy, LawKind, Phase, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::spatial::CellGrid;
 
@@ -38,10 +38,9 @@ fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
 }
 
 /// Largest circumradius of a triangle of neighbours, relative to that of three touching discs of their mean radius.
-fn largest_hole(surface: &str, particles: &Particles) -> f32 {
-    let mut field = gallery::find(surface).expect("a gallery surface").field();
+fn largest_hole(particles: &Particles) -> f32 {
     let mut largest = 0.0_f32;
-    for triangle in quality::triangles(&particles.position, &particles.normal, &mut field) {
+    for triangle in triangulate(particles, None).triangles {
         let [a, b, c] = triangle.map(|i| particles.position[i as usize]);
         let twice_area = (b - a).cross(c - a).length();
         let around = (b - a).length() * (c - a).length() * (b - c).length() / (2.0 * twice_area);
@@ -104,7 +103,7 @@ fn particles_cover_and_crowd_nothing() {
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert_eq!((figures.order.open, figures.connectivity.components), (0, 1), "{context}");
         assert!((figures.connectivity.euler - euler).abs() <= 1, "{context}");
-        let hole = largest_hole(surface, particles);
+        let hole = largest_hole(particles);
         assert!(hole <= 1.6, "{context}: a hole of {hole}");
         // The bound is the match tolerance plus rounding.
         assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
@@ -120,7 +119,7 @@ fn ten_steps_even_the_sizes_out() {
         let figures = gallery_figures(surface, particles, Some(&particles.radius));
         let context = format!("{surface}, {} particles: {figures:?}", particles.len());
         assert!(figures.edges.size_cv <= 0.12, "{context}");
-        assert!(largest_hole(surface, particles) <= 1.6, "{context}: {}", largest_hole(surface, particles));
+        assert!(largest_hole(particles) <= 1.6, "{context}: {}", largest_hole(particles));
         assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
     }
 }

@@ -1,7 +1,7 @@
 //! Tests of curvatures against closed forms and finite differences.
 
 use glam::{DVec3, Vec3};
-use marching_particles::differential::{Curvature, curvature, curvatures, curvatures_of, exact_curvature};
+use marching_particles::differential::{Curvature, curvatures, curvatures_of, exact_curvature};
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
@@ -9,6 +9,13 @@ use rand_core::Rng;
 
 /// Tolerance for double precision.
 const RELATIVE: f64 = 1e-5;
+
+/// The curvature for one pair of a gradient and a Hessian.
+fn curvature(gradient: Vec3, hessian: Sym3<f32>) -> Curvature {
+    let mut out = [Curvature::default()];
+    curvatures_of(&[gradient], &[hessian], &mut out);
+    out[0]
+}
 
 /// Points of the surface near pseudo-random points of the box, the same in every run.
 fn surface_points(field: &mut dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3> {
@@ -156,7 +163,7 @@ fn single_precision_and_lanes_agree_with_double() {
         assert_eq!(lanes, of_field, "{}", surface.id);
         let mut errors: Vec<f64> = Vec::new();
         for k in 0..n {
-            assert_eq!(lanes[k], curvature(gradient[k], &hessian[k]), "{} at {}", surface.id, points[k]);
+            assert_eq!(lanes[k], curvature(gradient[k], hessian[k]), "{} at {}", surface.id, points[k]);
             let exact = exact_curvature(&field.jet(points[k].as_dvec3()));
             let error = (f64::from(lanes[k].k1) - exact.k1).abs() + (f64::from(lanes[k].k2) - exact.k2).abs();
             // The size of the box stands for the radius of curvature of what is flat.
@@ -177,7 +184,7 @@ fn a_plane_and_a_sphere_give_a_unit_direction() {
         (Vec3::new(0.0, 0.0, -3.0), Sym3::default()),
         (Vec3::new(0.6, 0.8, 0.0), Sym3 { xx: 2.0, yy: 2.0, zz: 2.0, ..Sym3::default() }),
     ] {
-        let k = curvature(gradient, &hessian);
+        let k = curvature(gradient, hessian);
         assert!(k.is_defined());
         assert!((k.k1 - k.k2).abs() < 1e-6);
         assert!((k.direction.length() - 1.0).abs() < 1e-6);
@@ -206,7 +213,7 @@ fn nothing_is_defined_where_the_gradient_vanishes_or_anything_is_not_finite() {
     let mut lanes = vec![Curvature::default(); cases.len()];
     curvatures_of(&gradient, &hessian, &mut lanes);
     for ((gradient, hessian), lane) in cases.into_iter().zip(lanes) {
-        for k in [curvature(gradient, &hessian), lane] {
+        for k in [curvature(gradient, hessian), lane] {
             assert!(!k.is_defined(), "{gradient} {hessian:?}: {k:?}");
             assert!(k.k1.is_nan() && k.k2.is_nan() && k.direction.is_nan(), "{gradient} {hessian:?}: {k:?}");
             assert!(k.mean().is_nan() && k.gaussian().is_nan() && k.max_abs().is_nan());

@@ -192,7 +192,6 @@ fn the_mesh_of_a_refined_run_moves_and_keeps_its_order() {
         let mut run = started(formula, way[0], half, &settings);
         sweep(&mut run, formula, way, 40, u32::MAX);
         let mesh = mesh_of(&mut run);
-        assert_eq!(mesh.check(), Ok(()), "{of}");
         assert_eq!(mesh.euler(), euler, "{of}");
         assert_eq!(
             mesh.edges().all(|h| mesh.twin(h) != NONE),
@@ -228,7 +227,6 @@ fn a_mesh_is_given_up_where_its_surface_falls_apart_and_joined_again() {
         for (way, euler) in [([11.0, 14.0], 16), ([14.0, 11.0], -8)] {
             sweep(&mut run, TANGLECUBE, way, 60, u32::MAX);
             let mesh = mesh_of(&mut run);
-            assert_eq!(mesh.check(), Ok(()), "{sampling:?}, {way:?}");
             assert_eq!(mesh.euler(), euler, "{sampling:?}, {way:?}");
         }
     }

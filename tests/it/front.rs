@@ -96,56 +96,6 @@ fn where_the_front_leaves_the_reference_rounding_has_decided() {
     }
 }
 
-/// Of each level the reference treats the fast front's own particles, so that rounding does not add up: every particle is held,
-/// also those that follow the first close call. With larger particles, at whose size the surface folds, the fast search gives
-/// children up that the reference's finds.
-#[test]
-fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
-    for (id, share) in [("tanglecube", 0.006), ("tanglecube", 0.008), ("ellipsoid", 0.012), ("torus", 0.02)] {
-        let surface = gallery::find(id).expect("a gallery surface");
-        let sampler = front(id, share);
-        let (fast, radius) = (sampler.particles(), f64::from(sampler.radius() as f32));
-        let settings = lesson::LessonSettings {
-            radius,
-            seeds: vec![fast.position[0].as_dvec3().to_array()],
-            relax_steps: 0,
-            ..lesson::LessonSettings::of_fast_front()
-        };
-        let placed: Vec<Particle> = (0..fast.len())
-            .map(|i| {
-                let parent = Some(fast.parent[i]).filter(|&parent| parent != Particles::NO_PARENT);
-                let (position, normal) = (fast.position[i].as_dvec3(), fast.normal[i].as_dvec3());
-                Particle::placed(position, normal, radius, parent, fast.level[i])
-            })
-            .collect();
-        let mut farthest = 0.0_f64;
-        for level in 0..=*fast.level.last().expect("a level") {
-            let [first, end, next] =
-                [level, level + 1, level + 2].map(|k| fast.level.partition_point(|&own| own < k));
-            let field = Box::new(surface.field());
-            let there = placed[..end].to_vec();
-            let mut run = Lesson::going_on(field, &surface.bounds, &settings, there, first as u32)
-                .unwrap_or_else(|error| panic!("{id}: {error}"));
-            while !run.chapters().first().is_some_and(|chapter| chapter.is_over) {
-                run.step(1);
-            }
-            run.seek(u32::MAX);
-            let made = run.particles();
-            assert_eq!(made.len(), next, "{id}, {share}: level {level}");
-            for (i, particle) in made.iter().enumerate().skip(first) {
-                if i < end {
-                    assert_eq!(fast.slots[i], particle.slots, "{id}, {share}: level {level}, particle {i}");
-                } else {
-                    assert_eq!(Some(fast.parent[i]), particle.parent, "{id}, {share}: child {i}");
-                    farthest = farthest.max(fast.position[i].as_dvec3().distance(particle.p()) / radius);
-                }
-            }
-        }
-        // Children end where f is small enough: within 10⁻⁴ r of the surface, and as much along it.
-        assert!(farthest < 2e-4, "{id}, {share}: a child is {farthest} r apart");
-    }
-}
-
 #[test]
 fn a_front_covers_smooth_surfaces_regularly() {
     for (surface, euler) in smooth() {

@@ -30,7 +30,6 @@ mod gallery;
 mod golden;
 mod graded;
 mod grip;
-mod half_edge;
 mod holes;
 mod mesh;
 mod mesh_export;

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::particles::Particles;
-use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, measure, triangles};
+use marching_particles::quality::{CROWDED, MeasureOptions, Measurements, measure};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -255,21 +255,6 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
     assert!(f.coverage.cover > 1.0 && f.coverage.cover < 1.4, "cover = {}", f.coverage.cover);
     assert!(f.coverage.quant > 1.0 && f.coverage.quant < 1.1, "quant = {}", f.coverage.quant);
-}
-
-#[test]
-fn triangles_of_a_sphere_are_closed_and_wind_outward() {
-    let points = fibonacci(1234);
-    let found = triangles(&points, &points, &mut sphere());
-    assert_eq!(found.len(), 2 * 1234 - 4);
-    let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-    edges.sort_unstable();
-    assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "an edge is used twice in one direction");
-    assert!(edges.iter().all(|&[a, b]| edges.binary_search(&[b, a]).is_ok()), "an edge is open");
-    for triangle in found {
-        let [a, b, c] = triangle.map(|i| points[i as usize]);
-        assert!((b - a).cross(c - a).dot(a) > 0.0);
-    }
 }
 
 #[test]

@@ -259,7 +259,7 @@ export type Figures = {
   tri_ok: number,
   /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners. */
   agree: number,
-  /** Euler number of the triangles kept where stars disagree (see `quality::triangles`). */
+  /** Euler number of the kept triangles: those on which at least two of their three corners agree. */
   euler: number,
   /** Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
   * all of them. */

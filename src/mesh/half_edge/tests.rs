@@ -1,8 +1,78 @@
 //! Every operation on half-edges is held to the invariants, on surfaces with and without a border.
 
-use marching_particles::math::NONE;
-use marching_particles::mesh::half_edge::{HalfEdges, Subdivision, next};
+use super::{HalfEdges, NONE, Subdivision, next, previous};
 use proptest::prelude::*;
+
+impl HalfEdges {
+    /// Holds the surface to the invariants of the module's documentation.
+    ///
+    /// Cost: linear, as long as no vertex has very many faces.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the invariant that does not hold, and the place.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let slots = self.origin.len() as u32;
+        let mut faces_at = vec![0_usize; self.outgoing.len()];
+        let mut is_free = vec![false; self.origin.len() / 3];
+        self.free_faces.iter().for_each(|&f| is_free[f as usize] = true);
+        for f in 0..slots / 3 {
+            let corners: [u32; 3] = core::array::from_fn(|k| self.origin(3 * f + k as u32));
+            let is_there = corners[0] != NONE;
+            if is_there == is_free[f as usize] {
+                return Err(format!("face {f} is both there and free, or neither"));
+            }
+            if !is_there {
+                continue;
+            }
+            if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+                return Err(format!("face {f} has a vertex twice: {corners:?}"));
+            }
+            for &v in &corners {
+                if v as usize >= self.outgoing.len() || !self.has_vertex(v) {
+                    return Err(format!("face {f} has the vertex {v}, which is not there"));
+                }
+                faces_at[v as usize] += 1;
+            }
+            for h in 3 * f..3 * f + 3 {
+                let t = self.twin(h);
+                if t != NONE && (t >= slots || self.twin(t) != h) {
+                    return Err(format!("the twin {t} of half-edge {h} has another twin"));
+                }
+                if t != NONE && (self.origin(t) != self.target(h) || self.target(t) != self.origin(h)) {
+                    return Err(format!("half-edge {h} and its twin {t} run between different vertices"));
+                }
+            }
+        }
+        if let Some(v) = self.free_vertices.iter().find(|&&v| self.has_vertex(v)) {
+            return Err(format!("vertex {v} is both there and free"));
+        }
+        (0..)
+            .zip(faces_at)
+            .filter(|&(v, _)| self.has_vertex(v))
+            .try_for_each(|(v, faces)| self.check_fan(v, faces))
+    }
+
+    /// Holds the fan at `v`, which has so many faces, to the invariants.
+    fn check_fan(&self, v: u32, faces: usize) -> Result<(), String> {
+        if self.origin(self.outgoing(v)) != v {
+            return Err(format!("the half-edge of vertex {v} leaves another"));
+        }
+        let fan = self.around(v).take(faces + 1).count();
+        if fan != faces {
+            return Err(format!("the fan at vertex {v} has {fan} of its {faces} faces"));
+        }
+        let is_open = self.around(v).any(|h| self.twin(previous(h)) == NONE);
+        if is_open != self.is_border(v) {
+            return Err(format!("the half-edge of the border vertex {v} is not the first of its fan"));
+        }
+        let neighbours: Vec<u32> = self.neighbours(v).collect();
+        if neighbours.iter().enumerate().any(|(k, other)| neighbours[..k].contains(other)) {
+            return Err(format!("vertex {v} has a neighbour twice: {neighbours:?}"));
+        }
+        Ok(())
+    }
+}
 
 /// An octahedron: closed, Euler number 2.
 fn octahedron() -> HalfEdges {
@@ -93,7 +163,7 @@ proptest! {
             mesh.vertex_slots(),
             &mesh.triangles().collect::<Vec<_>>(),
         );
-        prop_assert!(again.is_some(), "the triangles are a surface again");
+        prop_assert_eq!(again.map(|mesh| mesh.check()), Some(Ok(())), "the triangles are a surface again");
     }
 
     #[test]
