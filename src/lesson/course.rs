@@ -6,7 +6,7 @@
 use super::dynamics::{Dynamics, largest_move};
 use super::event::Event;
 use super::log::Log;
-use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder, Seeding};
+use super::settings::{LessonMethod, LessonPlacing, LessonSettings, QueueOrder};
 use crate::field::Field;
 use crate::paper::{ChildSlot, Circle, ImplicitSurface, Move, PaperRun, Particle};
 use crate::sampler::GapPolicy;
@@ -311,10 +311,9 @@ impl Course {
         }
     }
 
-    /// Puts the next seed that no particle covers into the queue, or all of them.
+    /// Puts the next seed that no particle covers into the queue.
     pub(super) fn add_seeds(&mut self) {
         let setup = Rc::clone(&self.setup);
-        let first = self.fronts;
         while let Some(&candidate) = setup.candidates.get(self.candidate) {
             self.candidate += 1;
             if self.run.particles.len() >= setup.settings.max_particles as usize {
@@ -327,13 +326,9 @@ impl Course {
                 self.waiting.push_back(particle);
                 self.run.seen.push(Event::Seed { particle, data: seed });
                 self.fronts += 1;
-                if setup.settings.seeding == Seeding::OneByOne {
-                    break;
-                }
+                self.part = 0;
+                return;
             }
-        }
-        if self.fronts > first {
-            self.part = 0;
         }
     }
 

@@ -53,7 +53,7 @@ pub use event::{Event, Vector};
 pub use section::Iterate;
 pub use settings::{
     LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings, MAX_PARTICLES, Matched,
-    Projection, QueueOrder, SearchStart, Seeding,
+    Projection, QueueOrder, SearchStart,
 };
 
 use crate::field::Field;
@@ -468,6 +468,35 @@ mod tests {
     use crate::particles::Particles;
     use crate::run::Run;
     use crate::sampler::{GapPolicy, Settings};
+    use glam::DVec3;
+
+    /// Goes on from particles, of which those from number `first` on wait to be treated, in their order.
+    fn go_on(run: &mut Lesson, particles: &[Particle], first: u32) {
+        for &particle in particles {
+            run.course.run.enter(particle);
+        }
+        run.lives = vec![Life::default(); particles.len()];
+        run.course.waiting = (first..particles.len() as u32).collect();
+        run.course.fronts = particles.last().expect("a particle").front + 1;
+    }
+
+    #[test]
+    fn fronts_of_two_seeds_meet() {
+        let sphere = gallery::find("sphere").expect("a surface of the gallery");
+        let settings = LessonSettings { radius: 0.08, relax_steps: 0, ..LessonSettings::default() };
+        let mut run =
+            Lesson::new(Box::new(sphere.field()), &sphere.bounds, &settings).expect("valid settings");
+        let seeds = [(0, DVec3::Z), (1, DVec3::NEG_Z)].map(|(front, pole)| Particle {
+            front,
+            ..Particle::placed(pole, pole, settings.radius, None, 0)
+        });
+        go_on(&mut run, &seeds, 0);
+        while !run.step(1_000).is_done {}
+        run.seek(u32::MAX);
+        let events = run.events(0, u32::MAX);
+        assert!(events.iter().any(|event| matches!(event, Event::FrontsMeet { is_other: true, .. })));
+        assert_eq!(run.particles().iter().filter(|particle| particle.parent.is_none()).count(), 2);
+    }
 
     #[test]
     fn back_is_exact_where_most_snapshots_have_been_dropped() {
@@ -539,12 +568,7 @@ mod tests {
                 let field = Box::new(surface.field());
                 let mut run = Lesson::new(field, &surface.bounds, &settings)
                     .unwrap_or_else(|error| panic!("{id}: {error}"));
-                for &particle in &placed[..end] {
-                    run.course.run.enter(particle);
-                }
-                run.lives = vec![Life::default(); end];
-                run.course.waiting = (first as u32..end as u32).collect();
-                run.course.fronts = 1;
+                go_on(&mut run, &placed[..end], first as u32);
                 while !run.chapters().first().is_some_and(|chapter| chapter.is_over) {
                     run.step(1);
                 }

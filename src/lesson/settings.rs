@@ -96,17 +96,6 @@ pub enum LessonPlacing {
     LevelByLevel,
 }
 
-/// Order in which the fronts of a surface with several components begin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSeeding"))]
-#[serde(rename_all = "snake_case")]
-pub enum Seeding {
-    /// The next seed is placed when the queue is empty.
-    OneByOne,
-    /// All given seeds are in the queue from the beginning, and their levels grow side by side.
-    Together,
-}
-
 /// The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
@@ -134,12 +123,10 @@ pub struct LessonSettings {
     /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
     /// them as they are, which is 1: on a lattice, where the two are equal, rounding then decides.
     pub fit: f64,
-    /// Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none.
+    /// Points near the surface at which fronts begin, in this order, each when the one before it has closed. Further seeds are looked for only if there is none.
     pub seeds: Vec<[f64; 3]>,
     /// Seed of the random choice of the first seed point, where no seed points are given.
     pub seed: u32,
-    /// Order in which the fronts of several seeds begin.
-    pub seeding: Seeding,
     /// Method that moves a child onto the surface.
     pub projection: Projection,
     /// Start of the search on the circle.
@@ -180,7 +167,6 @@ impl Default for LessonSettings {
             fit: 0.5,
             seeds: Vec::new(),
             seed: 0,
-            seeding: Seeding::OneByOne,
             projection: Projection::Circle,
             start: SearchStart::Tangent,
             // The text says stack, but the rings of Fig. 11 are those of a queue.
@@ -286,9 +272,6 @@ impl LessonSettings {
         {
             return Err(LessonError::Adaptive);
         }
-        if self.seeding == Seeding::Together && self.seeds.is_empty() {
-            return Err(LessonError::Seeds);
-        }
         Ok(())
     }
 }
@@ -333,9 +316,6 @@ pub enum LessonError {
     /// Adaptive sampling goes with one choice of some others.
     #[error("adaptive sampling places one particle after the other, on circles, and leaves gaps")]
     Adaptive,
-    /// Seeds that begin together have to be known.
-    #[error("seeds that begin together have to be given")]
-    Seeds,
     /// More particles than a run follows.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \

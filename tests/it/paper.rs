@@ -9,7 +9,7 @@ use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
 use marching_particles::lesson::{
     ChapterKind, Event, Lesson, LessonError, LessonField, LessonMethod, LessonPlacing, LessonSettings,
-    Matched, Projection, QueueOrder, Seeding, digest,
+    Matched, Projection, QueueOrder, digest,
 };
 use marching_particles::paper::{ImplicitSurface, PaperRun, Particle, RadiusRule, Rules, sum_of_curvatures};
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
@@ -49,7 +49,7 @@ fn all_settings() -> [LessonSettings; 8] {
         settings!(radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill; ..LessonSettings::of_fast_front()),
         settings!(order: QueueOrder::Stack, matched: Matched::Stay; ..coarse()),
         settings!(projection: Projection::Newton; ..coarse()),
-        settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together; ..coarse()),
+        settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]; ..coarse()),
         settings!(method: LessonMethod::WitkinHeckbert, radius: 0.12, max_iterations: 60; ..LessonSettings::default()),
         settings!(method: LessonMethod::Forces, max_iterations: 60; ..adaptive()),
     ]
@@ -341,16 +341,6 @@ fn adaptive_particles_follow_the_law_and_crowd_nothing() {
 }
 
 #[test]
-fn two_seeds_together_meet() {
-    let settings =
-        settings!(seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together; ..coarse());
-    let mut run = run("sphere", &settings);
-    let events = run.events(0, u32::MAX);
-    assert!(events.iter().any(|event| matches!(event, Event::FrontsMeet { is_other: true, .. })));
-    assert_eq!(run.particles().iter().filter(|particle| particle.parent.is_none()).count(), 2);
-}
-
-#[test]
 fn a_section_lies_on_the_surface() {
     let run = start("sphere", &coarse()).expect("valid settings");
     let segments = run.section([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.3, 60);
@@ -376,7 +366,6 @@ fn what_cannot_be_followed_is_refused_in_words() {
     assert!(refused(settings!(radius: f64::NAN; ..LessonSettings::default())).starts_with("radius is NaN"));
     assert!(refused(settings!(match_tolerance: 2.0; ..coarse())).starts_with("match_tolerance is 2"));
     assert!(refused(settings!(placing: LessonPlacing::LevelByLevel; ..coarse())).contains("needs a queue"));
-    assert!(refused(settings!(seeding: Seeding::Together; ..coarse())).contains("have to be given"));
     assert!(refused(settings!(gaps: GapPolicy::Fill; ..adaptive())).starts_with("adaptive sampling places"));
     let two_sizes = settings!(method: LessonMethod::WitkinHeckbert; ..adaptive());
     assert!(refused(two_sizes).contains("one radius everywhere"));

@@ -725,9 +725,6 @@ export type LessonPush = {
   distance: number,
 };
 
-/** Order in which the fronts of a surface with several components begin. */
-export type LessonSeeding = "one_by_one" | "together";
-
 /** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
 export type LessonSettings = {
   /** Method that covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
@@ -750,12 +747,10 @@ export type LessonSettings = {
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
   * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
   fit: number,
-  /** Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none. */
+  /** Points near the surface at which fronts begin, in this order, each when the one before it has closed. Further seeds are looked for only if there is none. */
   seeds: Array<[number, number, number]>,
   /** Seed of the random choice of the first seed point, where no seed points are given. */
   seed: number,
-  /** Order in which the fronts of several seeds begin. */
-  seeding: LessonSeeding,
   /** Method that moves a child onto the surface. */
   projection: LessonProjection,
   /** Start of the search on the circle. */
