@@ -116,17 +116,6 @@ pub enum AttributeFormat {
 }
 
 impl AttributeFormat {
-    /// Number of components in the shader, where each is an `f32`.
-    #[must_use]
-    pub const fn components(self) -> usize {
-        match self {
-            Self::Float32 => 1,
-            Self::Snorm16x2 => 2,
-            Self::Float32x3 => 3,
-            Self::Float32x4 | Self::Unorm8x4 => 4,
-        }
-    }
-
     /// Size in the buffer, in bytes.
     #[must_use]
     pub const fn size(self) -> u64 {

@@ -4,7 +4,9 @@
 use marching_particles::Settings;
 use marching_particles::render::chunks::{CHUNK, MOST_RECORDS};
 use marching_particles::render::frame::{Appearance, Camera, ClipBox, Frame, Light, Look};
-use marching_particles::render::layout::{FACE, FaceRecord, FaceTint, PARTICLE, PIECE, Record};
+use marching_particles::render::layout::{
+    AttributeFormat, FACE, FaceRecord, FaceTint, PARTICLE, PIECE, Record,
+};
 use marching_particles::render::shaders::{COMMON, SHADERS, Shader};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -204,12 +206,22 @@ fn vertex_inputs_match_the_attribute_tables() {
                 _ => PARTICLE,
             };
             let table: Vec<(u32, usize)> =
-                (0..).zip(records.iter().chain(colours).map(|format| format.components())).collect();
+                (0..).zip(records.iter().chain(colours).map(|&format| lanes_of(format))).collect();
             assert_eq!(inputs, table, "{name}, {}", entry.name);
             checked += 1;
         }
     }
     assert!(checked >= 4, "{checked} vertex stages read particles, faces or creases");
+}
+
+/// Number of `f32` components that the shader sees of an attribute.
+fn lanes_of(format: AttributeFormat) -> usize {
+    match format {
+        AttributeFormat::Float32 => 1,
+        AttributeFormat::Snorm16x2 => 2,
+        AttributeFormat::Float32x3 => 3,
+        AttributeFormat::Float32x4 | AttributeFormat::Unorm8x4 => 4,
+    }
 }
 
 /// Number of `f32` components.
