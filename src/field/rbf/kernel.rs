@@ -2,8 +2,8 @@
 //! coefficients of a cell's polynomial and over its near centres, and at eight points of one cell, with lanes over the
 //! points.
 //!
-//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. A single point in eight
-//! lanes would cost several times as much.
+//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. Eight together take 5.8 times the
+//! instructions of one. With those in eight lanes too that are alone in their cell, a run on the bunny takes 19 % more.
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
@@ -204,7 +204,7 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
     sums[9] += common + (uz + uz) * pz;
 }
 
-/// Does what [`sums`] does for eight points of one cell, with the same bits, at less than twice the cost of one.
+/// Does what [`sums`] does for eight points of one cell, with the same bits.
 ///
 /// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are added in the same
 /// order.

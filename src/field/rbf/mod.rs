@@ -85,6 +85,9 @@ impl Field for RbfField {
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         let (value, gradient) = (&mut value[..points.len()], &mut gradient[..points.len()]);
         self.tree.gradients(&self.data, self.pulls.places(points), value, gradient);
+        if self.pulls().is_empty() {
+            return;
+        }
         for (p, gradient) in points.iter().zip(gradient) {
             let mut jet = Jet { gradient: gradient.as_dvec3(), ..Jet::default() };
             self.pulls.pull_back(p.as_dvec3(), &mut jet);
@@ -102,6 +105,9 @@ impl Field for RbfField {
         let n = points.len();
         let (value, gradient, hessian) = (&mut value[..n], &mut gradient[..n], &mut hessian[..n]);
         self.tree.hessians(&self.data, self.pulls.places(points), value, gradient, hessian);
+        if self.pulls().is_empty() {
+            return;
+        }
         for ((p, gradient), hessian) in points.iter().zip(gradient).zip(hessian) {
             let mut jet = Jet { value: 0.0, gradient: gradient.as_dvec3(), hessian: hessian.map(f64::from) };
             self.pulls.pull_back(p.as_dvec3(), &mut jet);

@@ -109,8 +109,11 @@ impl Pulls {
     }
 
     /// The points that come to those of a batch.
-    pub(super) fn places(&mut self, points: &[Vec3]) -> &[Vec3] {
+    pub(super) fn places<'a>(&'a mut self, points: &'a [Vec3]) -> &'a [Vec3] {
         let Self { list, places } = self;
+        if list.is_empty() {
+            return points;
+        }
         places.clear();
         places.extend(points.iter().map(|p| back(list, p.as_dvec3()).as_vec3()));
         places

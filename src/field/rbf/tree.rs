@@ -40,8 +40,8 @@ const CLOSE: f64 = 1.0;
 /// clouds.
 const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 
-/// Minimum number of consecutive points of a cell that are evaluated together: eight together cost less than three
-/// single ones.
+/// Minimum number of consecutive points of a cell that are evaluated together. With 1 a run on the bunny takes 19 % more instructions
+/// and 12 % more time.
 const MIN_TOGETHER: usize = 3;
 
 /// Bit that marks the index of a child as that of a leaf.
