@@ -197,7 +197,7 @@ impl Painter {
     }
 }
 
-/// PassTarget of a pass.
+/// What a pass draws to.
 struct PassTarget<'a> {
     view: &'a wgpu::TextureView,
     /// Texture to which the samples of a multisampled `view` are resolved.

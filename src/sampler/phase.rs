@@ -92,8 +92,8 @@ pub(super) enum PhaseState {
     Idle,
     /// Looks for a survey point that no particle covers.
     Seeding(SurveyCursor),
-    /// Grows a front from a seed. Afterwards the seeding goes on from the cursor; there is none where a witness of the search
-    /// was the seed.
+    /// Grows a front from a seed. Afterwards the seeding goes on from the cursor; there is none where the seed was a witness of the
+    /// search, or that of an earlier coarse front.
     Generation(Option<SurveyCursor>),
     /// Looks for a witness that no particle covers.
     Search,

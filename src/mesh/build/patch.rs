@@ -90,7 +90,7 @@ impl<'a> Patch<'a> {
         self.triangles.iter().copied().filter(|&triangle| triangle != REMOVED)
     }
 
-    /// Number of vertices that have had a gap or a change so far; they are numbered.
+    /// The vertices that have had a gap or a change so far.
     pub(super) fn changed(&self) -> &[u32] {
         &self.changed
     }

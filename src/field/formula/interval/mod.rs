@@ -20,7 +20,7 @@ pub(super) use range::Range;
 pub(super) use rows::Row;
 
 /// Number of boxes whose bounds are computed together. Most calls have eight boxes or fewer. With 8 runs on a gyroid, on linked rings and
-/// on a torus take 6, 4 and 1 % more instructions, with a single one 7 and 13 %, and a scan for a box up to 30 %.
+/// on a torus take 6, 4 and 1 % more instructions, with a single one two of them 7 and 13 %, and a scan for a box up to 30 %.
 const BOXES: usize = 4;
 
 /// A graph compiled for boxes.
