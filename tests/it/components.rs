@@ -9,7 +9,7 @@ use marching_particles::field::gallery;
 use marching_particles::field::{Bounded, Enclosure};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Sampling, Search, Settings, StopReason};
+use marching_particles::sampler::{Method, Sampling, Search, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Session};
 
 /// Samples in the cube of half-width `half`, with `share` of its diagonal as radius.
@@ -345,9 +345,9 @@ fn the_distance_to_a_solid_is_sampled_whole() {
     let turned = distance(&["abs(0.8x + 0.6y) - 0.5", "abs(0.8y - 0.6x) - 0.4", "abs(z) - 0.3"]);
     let cylinder = distance(&["hypot(x, y) - 0.5", "abs(z) - 0.5"]);
     for (text, area, creases) in
-        [(upright, 6.32, 12), (turned, 3.76, 12), (cylinder, 1.5 * core::f64::consts::PI, 2)]
+        [(&upright, 6.32, 12), (&turned, 3.76, 12), (&cylinder, 1.5 * core::f64::consts::PI, 2)]
     {
-        let (_, report) = sampled(&text, 1.0, 0.015);
+        let (_, report) = sampled(text, 1.0, 0.015);
         let figures = report.measures.quality.expect("figures of particles");
         let found = (report.proof.components, figures.connectivity.euler, report.proof.creases);
         assert_eq!(found, (1, 2, Some(creases)), "{text}");
@@ -356,6 +356,10 @@ fn the_distance_to_a_solid_is_sampled_whole() {
         // Creases are searched.
         assert_eq!(report.proof.search, Search::Searched, "{text}");
     }
+    // The branches say how the surface bends: f itself has no gradient on it.
+    let settings = settings!(radius_share: 0.008, method: Method::Refined; ..Settings::default());
+    let (_, report) = finished(&upright, Bounds::cube(1.0), &settings);
+    assert_eq!(report.warnings, []);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::mesh::build::{Triangulation, triangulate};
 use crate::mesh::half_edge::HalfEdges;
 use crate::particles::Particles;
 use crate::sampler::constraint::CreaseLadder;
+use core::slice;
 use glam::Vec3;
 
 /// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's front does, whose relaxation
@@ -39,6 +40,13 @@ const MAX_BEND_LEAST: f64 = 3.2;
 pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<f64> {
     let mut curvature = vec![Curvature::default(); points.len()];
     curvatures(field, points, &mut curvature);
+    for (&p, own) in points.iter().zip(&mut curvature).filter(|(_, own)| !own.is_defined()) {
+        // Where the branches of f meet smoothly on its surface f has no gradient.
+        let branch = field.branch_at(p.as_dvec3());
+        field.select_branch(Some(branch));
+        curvatures(field, &[p], slice::from_mut(own));
+        field.select_branch(None);
+    }
     let largest = |c: &Curvature| if c.is_defined() { f64::from(c.max_abs()) } else { f64::INFINITY };
     curvature.iter().map(largest).collect()
 }
