@@ -189,7 +189,7 @@ fn measure(sweep: &Sweep, count: u32, method: Method, sampling: Sampling) {
     for frame in 1..=FRAMES {
         let next = field(frame);
         let before = Instant::now();
-        assert!(run.follow(next), "{}: the particles cannot follow in frame {frame}", sweep.name);
+        assert_eq!(run.follow(next), Ok(()), "{} in frame {frame}", sweep.name);
         finish(&mut run);
         spent += before.elapsed().as_secs_f64();
         moved += run.count();

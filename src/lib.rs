@@ -187,8 +187,8 @@ pub use run::{
     Start, Warning, sample,
 };
 pub use sampler::{
-    Doubt, FateCounts, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling, Search,
-    Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
+    Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling,
+    Search, Settings, SettingsError, SizeMode, Spot, StopReason, Unsampled,
 };
 pub use topology::{Component, Topology};
 

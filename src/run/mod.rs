@@ -22,7 +22,8 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
 use crate::sampler::{
-    self, Creases, Phase, Progress, Sampler, Settings, SettingsError, StopReason, bytes_per_particle,
+    self, Creases, FollowError, Phase, Progress, Sampler, Settings, SettingsError, StopReason,
+    bytes_per_particle,
 };
 use crate::slices::{self, Work};
 use core::fmt::{self, Debug, Formatter};
@@ -225,13 +226,16 @@ impl<F: Field> Run<F> {
     /// [`Run::step`] does it. Each call is a frame of a motion: the transport of the particles, births and deaths where they become sparse
     /// or crowd, and a step of relaxation. The same sequence of fields gives the same particles to the last bit.
     ///
-    /// Returns whether the particles can follow. If not, a run on the new field has to be started: the run has not ended, the surface is gone or
-    /// has creases or tips, or most of it lies farther from the particles than they from each other. Either way the field is the run's from
-    /// then on. The box stays what it is: one that was fitted to the first surface cuts what grows out of it.
+    /// The box stays what it is: one that was fitted to the first surface cuts what grows out of it, which the report says
+    /// ([`Cut::Outgrown`]).
     ///
     /// The order of the fronts is lost where particles are born and die; those of a refined run move with its mesh, and keep
     /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey, and there is nothing more to
     /// [relax](Run::relax) before the next start.
+    ///
+    /// # Errors
+    ///
+    /// If the particles cannot follow: the error says why, and what to do. The run is then as if this had not been called, with its field.
     ///
     /// ```
     /// use marching_particles::{Bounds, Formula, Run, Settings};
@@ -240,29 +244,32 @@ impl<F: Field> Run<F> {
     /// let mut run = Run::start(ellipsoid(1.0)?, &Settings::with_count(1_000).in_box(Bounds::cube(1.5)))?;
     /// while run.step(u32::MAX).stop_reason.is_none() {}
     /// for frame in 1..=10 {
-    ///     assert!(run.follow(ellipsoid(1.0 + 0.01 * f64::from(frame))?));
+    ///     run.follow(ellipsoid(1.0 + 0.01 * f64::from(frame))?)?;
     ///     while run.step(u32::MAX).stop_reason.is_none() {}
     /// }
     /// // Most of the particles are those of the beginning.
     /// assert!(run.particles().identity.iter().filter(|&&number| number < 1_000).count() > 900);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn follow(&mut self, field: F) -> bool {
-        self.set_field(field, false);
-        self.follow_field(false)
+    pub fn follow(&mut self, mut field: F) -> Result<(), FollowError> {
+        field.set_origin(self.particles().origin);
+        let before = core::mem::replace(&mut self.field, field);
+        let followed = self.follow_field(false);
+        if followed.is_err() {
+            self.field = before;
+        }
+        followed
     }
 
     /// [`Run::follow`] to the surface of the field that the run has, in its box: both may have changed since the last step.
     /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
-    pub(crate) fn follow_field(&mut self, is_closed: bool) -> bool {
+    pub(crate) fn follow_field(&mut self, is_closed: bool) -> Result<(), FollowError> {
         let bounds = self.bounds.relative_to(self.field.origin());
-        let can_follow = self.sampler.follow(&mut self.field, &bounds, is_closed);
-        if can_follow {
-            self.known = Known::Particles;
-            self.creases = None;
-            self.forget_results();
-        }
-        can_follow
+        self.sampler.follow(&mut self.field, &bounds, is_closed)?;
+        self.known = Known::Particles;
+        self.creases = None;
+        self.remember(self.sampler.progress());
+        Ok(())
     }
 
     /// Asks for more relaxation steps on the particles of a run that has ended; [`Run::step`] does them. Returns whether there are

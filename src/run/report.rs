@@ -37,7 +37,7 @@ pub struct Report {
     pub smallest_angle: Option<f64>,
     /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same.
     pub pairs: Option<usize>,
-    /// Particles with a child that fell outside of the box.
+    /// Particles with a child that fell outside of the box; of those that have followed a moving surface, with place for one there.
     pub border: usize,
     /// Why particles lie at the border of the box.
     pub cut: Option<Cut>,
@@ -59,6 +59,8 @@ pub enum Cut {
     Endless,
     /// The box was given, and the surface reaches beyond it.
     Fixed,
+    /// The box was fitted to the surface before it moved, and it has grown beyond it.
+    Outgrown,
 }
 
 /// Repulsion radii of a run, in the units of the field's coordinates.
@@ -305,15 +307,21 @@ impl<F: Field> Run<F> {
     }
 
     /// Number of particles at the border of the box, with a child that fell outside. A child beyond a crease is outside of its patch, which is
-    /// told apart by the distance from the box: a child is two radii away.
+    /// told apart by the distance from the box: a child is two radii away. The children of particles that have moved lay elsewhere; they would
+    /// now fall outside where a way of two radii in the tangent plane does.
     fn at_border(&self) -> usize {
         let (particles, bounds) = (self.particles(), self.local_bounds());
+        let is_inside = |i: usize, reach: Vec3| {
+            let (p, reach) = (particles.position[i], 2.0 * particles.radius[i] * reach);
+            bounds.contains(p - reach) && bounds.contains(p + reach)
+        };
         let is_at = |&i: &usize| {
+            if self.has_moved() {
+                return !is_inside(i, particles.normal[i].map(|n| (1.0 - n * n).max(0.0).sqrt()));
+            }
             let slots = particles.slots[i];
-            let reach = Vec3::splat(2.0 * particles.radius[i]);
-            let is_inside = |p: Vec3| bounds.contains(p - reach) && bounds.contains(p + reach);
             (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside)
-                && (particles.patch.is_empty() || !is_inside(particles.position[i]))
+                && (particles.patch.is_empty() || !is_inside(i, Vec3::ONE))
         };
         let mut firsts: Vec<usize> =
             (0..particles.len()).filter(is_at).map(|i| particles.first_row(i)).collect();
@@ -325,11 +333,17 @@ impl<F: Field> Run<F> {
     /// The reason why particles lie at the border of the box, if some do.
     fn cut(&self) -> Option<Cut> {
         match self.reach {
+            Some(Reach::Bounded) if self.has_moved() => Some(Cut::Outgrown),
             // Particles that are large against the surface may have a child outside of a box that holds it.
             Some(Reach::Bounded) => None,
             Some(Reach::Endless | Reach::Nowhere | Reach::Unknown) => Some(Cut::Endless),
             None => Some(Cut::Fixed),
         }
+    }
+
+    /// Whether the particles have followed the surface while it moved.
+    pub(super) fn has_moved(&self) -> bool {
+        !self.particles().identity.is_empty()
     }
 
     fn sizes(&self) -> Radii {

@@ -299,8 +299,7 @@ impl<F: Field> Run<F> {
         if not_converged > 0 || undefined > 0 {
             warnings.push(Warning::Children { not_converged, undefined });
         }
-        let has_moved = !self.particles().identity.is_empty();
-        if has_moved {
+        if self.has_moved() {
             warnings.push(Warning::Moved);
         }
         let meets = [self.places_of_meeting(), self.crossing()];
@@ -331,7 +330,7 @@ impl<F: Field> Run<F> {
         let is_told = |doubt: &Doubt| match doubt {
             Doubt::NoBounds | Doubt::Creases => false,
             Doubt::Witnesses { .. } => !is_unresolved,
-            Doubt::Unfinished => !has_moved,
+            Doubt::Unfinished => !self.has_moved(),
             _ => true,
         };
         let moved = doubts.into_iter().filter(is_told).map(|doubt| doubt.moved(|place| self.place(place)));

@@ -26,6 +26,7 @@ mod sizing;
 
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
+pub use flow::FollowError;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Forecast, Progress};
 pub use refine::{Refusal, Spot};
@@ -464,40 +465,52 @@ impl Sampler {
     }
 
     /// Begins a frame of particles that follow a surface: those of a finished run are brought to the surface of `field` in a box, which have
-    /// changed but little; [`Sampler::step`] does it. Returns whether they can follow. If not, nothing has changed, and a run has to start:
-    /// where there was no surface or there is none, it has creases or tips, or the particles are farther from it than from each other. Where
-    /// that `is_closed`, no particle is born, and none dies but where it is lost.
-    pub(crate) fn follow(&mut self, field: &mut dyn Field, bounds: &Bounds, is_closed: bool) -> bool {
+    /// changed but little; [`Sampler::step`] does it. Where that `is_closed`, no particle is born, and none dies but where it is lost.
+    ///
+    /// # Errors
+    ///
+    /// If the particles cannot follow. Nothing has changed then.
+    pub(crate) fn follow(
+        &mut self,
+        field: &mut dyn Field,
+        bounds: &Bounds,
+        is_closed: bool,
+    ) -> Result<(), FollowError> {
         let particles = &self.output.particles;
         // A front that was stopped has not covered the surface.
-        let is_still = match self.phase {
+        let covers = match self.phase {
             PhaseState::Done(reason) => reason == StopReason::Complete || !particles.identity.is_empty(),
             // A frame that has not ended: the next one goes on from where the particles are.
             PhaseState::Flow(_) => true,
-            _ => false,
+            PhaseState::Idle => false,
+            _ => return Err(FollowError::UnderWay),
         };
-        let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
-        if !is_still || !is_smooth || particles.len() < 2 || particles.origin != field.origin() {
-            return false;
+        if !covers || particles.len() < 2 {
+            return Err(FollowError::NotCovered);
+        }
+        if particles.origin != field.origin() {
+            return Err(FollowError::Origin { origin: particles.origin });
         }
         let has_several =
             |field: &mut dyn Branched| field.branches_in(bounds).is_none_or(|all| all.len() > 1);
-        if field.branched().is_some_and(has_several) {
-            return false;
+        let is_smooth = particles.patch.is_empty() && !self.creases.are_there();
+        if !is_smooth || field.branched().is_some_and(has_several) {
+            return Err(FollowError::Creased);
         }
         field.use_double(self.survey.double);
-        let scale = self.survey.scale;
-        if !flow::is_near(&mut Scaled::new(field, scale), particles) {
-            return false;
-        }
+        let scaled = &mut Scaled::new(field, self.survey.scale);
+        let is_leap = flow::is_leap(scaled, particles, self.attempt.radius)?;
         self.tools.flow.begin(&mut self.output.particles);
+        if is_leap {
+            self.tools.flow.leap();
+        }
         self.tools.flow.is_closed = is_closed;
         self.bounds = *bounds;
         if self.tools.flow.is_due() {
             self.look_again(field);
         }
         self.next(RunInput::Follow);
-        true
+        Ok(())
     }
 
     /// Surveys a surface that has moved. The packing stays as measured, and what was proven of the surface before no longer holds.

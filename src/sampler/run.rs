@@ -616,6 +616,9 @@ impl Sampler {
         }
         if settled.steps == 0 {
             flow.is_whole = true;
+            if flow.is_late() {
+                return self.begin_transport();
+            }
             if flow.is_last() && flow.is_seeded {
                 self.join_again(probe);
             }

@@ -23,7 +23,7 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{Pull, RbfData, RbfField, pulled_box};
 use crate::math::Bounds;
 use crate::run::{Error, Report, Run, Sample, Start, Warning};
-use crate::sampler::{Settings, SettingsError};
+use crate::sampler::{FollowError, Settings, SettingsError};
 use core::ops::{Deref, DerefMut};
 use fitting::Fitting;
 use glam::DVec3;
@@ -395,16 +395,20 @@ impl Session {
     }
 
     /// Has the particles of the last run, which had these settings, [follow](Run::follow) its surface to the present field, in the box that
-    /// [`Session::fit`] has found. Returns whether they can; if not, a run has to start. What they have become is made from no record.
-    /// `is_closed`: no particle is born, and none dies but where it does not come to the surface.
-    pub fn follow(&mut self, settings: &Settings, is_closed: bool) -> bool {
-        let can_follow =
-            self.fitting.is_settled && self.started == Some(*settings) && self.run.follow_field(is_closed);
-        if can_follow {
-            self.fitting.is_settled = false;
-            self.made = None;
+    /// [`Session::fit`] has found. What they have become is made from no record. `is_closed`: no particle is born, and none dies but where it
+    /// does not come to the surface.
+    ///
+    /// # Errors
+    ///
+    /// If they cannot follow: a run has to start.
+    pub fn follow(&mut self, settings: &Settings, is_closed: bool) -> Result<(), FollowError> {
+        if !self.fitting.is_settled || self.started != Some(*settings) {
+            return Err(FollowError::NotCovered);
         }
-        can_follow
+        self.run.follow_field(is_closed)?;
+        self.fitting.is_settled = false;
+        self.made = None;
+        Ok(())
     }
 
     /// [`Run::report`] in slices, with what the session knows of the surface. Of one of the gallery or a model, whose box was chosen for it, no cause

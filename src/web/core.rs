@@ -118,7 +118,7 @@ impl Core {
         #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
         is_closed: bool,
     ) -> bool {
-        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings, is_closed))
+        self.read_settings(settings).is_ok_and(|settings| self.session.follow(&settings, is_closed).is_ok())
     }
 
     /// Does up to `budget` units of work: `Progress`.

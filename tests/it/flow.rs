@@ -1,12 +1,14 @@
 //! Tests of particles that follow a moving surface.
 
+use glam::DVec3;
+use marching_particles::field::Field;
 use marching_particles::field::formula::Formula;
 use marching_particles::math::{Bounds, NONE};
 use marching_particles::mesh::half_edge::HalfEdges;
 use marching_particles::quality::figures::Coverage;
 use marching_particles::sampler::SizeMode;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Method, Phase, Run, Sampling, Settings, Warning};
+use marching_particles::{Cut, FollowError, Method, Phase, Run, Sampling, Settings, Warning};
 
 const TANGLECUBE: &str = "x^4+y^4+z^4-5*(x^2+y^2+z^2)+q";
 const ELLIPSOID: &str = "x^2/q^2+y^2/0.49+z^2/0.25-1";
@@ -32,7 +34,7 @@ fn started(formula: &str, q: f64, half: f64, settings: &Settings) -> Run<Formula
 fn sweep(run: &mut Run<Formula>, formula: &str, [from, to]: [f64; 2], frames: u32, budget: u32) {
     for frame in 1..=frames {
         let q = from + (to - from) * f64::from(frame) / f64::from(frames);
-        assert!(run.follow(field(formula, q)), "{formula}: the particles cannot follow to {q}");
+        assert_eq!(run.follow(field(formula, q)), Ok(()), "{formula}, to {q}");
         finish(run, budget);
     }
 }
@@ -130,23 +132,91 @@ fn what_leaves_the_box_is_dropped_and_what_comes_in_is_covered() {
     assert!(figures.coverage.cover < 1.9, "a hole of {}", figures.coverage.cover);
 }
 
+/// What of a run may not change where its particles cannot follow.
+fn state(run: &mut Run<Formula>) -> (u64, u64, String) {
+    let progress = run.progress().map(|progress| format!("{progress:?}"));
+    (
+        run.particles().digest(),
+        run.field().clone().value_and_gradient(DVec3::splat(0.1)).0.to_bits(),
+        format!("{progress:?}"),
+    )
+}
+
 #[test]
-fn a_surface_too_far_or_with_creases_is_not_followed_and_a_run_goes_on() {
+fn a_surface_too_far_or_with_creases_is_not_followed_and_nothing_changes() {
     let settings = Settings::with_count(800);
     for (next, why) in [
-        ("(x-0.7)^2+y^2+z^2-0.25", "far"),
-        ("max(x^2+y^2+z^2-0.26,z-0.3)", "creased"),
+        ("(x-0.3)^2+y^2+z^2-0.25", "far at its ends"),
         ("x^2+y^2+z^2+1", "gone"),
+        ("max(x^2+y^2+z^2-0.26,z-0.3)", "creased"),
     ] {
         let mut run = started("x^2+y^2+z^2-0.25+0*q", 0.0, 1.5, &settings);
-        let digest = run.particles().digest();
-        let next = Formula::parse(next).expect("a formula");
-        assert!(!run.follow(next), "{why}");
-        assert_eq!(run.particles().digest(), digest, "{why}");
-        run.restart(&settings.in_box(Bounds::cube(1.5))).expect("a run");
-        finish(&mut run, u32::MAX);
-        assert_eq!(run.count() > 500, why != "gone", "{why}");
+        let before = state(&mut run);
+        let error = run.follow(Formula::parse(next).expect("a formula")).expect_err(why);
+        match error {
+            FollowError::TooFar { share, .. } if why == "gone" => assert!(share > 0.99, "{share}"),
+            FollowError::TooFar { share, .. } => assert!((0.2..0.9).contains(&share), "{why}: {share}"),
+            FollowError::Creased => assert_eq!(why, "creased"),
+            _ => panic!("{why}: {error}"),
+        }
+        assert_eq!(state(&mut run), before, "{why}");
     }
+}
+
+#[test]
+fn a_run_that_has_not_ended_goes_on_as_if_nothing_had_been_asked() {
+    let settings = Settings::with_count(2_000).in_box(Bounds::cube(1.5));
+    let mut asked = Run::start(field(ELLIPSOID, 1.0), &settings).expect("a run");
+    let mut other = Run::start(field(ELLIPSOID, 1.0), &settings).expect("a run");
+    let mut phases = Vec::new();
+    loop {
+        let ended = asked.step(500).stop_reason.is_some();
+        other.step(500);
+        if ended {
+            break;
+        }
+        phases.push(asked.progress().expect("a step").phase);
+        assert_eq!(asked.follow(field(ELLIPSOID, 1.01)), Err(FollowError::UnderWay));
+        assert_eq!(state(&mut asked), state(&mut other));
+    }
+    assert!(phases.contains(&Phase::Generation) && phases.contains(&Phase::Relaxation), "{phases:?}");
+    assert_eq!(state(&mut asked), state(&mut other));
+    assert_eq!(asked.follow(field(ELLIPSOID, 1.01)), Ok(()));
+
+    let mut stopped = Run::start(field(ELLIPSOID, 1.0), &settings).expect("a run");
+    stopped.step(500);
+    stopped.cancel();
+    assert_eq!(stopped.follow(field(ELLIPSOID, 1.01)), Err(FollowError::NotCovered));
+}
+
+#[test]
+fn a_leap_that_some_particles_cannot_make_leaves_no_hole() {
+    // Only the ends are farther than two radii away.
+    for method in [Method::Front, Method::Refined] {
+        let settings = settings!(method; ..Settings::with_count(3_000));
+        let moved = "(x-q)^2/4+y^2+z^2-0.25";
+        for warm in 0..4 {
+            let mut run = started(moved, 0.0, 1.5, &settings);
+            sweep(&mut run, moved, [0.0, 0.0], warm, u32::MAX);
+            sweep(&mut run, moved, [0.0, 0.06], 1, u32::MAX);
+            let hole = run.report().measures.quality.expect("figures").coverage.cover;
+            assert!(hole < 1.9, "{method:?}, {warm}: a hole of {hole}");
+        }
+    }
+}
+
+#[test]
+fn a_report_says_that_a_surface_has_outgrown_the_box_that_was_fitted_to_it() {
+    let ball = "x^2+y^2+z^2-q^2";
+    let mut run = Run::start(field(ball, 1.0), &Settings::with_count(1_000)).expect("a run");
+    finish(&mut run, u32::MAX);
+    sweep(&mut run, ball, [1.0, 1.02], 4, u32::MAX);
+    let report = run.report();
+    assert_eq!((report.border, report.cut), (0, None));
+    sweep(&mut run, ball, [1.02, 1.25], 40, u32::MAX);
+    let report = run.report();
+    assert!(report.border > 50, "{} particles at the border", report.border);
+    assert_eq!(report.cut, Some(Cut::Outgrown));
 }
 
 #[test]
@@ -154,7 +224,7 @@ fn a_frame_that_is_cut_short_is_made_up_for_by_the_next() {
     for method in [Method::Front, Method::Refined] {
         let mut run = started(ELLIPSOID, 1.0, 1.5, &settings!(method; ..Settings::with_count(2_000)));
         for frame in 1..=20 {
-            assert!(run.follow(field(ELLIPSOID, 1.0 + 0.01 * f64::from(frame))));
+            assert_eq!(run.follow(field(ELLIPSOID, 1.0 + 0.01 * f64::from(frame))), Ok(()));
             assert_eq!(run.step(500).phase, Phase::Flow);
             match frame % 3 {
                 0 => drop(run.cancel()),
@@ -285,7 +355,7 @@ impl Drag {
 
     fn follow(&mut self, q: f64, is_closed: bool) {
         self.take(q);
-        assert!(self.session.follow(&self.settings, is_closed), "the particles cannot follow to {q}");
+        assert_eq!(self.session.follow(&self.settings, is_closed), Ok(()), "to {q}");
     }
 
     fn finish(&mut self) {

@@ -72,11 +72,7 @@ fn run(case: &Run) -> (usize, String) {
         let request = FieldRequest { parameters: parameters.clone(), ..FieldRequest::default() };
         session.set_field(&request).unwrap_or_else(|error| panic!("{}: {error}", case.name));
         while session.fit(&|_| settings, true, BUDGET).is_none() {}
-        assert!(
-            session.follow(&settings, false),
-            "{}: the particles cannot follow to {parameters:?}",
-            case.name
-        );
+        assert_eq!(session.follow(&settings, false), Ok(()), "{}, to {parameters:?}", case.name);
         while session.run.step(BUDGET).stop_reason.is_none() {}
     }
     (session.run.count(), format!("{:016x}", session.run.particles().digest()))

@@ -454,7 +454,7 @@ fn the_particles_of_a_model_follow_a_pull_and_come_back() {
         let part = pulls.map(|pull| Pull { by: pull.by.map(|x| x * f64::from(step) / 10.0), ..pull });
         set(&mut session, &part[..1]);
         while session.fit(&|_| settings, true, 100_000).is_none() {}
-        assert!(session.follow(&settings, false), "step {step}");
+        assert_eq!(session.follow(&settings, false), Ok(()), "step {step}");
         finish(&mut session);
         if step == 10 {
             let end = (DVec3::from(pulls[0].at) + DVec3::from(pulls[0].by)).as_vec3();

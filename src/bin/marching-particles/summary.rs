@@ -68,7 +68,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
             Cut::Endless => {
                 writeln!(out, "the surface goes on beyond the box from {min} to {max}; --box sets another")?;
             }
-            Cut::Fixed => writeln!(
+            Cut::Fixed | Cut::Outgrown => writeln!(
                 out,
                 "the box from {min} to {max} cuts the surface, at {of}: enlarge it, or fit it with --box fit"
             )?,

@@ -6,7 +6,7 @@ use crate::output::OutputFile;
 use crate::sample::{bar, choose, fit};
 use marching_particles::quality::Measurements;
 use marching_particles::session::{FieldRequest, Session};
-use marching_particles::{Bounds, export};
+use marching_particles::{Bounds, FollowError, export};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -42,9 +42,9 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
     for frame in 0..=frames {
         set_at(&mut session, &sweep, f64::from(frame) / f64::from(frames), bounds)?;
         let settings = fit(&mut session, &settings_in, false)?;
-        if !session.follow(&settings, false) {
+        if let Err(error) = session.follow(&settings, false) {
             session.start(&settings)?;
-            counted.begin_anew();
+            counted.begin_anew(frame, error);
         }
         let run = &mut session.run;
         while run.step(u32::MAX).stop_reason.is_none() {}
@@ -59,11 +59,12 @@ pub(crate) fn run(mut arguments: SweepArguments) -> Result<ExitCode, Failure> {
         bar.set_position(u64::from(frame) + 1);
     }
     bar.finish_and_clear();
-    let Counted { least, most, next, runs, .. } = counted;
-    let again = if runs > 1 {
-        format!(", of {runs} runs: between two the surface moved too far")
-    } else {
-        String::new()
+    let Counted { least, most, next, anew, .. } = counted;
+    let again = match anew.as_slice() {
+        [_, (frame, error), ..] => {
+            format!(", of {} runs; in frame {frame} the second begins: {error}", anew.len())
+        }
+        _ => String::new(),
     };
     let mut out = std::io::stdout().lock();
     let directory = arguments.out.display();
@@ -80,14 +81,15 @@ struct Counted {
     before: u32,
     /// The identity after all so far.
     next: u32,
-    runs: u32,
+    /// The frames in which runs begin, and why the particles before could not follow.
+    anew: Vec<(u32, FollowError)>,
 }
 
 impl Counted {
     /// Notes that another run begins: none of its particles was there before.
-    fn begin_anew(&mut self) {
+    fn begin_anew(&mut self, frame: u32, error: FollowError) {
         self.before = self.next;
-        self.runs += 1;
+        self.anew.push((frame, error));
     }
 
     /// Numbers the particles of a frame, so that no two of all runs have the same.

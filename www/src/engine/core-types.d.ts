@@ -57,7 +57,7 @@ export type Condition = {
 };
 
 /** Why particles lie at the border of the box. */
-export type Cut = "endless" | "fixed";
+export type Cut = "endless" | "fixed" | "outgrown";
 
 /** The whole description. */
 export type Description = {
@@ -1031,7 +1031,7 @@ export type Report = {
   smallest_angle: number | null,
   /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same. */
   pairs: number | null,
-  /** Particles with a child that fell outside of the box. */
+  /** Particles with a child that fell outside of the box; of those that have followed a moving surface, with place for one there. */
   border: number,
   /** Why particles lie at the border of the box. */
   cut: Cut | null,
