@@ -153,8 +153,8 @@ pub trait Field: Send {
     }
 
     /// Makes the batched methods compute in double precision and give arsinh(f/s) for f, where s is `scale`, a positive number; or
-    /// f again. [`Field::jet`], [`Field::value_and_gradient`] and [`Field::exact_gradients`] then give f/s. It is for fields whose values or intermediate results are beyond single precision.
-    /// The default implementation does nothing.
+    /// f again. [`Field::jet`], [`Field::value_and_gradient`] and [`Field::exact_gradients`] then give f/s. It is for fields whose values or
+    /// intermediate results are beyond single precision. The default implementation does nothing.
     fn use_double(&mut self, scale: Option<f64>) {
         let _ = scale;
     }

@@ -230,8 +230,7 @@ impl<F: Field> Run<F> {
     /// ([`Cut::Outgrown`]).
     ///
     /// The order of the fronts is lost where particles are born and die; those of a refined run move with its mesh, and keep
-    /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey, and there is nothing more to
-    /// [relax](Run::relax) before the next start.
+    /// theirs, until the surface tears or joins. Components are no longer searched beyond a survey.
     ///
     /// # Errors
     ///

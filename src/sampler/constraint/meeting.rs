@@ -94,8 +94,8 @@ impl Meeting {
         Some(are_left)
     }
 
-    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right; none if it has no sheet there. It is asked on the outer side of the sheet:
-    /// within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
+    /// Whether a branch gives f beside its sheet to the left of the tangent, and to the right; none if it has no sheet there. It is asked on
+    /// the outer side of the sheet: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     fn gives(&self, probe: &mut Probe, b: u32, reach: f64) -> Option<[bool; 2]> {
         let (_, gradient) = branch(probe, b, self.position);
         let aside = gradient.cross(self.tangent).try_normalize()?;
