@@ -747,7 +747,8 @@ export type LessonSettings = {
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
   * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
   fit: number,
-  /** Points near the surface at which fronts begin, in this order, each when the one before it has closed. Further seeds are looked for only if there is none. */
+  /** Points near the surface at which fronts begin, in this order, each when the one before it has closed. Other seeds are looked for only
+  * if none are given. */
   seeds: Array<[number, number, number]>,
   /** Seed of the random choice of the first seed point, where no seed points are given. */
   seed: number,
