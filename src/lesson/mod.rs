@@ -529,9 +529,9 @@ mod tests {
         assert!(events.iter().any(|event| matches!(event, Event::Divided { .. })));
     }
 
-    /// Of each level the reference treats the fast front's own particles, so that rounding does not add up: every particle is held,
-    /// also those that follow the first close call. With larger particles, at whose size the surface folds, the fast search gives
-    /// children up that the reference's finds.
+    /// The reference makes each level from the particles of the fast front's level before it, so that roundings do not add up: every particle
+    /// is compared, also those after the first close call. With larger particles, at whose size the surface folds, the fast search gives
+    /// children up that the reference's search finds.
     #[test]
     fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
         for (id, share) in

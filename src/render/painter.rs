@@ -197,7 +197,7 @@ impl Painter {
     }
 }
 
-/// What a pass draws to.
+/// The attachments of a render pass.
 struct PassTarget<'a> {
     view: &'a wgpu::TextureView,
     /// Texture to which the samples of a multisampled `view` are resolved.

@@ -86,13 +86,14 @@ const NARROW_SECTOR: f32 = 150.0 / 180.0 * PI;
 /// with 0.7, 1.1 % with 0.8 and with 0.9, and the closest pair is at 0.72, 0.72 and 0.71.
 const CLEAR: f32 = 0.8;
 
-/// Share of the particles that may be farther from the new surface than from each other. On 30 random motions of fronts, eight frames after a
-/// leap in which none is, the count is off by 4 % and 83 % have six neighbours; where up to this share is, by 8 % and 76 %, and up to twice of it
-/// by 11 % and 69 %.
+/// Largest share of the particles that may be farther from the new surface than from each other. On 30 random motions of fronts the count is
+/// off by 4 % eight frames after a leap in which none is, and 83 % have six neighbours. With up to this share it is off by 8 %, and 76 % have six;
+/// with up to twice of it by 11 %, and 69 %.
 const MOST_FAR: f64 = 0.1;
 
-/// That share from which on a frame is a leap, and the particles are balanced at once: fewer may lie where the gradient vanishes. Where they
-/// were not, of 35 random frames of refined runs with up to half of it 1 had a hole of more than 1.9, with up to twice of it 9 of 15.
+/// Least share of such particles at which the frame is a leap, in which the others are balanced at once: fewer may lie where the gradient
+/// vanishes. Without that, a hole was wider than 1.9 in 1 of 35 random frames of refined runs with up to half of this share, and in 9 of 15 with
+/// up to twice of it.
 const LEAP: f64 = 0.01;
 
 /// Why particles cannot follow a surface. Nothing has changed then: a run under way goes on, and a finished one keeps its particles.

@@ -101,7 +101,7 @@ pub(super) struct BranchPart {
     compiled: Option<Box<Compiled>>,
 }
 
-/// What a part becomes where its conditions hold or do not.
+/// The part of f that follows from another part, once each condition of that one is known to hold or not.
 #[derive(Clone, Copy, Debug)]
 struct TakenPart {
     /// Index of the part.
@@ -306,7 +306,7 @@ impl Base {
         pairs.collect()
     }
 
-    /// Where another condition holds beside those of which that is known, ties apart.
+    /// Returns whether a condition holds where others hold or do not, as far as those decide it. A way that ties alone allow is none.
     fn where_free(&self, known: &[ChoiceCondition], holds: &[bool], condition: ChoiceCondition) -> Holds {
         let [is_tie, is_tie_else] = [true, false].map(|side| {
             let mut ordered = self.ordered(&[condition], &[side]);
@@ -320,7 +320,7 @@ impl Base {
         }
     }
 
-    /// Whether nodes of which one is at most the other, in each pair, are equal in one of these.
+    /// Whether the nodes of some pair have to be equal, where in each pair the first is at most the second.
     fn are_tied(&self, mut ordered: Vec<[Id; 2]>) -> bool {
         let pairs = ordered.clone();
         let mut next = 0;
@@ -526,7 +526,7 @@ impl Branches {
         index
     }
 
-    /// What part `of` becomes where its conditions hold or do not.
+    /// Returns the part that follows from part `of` where its conditions hold or do not, as `holds` says.
     fn taken(&mut self, of: usize, holds: &[bool], values: &[f64]) -> TakenPart {
         let known = &self.parts[of].taken;
         let place = match known.binary_search_by(|(way, _)| way.as_slice().cmp(holds)) {
