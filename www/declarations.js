@@ -18,6 +18,6 @@ for (const folder of ['engine', 'wasm']) {
   cpSync(place(`src/${folder}`), `${out}/${folder}`, {
     recursive: true,
     // The bundles of the development server have the same declarations.
-    filter: (path) => (statSync(path).isDirectory() ? !path.endsWith('wasm/dev') : path.endsWith('.d.ts')),
+    filter: (path) => statSync(path).isDirectory() || path.endsWith('.d.ts'),
   });
 }

@@ -2,8 +2,8 @@ import { existsSync } from 'node:fs';
 import { availableParallelism } from 'node:os';
 import { defineConfig } from '@playwright/test';
 
-// The browser tests run against the built site (`dist/`), once at the root of a host and once in a folder of one. The
-// Chromium is CHROMIUM_PATH, else the system's, the one without windows first, else Playwright's own.
+// The browser tests run against the built site (the folder SITE, else `dist/`), once at the root of a host and once in a
+// folder of one. The Chromium is CHROMIUM_PATH, else the system's, the one without windows first, else Playwright's own.
 const system = [process.env.CHROMIUM_PATH, '/usr/bin/chromium-headless-shell', '/usr/bin/chromium'];
 const executablePath = system.find((path) => path && existsSync(path));
 
@@ -31,6 +31,8 @@ const webgpu = [
   '--use-angle=swiftshader',
   '--ignore-gpu-blocklist',
 ];
+/** Whether the one test that takes minutes runs, and no other. */
+const SOAK = !!process.env.SOAK;
 const port = Number(process.env.MARCHING_PARTICLES_TEST_PORT ?? 4517);
 
 /** @param {string[]} args */
@@ -40,9 +42,9 @@ const chromium = (args) => ({
 });
 
 export default defineConfig({
-  testDir: 'tests',
-  testMatch: '**/*.spec.js',
-  outputDir: 'test-results',
+  testDir: 'tests/chromium',
+  testMatch: SOAK ? '**/soak.spec.js' : '**/*.spec.js',
+  outputDir: 'test-results/chromium',
   forbidOnly: !!process.env.CI,
   // Software rendering is slow and the machines are small: generous limits.
   timeout: 60_000,
@@ -52,7 +54,7 @@ export default defineConfig({
   fullyParallel: true,
   // A shared machine can stall for seconds. A test that passes only when it is repeated is listed as flaky at the end.
   retries: 1,
-  reporter: [['list']],
+  reporter: [['list'], ['json', { outputFile: 'test-results/chromium.json' }]],
   use: {
     viewport: { width: 480, height: 360 },
     baseURL: `http://localhost:${port}/`,
@@ -67,7 +69,11 @@ export default defineConfig({
     reuseExistingServer: false,
   },
   projects: [
-    { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d,contexts,large-type}.spec.js' },
+    {
+      name: 'webgl2',
+      use: chromium([]),
+      testIgnore: SOAK ? [] : '**/{*.{webgpu,canvas2d,contexts,large-type},soak}.spec.js',
+    },
     { name: 'webgpu', use: chromium(webgpu), testMatch: '**/*.webgpu.spec.js' },
     {
       name: 'large-type',
@@ -76,5 +82,5 @@ export default defineConfig({
     },
     { name: 'contexts', use: chromium(['--max-active-webgl-contexts=4']), testMatch: '**/*.contexts.spec.js' },
     { name: 'canvas2d', use: chromium(['--disable-3d-apis']), testMatch: '**/*.canvas2d.spec.js' },
-  ],
+  ].filter(({ name }) => !SOAK || name === 'webgl2'),
 });

@@ -1,6 +1,6 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
-import { dirname, join } from 'node:path';
+import { dirname, join, resolve } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
 import { build, defineConfig } from 'vite';
 
@@ -43,7 +43,7 @@ const lessonPage = {
   name: 'lesson-page',
   apply: 'build',
   configResolved({ root, build: { outDir } }) {
-    lessonPage.folder = join(root, outDir);
+    lessonPage.folder = resolve(root, outDir);
   },
   closeBundle: {
     sequential: true,
@@ -66,23 +66,23 @@ const lessonPage = {
 };
 
 /**
- * Has the development server take the bundles that `cargo xtask serve` builds quickly, and wait for one that is not there yet: only
- * the core and a renderer are built before the page is served.
- * @type {import('vite').Plugin}
+ * Has the development server wait for a bundle that is not there yet: `cargo xtask serve` builds only the core and a renderer
+ * before the page is served.
+ * @type {Plugin}
  */
-const quickBundles = {
-  name: 'quick-bundles',
+const waitForBundles = {
+  name: 'wait-for-bundles',
   apply: 'serve',
   enforce: 'pre',
   resolveId(id, importer = '', options) {
     if (!id.startsWith('.') || !id.includes('/wasm/')) return null;
     // The scan for packages to bundle ends at a file that is not there. Vite's types do not have the option.
     if (/** @type {{scan?: boolean}} */ (options).scan) return { id, external: true };
-    return join(dirname(importer), id.replace('/wasm/', '/wasm/dev/'));
+    return join(dirname(importer), id);
   },
   async load(id) {
     const [file] = id.split('?');
-    while (file.includes('/src/wasm/dev/') && !existsSync(file)) await setTimeout(200);
+    while (file.includes('/src/wasm/') && !existsSync(file)) await setTimeout(200);
     return null;
   },
 };
@@ -118,7 +118,7 @@ const offline = {
   name: 'offline',
   apply: 'build',
   configResolved({ root, build: { outDir } }) {
-    offline.folder = join(root, outDir);
+    offline.folder = resolve(root, outDir);
   },
   closeBundle: {
     sequential: true,
@@ -157,10 +157,10 @@ const offline = {
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
-  plugins: [preloadCore, lessonPage, offline, quickBundles, noServiceWorker],
+  plugins: [preloadCore, lessonPage, offline, waitForBundles, noServiceWorker],
   build: {
     ...SHARED,
-    outDir: '../dist',
+    outDir: process.env.SITE ?? '../dist',
     emptyOutDir: true,
     // The renderer bundles are large by nature; `cargo xtask build` holds every file to its own budget.
     chunkSizeWarningLimit: 4096,

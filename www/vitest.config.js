@@ -1,7 +1,7 @@
 import { availableParallelism } from 'node:os';
 import { defineConfig } from 'vitest/config';
 
-// Tests in Node: plain modules, and the engine by itself with the core that `cargo xtask wasm` has built (`tests/alone`).
+// Tests in Node: plain modules (`tests/unit`), and the whole engine with the core that `cargo xtask wasm` has built (`tests/node`).
 export default defineConfig({
   test: {
     include: ['tests/**/*.test.js'],
@@ -10,5 +10,7 @@ export default defineConfig({
     maxWorkers: availableParallelism(),
     // Some hold a fast way to the plain definition over many cases: on a machine with other work that takes seconds.
     testTimeout: 60_000,
+    reporters: ['default', 'json'],
+    outputFile: { json: 'test-results/node.json' },
   },
 });

@@ -1,5 +1,6 @@
 /**
- * Serves the built site for the browser tests: `dist/` at `/` and again at `/sub/path/`, as a plain static host would.
+ * Serves the built site for the browser tests at `/` and again at `/sub/path/`, as a plain static host would: the folder
+ * that SITE names, else `dist/`.
  *
  * Usage: node tests/server.js [port]
  */
@@ -8,7 +9,7 @@ import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const root = fileURLToPath(new URL('../../dist/', import.meta.url));
+const root = join(process.env.SITE ?? fileURLToPath(new URL('../../dist', import.meta.url)), '/');
 
 /** @type {Record<string, string>} */
 const types = {

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::bundle::{self, Bundle, Purpose};
+use crate::bundle::{self, Bundle, Declarations, Purpose};
 use crate::chromium;
 use crate::node;
 use crate::project::{Project, cargo, rustc};
@@ -28,7 +28,7 @@ pub(crate) fn bench(project: &Project, options: &Options) -> Result<()> {
     if options.web {
         node::prepare(project)?;
         let chromium = chromium::find(project)?;
-        bundle::build(project, &[Bundle::Core], Purpose::Site)?;
+        bundle::build(project, &[Bundle::Core], Purpose::Site, Declarations::Hold)?;
         let mut command = Command::new(node::node()?);
         return show(
             command.current_dir(&project.root).arg("tests/wasm/bench.mjs").env("CHROMIUM_PATH", chromium),

@@ -1,9 +1,10 @@
 //! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer for WebGPU and for WebGL2.
 //!
-//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → a folder that the page takes it from. Its declarations are checked in,
-//! since the page's types are those of `src/web/`; the rest is not. For the development server cargo optimises less, and
-//! declarations and wasm-opt are left out. A bundle is skipped when a hash over everything that goes into it is unchanged; when
-//! cargo then gives the same module as before, binding and optimising are skipped as well.
+//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → `target/xtask/bundles` → `www/src/wasm`, where the page takes it from,
+//! whichever purpose it was built for. For development and for `cargo xtask test` cargo optimises less and wasm-opt is left out.
+//! The declarations are checked in, since the page's types are those of `src/web/`; the rest is not. A bundle is not built
+//! again when a hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding
+//! and optimising are skipped as well.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,20 +23,22 @@ use crate::wasm_target::WasmTarget;
 /// Purpose for which a bundle is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// The site, its tests and benches.
+    /// The published site, and benches.
     Site,
-    /// The development server: soon compiled, by the profile `wasm-dev`, and not optimised for its size.
+    /// The development server and the quick tests: soon compiled, by the profile `wasm-dev`, and not optimised for size.
     Development,
 }
 
-impl Purpose {
-    /// The folder of the bundles. The page's scripts name the one of the site; the development server takes the other
-    /// (`www/vite.config.js`).
-    fn folder(self, project: &Project) -> PathBuf {
-        let site = project.www.join("src/wasm");
-        if self == Self::Site { site } else { site.join("dev") }
-    }
+/// What happens when the checked-in declarations of a bundle differ from what `src/web/` declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Declarations {
+    /// They are rewritten.
+    Rewrite,
+    /// The build fails.
+    Hold,
+}
 
+impl Purpose {
     /// Cargo's profile.
     fn profile(self) -> &'static str {
         match self {
@@ -148,14 +151,25 @@ impl Bundle {
     }
 }
 
-/// Builds the bundles that are not up to date.
-pub(crate) fn build(project: &Project, bundles: &[Bundle], purpose: Purpose) -> Result<()> {
+/// Builds the bundles that are not up to date, and puts them where the page takes them from.
+pub(crate) fn build(
+    project: &Project,
+    bundles: &[Bundle],
+    purpose: Purpose,
+    declarations: Declarations,
+) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
     let mut current = Vec::new();
     for &bundle in bundles {
-        if !build_one(project, &target, bundle, purpose)? {
+        let folder = project.scratch("bundles")?.join(purpose.profile()).join(bundle.folder());
+        if !build_one(project, &target, bundle, purpose, &folder)? {
             current.push(bundle.folder());
         }
+        let page = project.www.join("src/wasm").join(bundle.folder());
+        if declarations == Declarations::Hold {
+            hold_declarations(project, bundle, &folder, &page)?;
+        }
+        publish(&folder, &page)?;
     }
     if !current.is_empty() {
         println!("  up to date: {}", current.join(", "));
@@ -163,10 +177,15 @@ pub(crate) fn build(project: &Project, bundles: &[Bundle], purpose: Purpose) -> 
     Ok(())
 }
 
-/// Builds a bundle; false if it was up to date.
-fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<bool> {
+/// Builds a bundle into `folder`; false if it was up to date.
+fn build_one(
+    project: &Project,
+    target: &WasmTarget,
+    bundle: Bundle,
+    purpose: Purpose,
+    folder: &Path,
+) -> Result<bool> {
     let name = bundle.folder();
-    let out_dir = purpose.folder(project).join(name);
     let stamp_file = project.scratch("stamps")?.join(format!("{name}-{}.json", purpose.profile()));
     let stamp: Value =
         fs::read(&stamp_file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
@@ -175,7 +194,7 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Pu
         !outputs.is_empty()
             && outputs
                 .iter()
-                .all(|(file, hash)| sha256_of(&out_dir.join(file)).is_ok_and(|have| hash == have.as_str()))
+                .all(|(file, hash)| sha256_of(&folder.join(file)).is_ok_and(|have| hash == have.as_str()))
     });
     if intact && stamp["inputs"] == inputs.as_str() {
         return Ok(false);
@@ -184,20 +203,17 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Pu
     let process =
         Fingerprint::default().file(&module)?.text("process", &process_version(project, bundle)?).finish();
     if !(intact && stamp["process"] == process.as_str()) {
-        let stage = project.scratch("stage")?.join(name);
-        if stage.exists() {
-            fs::remove_dir_all(&stage)?;
+        if folder.exists() {
+            fs::remove_dir_all(folder)?;
         }
-        bind(bundle, &module, &stage)?;
+        bind(bundle, &module, folder)?;
         if purpose == Purpose::Site {
-            declare(project, bundle, &stage, &out_dir)?;
-            optimise(project, bundle, &stage)?;
+            optimise(project, bundle, folder)?;
         }
-        publish(&stage, &out_dir)?;
     }
     let mut outputs = serde_json::Map::new();
-    for file in files_under(&out_dir)? {
-        let relative = file.strip_prefix(&out_dir)?.to_string_lossy().into_owned();
+    for file in files_under(folder)? {
+        let relative = file.strip_prefix(folder)?.to_string_lossy().into_owned();
         outputs.insert(relative, Value::from(sha256_of(&file)?));
     }
     fs::write(
@@ -302,16 +318,16 @@ fn bind(bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
     if !text.contains(&format!("export class {} ", bundle.class())) {
         bail!("{} exports no class `{}`: is it still in src/web/?", script.display(), bundle.class());
     }
-    Ok(())
+    declare(bundle, stage)
 }
 
-/// Holds the declarations that are checked in to those of the bundle. The module's own exports are left out: the page calls the
-/// class, and their names change from build to build.
-fn declare(project: &Project, bundle: Bundle, stage: &Path, out_dir: &Path) -> Result<()> {
-    let file = format!("{}.d.ts", bundle.out_name());
+/// Rewrites the declarations in `stage` as they are checked in. The module's own exports are left out: the page calls the class, and
+/// their names change from build to build.
+fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
+    let file = stage.join(format!("{}.d.ts", bundle.out_name()));
     let mut text = String::new();
     let mut is_of_module = false;
-    for line in fs::read_to_string(stage.join(&file))?.lines() {
+    for line in fs::read_to_string(&file)?.lines() {
         is_of_module =
             if is_of_module { line != "}" } else { line.starts_with("export interface InitOutput") };
         if !is_of_module || line.ends_with('{') || line.contains("readonly memory:") {
@@ -320,15 +336,18 @@ fn declare(project: &Project, bundle: Bundle, stage: &Path, out_dir: &Path) -> R
             text += "\n";
         }
     }
-    fs::write(stage.join(&file), &text)?;
-    fs::remove_file(stage.join(format!("{}_bg.wasm.d.ts", bundle.out_name())))?;
-    let page = out_dir.join(&file);
-    let is_update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
-    let known = fs::read_to_string(&page).unwrap_or_default();
-    if !is_update && without_comments(&known) != without_comments(&text) {
+    fs::write(&file, &text)?;
+    Ok(fs::remove_file(stage.join(format!("{}_bg.wasm.d.ts", bundle.out_name())))?)
+}
+
+/// Fails if the page's declarations of a bundle are not those of the bundle in `folder`.
+fn hold_declarations(project: &Project, bundle: Bundle, folder: &Path, page: &Path) -> Result<()> {
+    let file = format!("{}.d.ts", bundle.out_name());
+    let known = fs::read_to_string(page.join(&file)).unwrap_or_default();
+    if without_comments(&known) != without_comments(&fs::read_to_string(folder.join(&file))?) {
         bail!(
-            "{} declares another class than src/web/: UPDATE_GOLDEN=1 cargo xtask wasm {}",
-            project.relative(&page).display(),
+            "{} declares another class than src/web/: `cargo xtask wasm --development {}` rewrites it",
+            project.relative(&page.join(&file)).display(),
             bundle.folder()
         );
     }
@@ -357,18 +376,20 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
 }
 
-/// Moves the finished files to where the page takes them from. Each file is replaced at once, so that a running
-/// development server never reads half of one.
-fn publish(stage: &Path, out_dir: &Path) -> Result<()> {
-    fs::create_dir_all(out_dir).with_context(|| format!("could not create {}", out_dir.display()))?;
-    let fresh = files_under(stage)?;
-    for old in files_under(out_dir)? {
-        if !stage.join(old.strip_prefix(out_dir)?).is_file() {
+/// Copies the files that differ to where the page takes them from. Each is replaced at once, so that a running development server
+/// never reads half of one.
+fn publish(folder: &Path, page: &Path) -> Result<()> {
+    fs::create_dir_all(page).with_context(|| format!("could not create {}", page.display()))?;
+    for old in files_under(page)? {
+        if !folder.join(old.strip_prefix(page)?).is_file() {
             fs::remove_file(&old)?;
         }
     }
-    for file in fresh {
-        let to = out_dir.join(file.strip_prefix(stage)?);
+    for file in files_under(folder)? {
+        let to = page.join(file.strip_prefix(folder)?);
+        if sha256_of(&to).is_ok_and(|have| sha256_of(&file).is_ok_and(|new| have == new)) {
+            continue;
+        }
         if let Some(parent) = to.parent() {
             fs::create_dir_all(parent)?;
         }

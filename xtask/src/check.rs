@@ -1,21 +1,23 @@
-//! The project's checks, which are also what runs in continuous integration.
+//! The project's checks: those of every change, which continuous integration runs, and those that the published site is held to.
 
 use std::path::Path;
 use std::process::Command;
 use std::thread;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use anyhow::{Result, bail};
 use clap::ValueEnum as _;
-use serde_json::Value;
 
-use crate::bundle::{self, Bundle, Purpose};
+use crate::browsers;
+use crate::bundle::{self, Bundle, Declarations, Purpose};
 use crate::chromium;
 use crate::deny;
-use crate::engines;
+use crate::native;
 use crate::node;
 use crate::project::{Project, cargo};
 use crate::site;
 use crate::step;
+use crate::times;
 use crate::wasm_target::WasmTarget;
 
 /// A part of the checks.
@@ -23,49 +25,59 @@ use crate::wasm_target::WasmTarget;
 pub(crate) enum Part {
     /// rustfmt.
     Format,
-    /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without cargo-deny.
-    Deny,
     /// Clippy on everything that is compiled natively, warnings denied.
     Lint,
     /// Clippy on the library as WebAssembly, with what JavaScript sees of it, warnings denied.
     LintWasm,
-    /// rustdoc, warnings denied.
-    Docs,
     /// Unit, integration and documentation tests, and every example.
     Native,
     /// The core, the solver for points and the lesson as WebAssembly, in Node, against the digests of the native ones.
     Parity,
-    /// Mesh files against Khronos' glTF validator.
-    Gltf,
     /// The page: format, lint, types, unit tests and those of its engine with the core, in Node.
     Page,
     /// The built site in Chromium, at / and in a sub-path.
-    Browser,
+    Chromium,
+    /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without cargo-deny.
+    Deny,
+    /// rustdoc, warnings denied, and the crate as cargo would publish it.
+    Docs,
+    /// The bundles of the published site, held to their budgets and to the digests of the native core.
+    Release,
+    /// Mesh files against Khronos' glTF validator.
+    Gltf,
     /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
-    Engines,
+    Browsers,
+    /// Hundreds of resamplings in Chromium, after which the page holds no more memory than before.
+    Soak,
 }
 
-/// Everything, the quick checks first.
-const ALL: [Part; 11] = [
+/// What every change is held to.
+const USUAL: [Part; 7] =
+    [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
+
+/// Everything.
+const ALL: [Part; 13] = [
     Part::Format,
     Part::Deny,
     Part::Lint,
     Part::Native,
     Part::Docs,
     Part::LintWasm,
-    Part::Parity,
     Part::Gltf,
+    Part::Parity,
+    Part::Release,
     Part::Page,
-    Part::Browser,
-    Part::Engines,
+    Part::Chromium,
+    Part::Browsers,
+    Part::Soak,
 ];
 
-/// Parts that make and check the bundles of the page. These parts run beside those that compile natively, because the last crate of
+/// Parts that make and check the bundles of the page. They run beside those that compile natively, because the last crate of
 /// every build takes one processor only.
-const BUNDLES: [Part; 2] = [Part::Parity, Part::Page];
+const BUNDLES: [Part; 3] = [Part::Parity, Part::Release, Part::Page];
 
 /// Parts that drive a browser, which takes all processors and waits for time to pass: they run last and alone.
-const BROWSERS: [Part; 2] = [Part::Browser, Part::Engines];
+const BROWSERS: [Part; 3] = [Part::Chromium, Part::Browsers, Part::Soak];
 
 /// Without WebAssembly and a browser.
 const FAST: [Part; 3] = [Part::Format, Part::Lint, Part::Native];
@@ -74,9 +86,14 @@ const FAST: [Part; 3] = [Part::Format, Part::Lint, Part::Native];
 #[derive(clap::Args)]
 pub(crate) struct Options {
     /// Only format, lint and native.
-    #[arg(long, conflicts_with = "parts")]
+    #[arg(long, conflicts_with_all = ["parts", "all"])]
     fast: bool,
-    /// The parts to run; everything if none is named.
+    /// Everything that the published site is held to: besides the usual parts the documentation, the bundles and the site as they
+    /// are published, Firefox and WebKit, files in the programs that read them, all random cases, and a soak. With parts: these, on
+    /// the published bundles and with all random cases.
+    #[arg(long)]
+    all: bool,
+    /// The parts to run; the usual ones if none is named.
     parts: Vec<Part>,
 }
 
@@ -84,38 +101,56 @@ impl Options {
     fn parts(&self) -> Vec<Part> {
         if self.fast {
             FAST.to_vec()
-        } else if self.parts.is_empty() {
+        } else if !self.parts.is_empty() {
+            self.parts.clone()
+        } else if self.all {
             ALL.to_vec()
         } else {
-            self.parts.clone()
+            USUAL.to_vec()
         }
     }
+}
+
+/// What the parts share.
+struct Checks<'a> {
+    project: &'a Project,
+    /// The bundles that the page and its tests use.
+    purpose: Purpose,
+    chromium: Option<&'a Path>,
+    /// The variables that say which random cases are run.
+    cases: [(&'static str, String); 2],
 }
 
 /// Runs the checks. Parts that fail do not keep the others from running; the first line of each failure is repeated at
 /// the end.
 pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
+    let started = Instant::now();
     let parts = options.parts();
-    // What may be missing is looked for before the long builds start.
-    if parts
-        .iter()
-        .any(|part| matches!(part, Part::Parity | Part::Gltf | Part::Page | Part::Browser | Part::Engines))
-    {
-        node::prepare(project)?;
-    }
-    let chromium = if parts.contains(&Part::Browser) { Some(chromium::find(project)?) } else { None };
     let of = |is_of: &dyn Fn(&Part) -> bool| parts.iter().copied().filter(is_of).collect::<Vec<_>>();
     let browsers = of(&|part| BROWSERS.contains(part));
     let bundles = of(&|part| BUNDLES.contains(part));
     let native = of(&|part| !BUNDLES.contains(part) && !BROWSERS.contains(part));
-    let chromium = chromium.as_deref();
+    // What may be missing is looked for before the long builds start.
+    if !browsers.is_empty() || !bundles.is_empty() || native.contains(&Part::Gltf) {
+        node::prepare(project)?;
+    }
+    let needs_chromium = parts.iter().any(|part| matches!(part, Part::Chromium | Part::Soak));
+    let chromium = if needs_chromium { Some(chromium::find(project)?) } else { None };
+    let cases = random_cases(options.all);
+    let checks = Checks {
+        project,
+        purpose: if options.all { Purpose::Site } else { Purpose::Development },
+        chromium: chromium.as_deref(),
+        cases,
+    };
     let mut failures = thread::scope(|scope| {
-        let beside = scope.spawn(|| run(project, &bundles, chromium));
-        let mut failures = run(project, &native, chromium);
+        let beside = scope.spawn(|| checks.run(&bundles));
+        let mut failures = checks.run(&native);
         failures.extend(beside.join().unwrap_or_else(|_| vec!["a part ended with a panic".to_owned()]));
         failures
     });
-    failures.extend(run(project, &browsers, chromium));
+    failures.extend(checks.run(&browsers));
+    times::print(started.elapsed());
     if !failures.is_empty() {
         bail!("failed: {}", failures.join(", "));
     }
@@ -123,30 +158,86 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Runs parts one after the other and returns the names of those that failed.
-fn run(project: &Project, parts: &[Part], chromium: Option<&Path>) -> Vec<String> {
-    let mut failures = Vec::new();
-    for part in parts {
-        let result = match part {
-            Part::Format => format(project),
-            Part::Deny => deny::test(project),
-            Part::Lint => lint(project),
-            Part::LintWasm => lint_wasm(project),
-            Part::Docs => docs(project),
-            Part::Native => native(project),
-            Part::Parity => parity(project),
-            Part::Gltf => gltf(project),
-            Part::Page => page(project),
-            Part::Browser => browser(project, chromium),
-            Part::Engines => site::build(project).and_then(|()| engines::test(project)),
-        };
-        if let Err(error) = result {
-            eprintln!("\nerror: {error:#}\n");
-            failures
-                .push(part.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default());
+/// Chooses and prints the random cases: a tenth of them or all, from a seed that is of today unless the environment names one.
+fn random_cases(is_all: bool) -> [(&'static str, String); 2] {
+    const SEED: &str = "MARCHING_PARTICLES_SEED";
+    const TENTHS: &str = "MARCHING_PARTICLES_TENTHS";
+    let today = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs() / 86_400);
+    let seed = std::env::var(SEED).unwrap_or_else(|_| today().to_string());
+    let tenths = std::env::var(TENTHS).unwrap_or_else(|_| if is_all { "10" } else { "1" }.to_owned());
+    println!("  random cases: {TENTHS}={tenths} {SEED}={seed}");
+    [(SEED, seed), (TENTHS, tenths)]
+}
+
+impl Checks<'_> {
+    /// Runs parts one after the other and returns the names of those that failed.
+    fn run(&self, parts: &[Part]) -> Vec<String> {
+        let mut failures = Vec::new();
+        for part in parts {
+            let started = Instant::now();
+            let result = match part {
+                Part::Format => format(self.project),
+                Part::Deny => deny::test(self.project),
+                Part::Lint => lint(self.project),
+                Part::LintWasm => lint_wasm(self.project),
+                Part::Docs => docs(self.project),
+                Part::Native => native::test(self.project, &self.cases),
+                Part::Parity => parity(self.project, Purpose::Development),
+                Part::Release => release(self.project),
+                Part::Gltf => gltf(self.project),
+                Part::Page => self.page(),
+                Part::Chromium => self.chromium(&[]),
+                Part::Browsers => self.site().and_then(|()| browsers::test(self.project, self.purpose)),
+                Part::Soak => self.chromium(&[("SOAK", "400")]),
+            };
+            let name = part.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+            times::part(&name, started.elapsed());
+            if let Err(error) = result {
+                eprintln!("\nerror: {error:#}\n");
+                failures.push(name);
+            }
         }
+        failures
     }
-    failures
+
+    /// Builds the site of the purpose.
+    fn site(&self) -> Result<()> {
+        site::build(self.project, self.purpose)
+    }
+
+    fn page(&self) -> Result<()> {
+        let project = self.project;
+        let mut lint = node::npm()?;
+        lint.args(["run", "--silent", "lint"]).current_dir(&project.www);
+        step::run("page: format and lint", &mut lint, "`npm run format` in www/ puts most of it right.")?;
+        bundle::build(project, &Bundle::ALL, self.purpose, Declarations::Hold)?;
+        node::script(project, "page: types", "check", &[])?;
+        let tested = node::script(project, "page: unit tests", "test", &[]);
+        times::vitest(&project.www.join("test-results/node.json"));
+        tested.map(drop)
+    }
+
+    /// The browser tests, with variables that choose among them.
+    fn chromium(&self, variables: &[(&str, &str)]) -> Result<()> {
+        self.site()?;
+        let chromium = self.chromium.map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
+        let folder = site::folder(self.project, self.purpose);
+        let site = folder.to_string_lossy();
+        let variables = [variables, &[("CHROMIUM_PATH", chromium.as_str()), ("SITE", &site)]].concat();
+        let told = node::script(self.project, "page: tests in Chromium", "e2e", &variables);
+        times::playwright(&self.project.www.join("test-results/chromium.json"));
+        for line in flaky(&told?) {
+            println!("{line}");
+        }
+        Ok(())
+    }
+}
+
+/// Builds the bundles and the site as they are published, and holds them to the digests and the budgets.
+fn release(project: &Project) -> Result<()> {
+    parity(project, Purpose::Site)?;
+    site::build(project, Purpose::Site)?;
+    site::report_sizes(project)
 }
 
 fn cargo_at_root(project: &Project, arguments: &[&str]) -> Command {
@@ -162,7 +253,7 @@ fn format(project: &Project) -> Result<()> {
 
 fn lint(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["clippy", "--all-targets"]);
-    command.args(TESTED).args(["--", "--deny", "warnings"]);
+    command.args(native::TESTED).args(["--package", "xtask"]).args(["--", "--deny", "warnings"]);
     step::run("lint (native)", &mut command, "").map(drop)
 }
 
@@ -186,45 +277,15 @@ fn lint_wasm(project: &Project) -> Result<()> {
 
 fn docs(project: &Project) -> Result<()> {
     let mut command = cargo_at_root(project, &["doc", "--no-deps"]);
-    command.args(TESTED).env("RUSTDOCFLAGS", "--deny warnings");
+    command.args(native::TESTED).args(["--package", "xtask"]).env("RUSTDOCFLAGS", "--deny warnings");
     step::run("documentation", &mut command, "")?;
     let mut command = cargo_at_root(project, &["package", "--package", "marching-particles"]);
     command.args(["--no-verify", "--allow-dirty", "--locked"]);
     step::run("package", &mut command, "").map(drop)
 }
 
-/// What is compiled natively. Every command names it, because another choice of features has cargo compile everything again.
-const TESTED: [&str; 4] = ["--workspace", "--features", "marching-particles/cli", "--locked"];
-
-fn native(project: &Project) -> Result<()> {
-    let mut build = cargo_at_root(project, &["test", "--no-run", "--message-format=json-render-diagnostics"]);
-    let messages = step::run("native tests: compile", build.args(TESTED), "")?;
-    let mut tests = cargo_at_root(project, &["test", "--no-fail-fast"]);
-    step::run("native tests", tests.args(TESTED), "")?;
-    examples(project, &messages)
-}
-
-/// Runs every example that cargo says it has compiled, in a folder of its own, where it may write files.
-fn examples(project: &Project, messages: &str) -> Result<()> {
-    let folder = project.scratch("examples")?;
-    let mut found = false;
-    for message in messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
-        let target = &message["target"];
-        let (Some("example"), Some(name)) = (target["kind"][0].as_str(), target["name"].as_str()) else {
-            continue;
-        };
-        let Some(executable) = message["executable"].as_str() else { continue };
-        step::run(&format!("example {name}"), Command::new(executable).current_dir(&folder), "")?;
-        found = true;
-    }
-    if !found && project.root.join("examples").is_dir() {
-        bail!("cargo compiled no example of examples/");
-    }
-    Ok(())
-}
-
-fn parity(project: &Project) -> Result<()> {
-    bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson], Purpose::Site)?;
+fn parity(project: &Project, purpose: Purpose) -> Result<()> {
+    bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson], purpose, Declarations::Hold)?;
     for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/lesson.mjs"] {
         let mut command = Command::new(node::node()?);
         command.current_dir(&project.root).arg(script);
@@ -235,30 +296,10 @@ fn parity(project: &Project) -> Result<()> {
 
 fn gltf(project: &Project) -> Result<()> {
     let mut tests = cargo_at_root(project, &["test"]);
-    step::run("mesh files", tests.args(TESTED).args(["--test", "it", "mesh_export::"]), "")?;
+    step::run("mesh files", tests.args(native::TESTED).args(["--test", "it", "mesh_export::"]), "")?;
     let mut command = Command::new(node::node()?);
     command.current_dir(&project.root).arg("tests/gltf/validate.mjs").arg(project.target.join("tmp"));
     step::run("mesh files: Khronos' glTF validator", &mut command, "").map(drop)
-}
-
-fn page(project: &Project) -> Result<()> {
-    let mut lint = node::npm()?;
-    lint.args(["run", "--silent", "lint"]).current_dir(&project.www);
-    step::run("page: format and lint", &mut lint, "`npm run format` in www/ puts most of it right.")?;
-    bundle::build(project, &Bundle::ALL, Purpose::Site)?;
-    node::script(project, "page: types", "check", &[])?;
-    node::script(project, "page: unit tests", "test", &[]).map(drop)
-}
-
-fn browser(project: &Project, chromium: Option<&Path>) -> Result<()> {
-    site::build(project)?;
-    site::report_sizes(project)?;
-    let chromium = chromium.map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
-    let told = node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", &chromium)])?;
-    for line in flaky(&told) {
-        println!("{line}");
-    }
-    Ok(())
 }
 
 /// The part of Playwright's summary that names the tests which passed only when they were repeated.

@@ -1,13 +1,14 @@
 //! Project tasks: serve, test, build, bench, paper.
 
 mod bench;
+mod browsers;
 mod bundle;
 mod check;
 mod chromium;
 mod debian;
 mod deny;
-mod engines;
 mod fingerprint;
+mod native;
 mod node;
 mod paper;
 mod project;
@@ -15,6 +16,7 @@ mod rust_source;
 mod serve;
 mod site;
 mod step;
+mod times;
 mod wasm_target;
 
 use std::process::ExitCode;
@@ -22,13 +24,15 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use bundle::{Bundle, Purpose};
+use bundle::{Bundle, Declarations, Purpose};
 use project::Project;
 
 const EXAMPLES: &str = "\
 Examples:
   cargo xtask serve --open            work on the page; Rust and shaders are rebuilt when they change
   cargo xtask serve --release-site    look at the site as it will be published
+  cargo xtask test                    what continuous integration runs for every change
+  cargo xtask test --all              besides, everything that the published site is held to
   cargo xtask test --fast             format, lint and native tests
   cargo xtask test page browser       only these parts
   cargo xtask bench --web             the whole job in headless Chromium
@@ -53,7 +57,7 @@ struct Arguments {
 enum Task {
     /// Serve the page for development and print its address.
     Serve(serve::Options),
-    /// Run the checks: format, lints, documentation, native tests, WebAssembly, page, browser.
+    /// Run the checks: format, lints, native tests, WebAssembly, page, Chromium; with --all everything else, too.
     Test(check::Options),
     /// Build the static site into dist/ and hold its size to the budgets.
     Build,
@@ -61,8 +65,11 @@ enum Task {
     Bench(bench::Options),
     /// Run the paper's jobs and write docs/paper.md with its tables and figures.
     Paper(paper::Options),
-    /// Build the WebAssembly bundles into www/src/wasm (serve, test and build do this by themselves).
+    /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test and build do the first by themselves).
     Wasm {
+        /// Those of the development server, which are compiled sooner and sample up to 15 % slower.
+        #[arg(long)]
+        development: bool,
         /// The bundles to build; all of them if none is named.
         bundles: Vec<Bundle>,
     },
@@ -86,15 +93,16 @@ fn perform(task: Task) -> Result<()> {
         Task::Serve(options) => serve::serve(&project, &options),
         Task::Test(options) => check::test(&project, &options),
         Task::Build => {
-            site::build(&project)?;
+            site::build(&project, Purpose::Site)?;
             site::report_sizes(&project)
         }
         Task::Bench(options) => bench::bench(&project, &options),
         Task::Paper(options) => paper::paper(&project, &options),
-        Task::Wasm { bundles } => {
+        Task::Wasm { development, bundles } => {
             let bundles = if bundles.is_empty() { Bundle::ALL.to_vec() } else { bundles };
             node::prepare(&project)?;
-            bundle::build(&project, &bundles, Purpose::Site)
+            let purpose = if development { Purpose::Development } else { Purpose::Site };
+            bundle::build(&project, &bundles, purpose, Declarations::Rewrite)
         }
     }
 }

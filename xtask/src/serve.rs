@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use anyhow::{Context, Result, anyhow, bail};
 
-use crate::bundle::{self, Bundle, Purpose};
+use crate::bundle::{self, Bundle, Declarations, Purpose};
 use crate::fingerprint::files_under;
 use crate::node;
 use crate::project::Project;
@@ -46,14 +46,15 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
     let first = bundles.len();
     bundles.extend([Bundle::Points, Bundle::Lesson]);
     if options.release_site {
-        site::build(project)?;
+        site::build(project, Purpose::Site)?;
     } else {
         // Without Node there is nothing to wait for.
         node::node()?;
         // Fetching packages waits for the network, compiling does not.
         thread::scope(|scope| {
             let packages = scope.spawn(|| node::prepare(project));
-            let built = bundle::build(project, &bundles[..first], Purpose::Development);
+            let built =
+                bundle::build(project, &bundles[..first], Purpose::Development, Declarations::Rewrite);
             packages.join().map_err(|_| anyhow!("fetching the page's packages ended with a panic"))??;
             built
         })?;
@@ -81,7 +82,7 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
         }
         seen = now;
         // A source that does not compile is an everyday event: say so and keep serving the last good bundles.
-        if let Err(error) = bundle::build(project, &bundles, Purpose::Development) {
+        if let Err(error) = bundle::build(project, &bundles, Purpose::Development, Declarations::Rewrite) {
             eprintln!("\nerror: {error:#}\n");
         }
     }

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::bundle::{self, Bundle, Purpose};
+use crate::bundle::{self, Bundle, Declarations, Purpose};
 use crate::fingerprint::{files_under, sha256_of};
 use crate::node;
 use crate::project::Project;
@@ -35,11 +35,20 @@ fn budget_kb(bundle: Bundle) -> f64 {
     }
 }
 
-/// Builds the site into `dist/`.
-pub(crate) fn build(project: &Project) -> Result<()> {
+/// Where the site is built: `dist/` what is published, in the target folder what only the quick tests look at.
+pub(crate) fn folder(project: &Project, purpose: Purpose) -> PathBuf {
+    match purpose {
+        Purpose::Site => project.dist.clone(),
+        Purpose::Development => project.target.join("xtask/site"),
+    }
+}
+
+/// Builds the site.
+pub(crate) fn build(project: &Project, purpose: Purpose) -> Result<()> {
     node::prepare(project)?;
-    bundle::build(project, &Bundle::ALL, Purpose::Site)?;
-    node::script(project, "page: build (Vite)", "build", &[])?;
+    bundle::build(project, &Bundle::ALL, purpose, Declarations::Hold)?;
+    let folder = folder(project, purpose);
+    node::script(project, "page: build (Vite)", "build", &[("SITE", &folder.to_string_lossy())])?;
     Ok(())
 }
 

@@ -1,0 +1,431 @@
+/** The lesson in a class: presenting, the hand-out, assignments and the race. */
+import { readFile, writeFile } from 'node:fs/promises';
+import { expect, test } from '@playwright/test';
+import { axe } from '../../axe.js';
+import { live, openLesson, overflow, TORUS } from './helpers.js';
+import { settledSlide } from './rehearsal.js';
+
+test('keys and clickers go from stop to stop and blank the wall, and each stop has its own address', async ({
+  page,
+}) => {
+  const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
+  await live(page, 'rings');
+  await expect(page.locator('.chapter:visible')).toHaveCount(1);
+  await expect(page.getByRole('heading', { name: 'Rings' })).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring&mode=present');
+  await expect(page.locator('#predict-ring')).toBeVisible();
+  await expect(page.locator('#predict-order')).toBeHidden();
+  // In a box, letters and spaces are text.
+  await page.getByLabel('Particles in ring 12').fill('70');
+  await page.keyboard.press('b');
+  await expect(page.locator('.present-blank')).toBeHidden();
+  // The guess is revealed, then the figure goes on from the ring that was asked for, and back.
+  await page.keyboard.press('PageDown');
+  await expect(page.locator('#predict-ring')).toHaveAttribute('data-state', 'open');
+  const level = page.locator('#rings').getByRole('slider', { name: 'Level' });
+  await expect(level).toHaveValue('12');
+  await page.keyboard.press('PageDown');
+  await expect(level).toHaveValue('17');
+  await page.keyboard.press('ArrowLeft');
+  await expect(level).toHaveValue('12');
+  // On a blank wall a key only ends the blank.
+  await page.keyboard.press('b');
+  await expect(page.locator('.present-blank')).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect(page.locator('.present-blank')).toBeHidden();
+  await expect(level).toHaveValue('12');
+  expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
+  await page.keyboard.press('Escape');
+  await expect(page.locator('.chapter:visible')).toHaveCount(13);
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring');
+  clean();
+});
+
+test('the notes have a window of their own, with the next stop and a clock, which steers, too', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
+  await live(page, 'rings');
+  const [notes] = await Promise.all([page.waitForEvent('popup'), page.keyboard.press('n')]);
+  await expect(notes.getByRole('heading', { name: 'Rings' })).toBeVisible();
+  await expect(notes.getByText('Breadth first and depth first')).toBeVisible();
+  await expect(notes.getByText('Next: On a plane, ring 12 has 72')).toBeVisible();
+  await expect(notes.getByText(/0:0\d since/)).toBeVisible();
+  await expect(page.locator('#rings .notes')).toBeHidden();
+  await notes.keyboard.press('PageDown');
+  await expect(notes.getByRole('heading', { name: 'On a plane, ring 12 has 72' })).toBeVisible();
+  await expect(page.locator('#predict-ring')).toBeVisible();
+  const [closed] = await Promise.all([notes.waitForEvent('close'), page.keyboard.press('Escape')]);
+  expect(closed.isClosed()).toBe(true);
+  clean();
+});
+
+for (const [width, height, letters] of [
+  [1920, 1080, 24],
+  [1280, 800, 16],
+])
+  test(`a rehearsal at ${width} × ${height}: every slide is whole, with a large figure and large letters`, async ({
+    page,
+  }, info) => {
+    test.setTimeout(300_000);
+    const { clean } = await openLesson(page, { hash: '#why&mode=present', width, height });
+    await expect(page.locator('.present-bar')).toBeVisible();
+    const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
+    const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
+    for (const stop of stops) {
+      await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
+      let presses = 0;
+      let least = 1;
+      let seen = await settledSlide(page);
+      for (;;) {
+        const name = `${stop}, press ${presses}`;
+        expect(seen.beyond, name).toEqual([]);
+        expect(seen.letters, `${name}: ${seen.smallest}`).toBeGreaterThanOrEqual(letters);
+        expect(seen.words, name).toBeGreaterThan(2);
+        // A figure, or words that fill the slide.
+        if (seen.figure === null) expect(seen.words, name).toBeGreaterThan(20);
+        else expect(seen.figure, name).toBeGreaterThanOrEqual(0.6);
+        least = Math.min(least, seen.figure ?? 1);
+        if (stop === stops.at(-1) && presses === 15) break;
+        await page.keyboard.press('Space');
+        presses += 1;
+        // The address changes before the slide does.
+        if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
+        seen = await settledSlide(page);
+      }
+      const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
+      rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
+    }
+    await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
+    clean();
+  });
+
+test('an address of the last slide shows its first card with both pictures', async ({ page }) => {
+  await openLesson(page, { hash: '#differences&mode=present' });
+  const card = page.locator('.card:visible');
+  await expect(card).toHaveCount(1);
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+});
+
+test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
+  await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
+  await live(page, 'seams');
+  await page.getByRole('button', { name: 'Present' }).click();
+  await expect.poll(() => page.evaluate(() => location.hash)).toContain(`&surface=${TORUS}&mode=present`);
+  await page.getByRole('button', { name: 'Next stop' }).click();
+  expect(await overflow(page)).toBe(0);
+});
+
+test('the hand-out has blanks for the predictions, and every answer on its last page', async ({ page }) => {
+  await openLesson(page);
+  await page.evaluate(() => {
+    window.print = () => {
+      document.documentElement.dataset.printed = '';
+    };
+  });
+  // The keys for printing wait for the answers as the button does.
+  await page.keyboard.press('ControlOrMeta+p');
+  await expect(page.locator('html')).toHaveAttribute('data-printed', '', { timeout: 60_000 });
+  await expect(page.locator('.answers')).toBeHidden();
+  await page.emulateMedia({ media: 'print' });
+  await expect(page.locator('.answer-list > li')).toHaveCount(10);
+  await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
+  await expect(page.locator('.answer-list')).not.toContainText('has not been asked');
+  for (const still of await page.locator('.what-if-stills img').all())
+    await expect.poll(() => still.evaluate((one) => /** @type {HTMLImageElement} */ (one).naturalWidth)).toBe(608);
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2);
+  await expect(page.locator('.bar')).toBeHidden();
+  // The figures of a scorecard that lead to a place are buttons on the screen.
+  await expect(page.locator('button:not(.figure-place)').filter({ visible: true })).toHaveCount(0);
+  for (const name of ['why', 'rest']) await expect(page.locator(`[data-figure="${name}"] canvas`)).toBeVisible();
+  // What the questions withhold is printed with the answers: the bars and the ring around the hole.
+  await expect(page.locator('.answer-list .cost')).not.toContainText('?');
+  await expect(page.locator('.answer-list .chart .fate-new').first()).toBeVisible();
+  await expect(page.locator('.answer-list .picture[data-drawn]')).toHaveCount(2);
+  // A question stands beside its figure.
+  const [asked, drawn] = [page.locator('#predict-newton'), page.locator('#circle figure')];
+  const [left, right] = [await asked.boundingBox(), await drawn.boundingBox()];
+  expect(left && right && left.x + left.width <= right.x && Math.abs(left.y - right.y) < 20).toBe(true);
+  const sheets = await page.pdf({ format: 'A4', preferCSSPageSize: true });
+  expect(sheets.length).toBeGreaterThan(100_000);
+  expect(sheets.toString('latin1').match(/\/Type\s*\/Page\b/g)?.length).toBeLessThanOrEqual(12);
+});
+
+test('what the browser prints by itself has the answers of the figures that are live, and the page says what is missing', async ({
+  page,
+}) => {
+  await openLesson(page, { hash: '#rings' });
+  await live(page, 'rings');
+  const ring = page.locator('.answer-list > li', { hasText: 'On a plane, ring 12 has 72' });
+  // The answer is asked for when its figure has come to life, and written when it is printed.
+  await expect
+    .poll(async () => {
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      return ring.textContent();
+    })
+    .toContain('Ring 12 of this surface has');
+  const last = page.locator('.answer-list > li').last();
+  await expect(last).toContainText('Print from the page’s own button');
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await expect(page.locator('#notice')).toContainText('Not all answers were known');
+});
+
+test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
+  test.setTimeout(120_000);
+  const { clean } = await openLesson(page, { hash: `#what-if-fail&surface=${TORUS}` });
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await page.getByRole('button', { name: 'Assignment' }).click();
+  const dialog = page.getByRole('dialog');
+  await dialog.getByLabel('Title').fill('Seams');
+  await dialog.getByLabel('Questions, one on each line').fill('Which run has closer pairs?');
+  await expect(dialog.getByRole('checkbox', { name: 'Right' })).not.toBeChecked();
+  for (const name of ['Sliders and buttons of the figures', 'Answers of the questions', 'The race'])
+    await dialog.getByRole('checkbox', { name }).check();
+  const link = await dialog.getByLabel('Link of the assignment').inputValue();
+  await page.goto('about:blank');
+  await page.goto(link);
+  const task = page.getByRole('region', { name: 'Seams' });
+  await expect(task.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(task.getByLabel('What changes')).toBeDisabled();
+  await task.getByRole('slider', { name: 'Match tolerance' }).press('End');
+  const header = task.getByRole('columnheader', { name: 'Stack, 0.95 · 2r, ten steps, seed 0' });
+  await expect(header).toBeVisible({ timeout: 60_000 });
+  await task.getByLabel('Which run has closer pairs?').fill('The left one, "clearly".');
+  const saved = async (/** @type {string} */ name) => {
+    const [file] = await Promise.all([page.waitForEvent('download'), task.getByRole('button', { name }).click()]);
+    return readFile(await file.path(), 'utf8');
+  };
+  const work = JSON.parse(await saved('Save as JSON'));
+  expect(work).toMatchObject({
+    assignment: 'Seams',
+    surface: '(sqrt(x^2 + y^2) - R)^2 + z^2 = 0.09, R = 0.7',
+    answers: [{ question: 'Which run has closer pairs?', answer: 'The left one, "clearly".' }],
+  });
+  // What is locked elsewhere on the page is locked, and what is not stays open.
+  await expect(task.getByText(/^Locked: what is compared here; the picture on the left; the sliders/)).toBeVisible();
+  const rings = await live(page, 'rings');
+  await expect(rings.locator('.controls')).toHaveJSProperty('inert', true);
+  await expect(page.locator('#race-box > .controls')).toHaveJSProperty('inert', true);
+  await expect(page.locator('#bench > .controls')).toHaveJSProperty('inert', false);
+  const ring = page.locator('#predict-ring');
+  await ring.getByLabel('Particles in ring 12').fill('70');
+  await page.keyboard.press('Enter');
+  await expect(ring).not.toHaveAttribute('data-state', 'open');
+  const guesses = JSON.parse(await saved('Save as JSON')).predictions;
+  expect(guesses).toMatchObject([{ stop: 'predict-ring', guess: 70, answer: '' }]);
+  expect(work.runs.map((/** @type {any} */ { settings }) => settings.match_tolerance)).toEqual([0.7, 0.95, 0.7, 0.95]);
+  const labels = work.runs.map((/** @type {any} */ { label }) => label);
+  expect(labels).toEqual([
+    'queue~0.7~10~0',
+    'stack~0.95~10~0',
+    'Best so far: Queue, 0.7 · 2r, ten steps, seed 0',
+    'Worst so far: Stack, 0.95 · 2r, ten steps, seed 0',
+  ]);
+  expect(work.runs[0].new_per_level.slice(0, 2)).toEqual([1, 6]);
+  // The figures that decide: the larger tolerance leaves more of the surface open.
+  const open = work.runs.map((/** @type {any} */ { figures }) => figures['Surface outside all discs']);
+  expect(open[0]).toBeLessThan(open[1]);
+  const csv = await saved('Save as CSV');
+  expect(csv).toContain('answer,Which run has closer pairs?,,"The left one, ""clearly""."');
+  expect(csv).toContain('run 4,label,,"Worst so far: Stack, 0.95 · 2r, ten steps, seed 0"');
+  const particles = (await saved('Save the particles')).trim().split('\r\n');
+  expect(particles[0]).toBe('run,particle,level,parent,radius,x,y,z,normal_x,normal_y,normal_z');
+  const counts = work.runs.map((/** @type {any} */ run) => run.particles);
+  expect(particles).toHaveLength(1 + counts.reduce((/** @type {number} */ sum, /** @type {number} */ n) => sum + n, 0));
+  // The torus of the formula, in the coordinates of each row.
+  for (const row of particles.slice(1)) {
+    const [, , , , , x, y, z] = row
+      .replace(/^"[^"]*"/, '')
+      .split(',')
+      .map(Number);
+    expect(Math.hypot(Math.hypot(x, y) - 0.7, z)).toBeCloseTo(0.3, 3);
+  }
+  // A reload loses nothing, and the file bears the name.
+  await task.getByLabel('Your name').fill('Ada L.');
+  await page.reload();
+  await expect(task.getByLabel('Which run has closer pairs?')).toHaveValue('The left one, "clearly".');
+  const button = task.getByRole('button', { name: 'Save as JSON' });
+  const [file] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  expect(file.suggestedFilename()).toBe('Seams-Ada-L.json');
+  clean();
+});
+
+/** Works of a class as its learners save them, each with a guess of its own. @param {number} count */
+const classOf = (count) =>
+  Array.from({ length: count }, (_, k) => ({
+    name: `work-${k}.json`,
+    mimeType: 'application/json',
+    buffer: Buffer.from(
+      JSON.stringify({
+        assignment: 'Seams',
+        surface: 'a torus',
+        name: `Learner ${String(k).padStart(2, '0')}`,
+        group: k % 2 ? '7b' : '7a',
+        answers: [{ question: 'Why?', answer: `<b>Because</b> of ${k}` }],
+        predictions: [
+          { stop: 'predict-cost', question: 'What takes more?', guess: 'alike', answer: 'Placing took 13.' },
+        ],
+        runs: [{ label: '0.7', figures: { 'Largest hole, over the ideal': 1.23 } }],
+      }),
+    ),
+  }));
+
+test('a lecturer drops thirty files and sees the answers beside what the run says', async ({ page }) => {
+  const { clean } = await openLesson(page);
+  await page.getByRole('button', { name: 'Assignment' }).click();
+  await page.getByRole('link', { name: 'Collect answers' }).click();
+  const box = page.getByLabel(/Drop the JSON files/);
+  const damaged = { name: 'notes.json', mimeType: 'application/json', buffer: Buffer.from('{"answers": 3}') };
+  await box.setInputFiles([...classOf(30), damaged]);
+  const collected = page.locator('#collect');
+  await expect(collected.getByRole('status')).toHaveText(
+    '30 works collected. Not the work of a learner, and left out: notes.json.',
+  );
+  // A file that comes again counts once, and a file that is none takes nothing away.
+  await box.setInputFiles([...classOf(1), damaged]);
+  await expect(collected.getByRole('status')).toContainText('30 works collected.');
+  const table = collected.getByRole('region', { name: 'Answers to Seams, on a torus' });
+  await expect(table.locator('tbody tr')).toHaveCount(31);
+  await expect(table.locator('tbody tr').first()).toContainText('Placing took 13.');
+  const second = table.locator('tbody tr').nth(2);
+  await expect(second).toContainText('Learner 02');
+  await expect(second).toContainText('<b>Because</b> of 2');
+  await expect(second).toContainText('Both about the same');
+  const runs = collected.getByRole('region', { name: 'What their runs give' });
+  await expect(runs.getByRole('row', { name: '0.7' })).toContainText(/1\.23.*30/);
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    collected.getByRole('button', { name: 'Save all as one CSV' }).click(),
+  ]);
+  const rows = (await readFile(await file.path(), 'utf8')).trim().split('\r\n');
+  expect(rows[0]).toBe('work,part,name,number,value');
+  expect(rows).toContain('16,answer,Why?,,<b>Because</b> of 1');
+  expect((await axe(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+  for (const width of [1280, 390, 320]) {
+    await page.setViewportSize({ width, height: 760 });
+    expect(await overflow(page)).toBe(0);
+  }
+  clean();
+});
+
+test('the values of a comparison are part of the address', async ({ page }) => {
+  await openLesson(page, { hash: '#what-if-step&left=0.2&right=none' });
+  const bench = page.locator('#bench');
+  await expect(bench.getByLabel('Left', { exact: true })).toHaveValue('0.2', { timeout: 60_000 });
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('0.2');
+  await bench.getByLabel('Right', { exact: true }).selectOption('1');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#what-if-step&left=0.2&right=1');
+  await page.reload();
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue('1', { timeout: 60_000 });
+  // They do not follow to another stop.
+  await page.getByRole('link', { name: 'Rings', exact: true }).click();
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
+});
+
+test('the worst sampling is looked for by keys, and the best and the worst are kept', async ({ page }) => {
+  test.setTimeout(120_000);
+  const { clean } = await openLesson(page, { hash: '#what-if-fail' });
+  const bench = page.locator('#bench');
+  const kept = (/** @type {string} */ name) => bench.getByRole('button', { name });
+  const verdict = bench.locator('.verdict');
+  await expect(kept('Best so far')).toContainText('Queue, 0.7 · 2r, ten steps, seed 0', { timeout: 60_000 });
+  await expect(kept('Worst so far')).toContainText('Stack, 0.7');
+  await expect(verdict).toContainText(
+    /Worse\. 7\d\.\d % have six neighbours, and 89\.\d % in the sampling of the lesson/,
+  );
+  await expect(verdict.getByRole('listitem')).toHaveText(/^Stack\. .* Put back to queue, it is 89\.\d %\.$/);
+  await bench.getByRole('slider', { name: 'Match tolerance' }).press('Home');
+  await bench.getByLabel('Relaxation', { exact: true }).selectOption('0');
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  await expect(verdict.getByRole('listitem')).toHaveCount(3);
+  // A choice that does no harm is named as one.
+  await kept('Best so far').click();
+  await expect(bench.locator('figcaption')).toHaveText([/^Stack, 0\.4/, /^Queue, 0\.7/]);
+  await bench.getByLabel('Relaxation', { exact: true }).selectOption('100');
+  await expect(verdict).toContainText('Not worse.', { timeout: 60_000 });
+  await expect(verdict).toContainText('A hundred steps. It does no harm here.');
+  await kept('Worst so far').click();
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, a hundred/, /^Stack, 0\.4/]);
+  const values = 'left=queue~0.7~100~0&right=stack~0.4~0~0';
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe(`#what-if-fail&${values}`);
+  // They are there again later, and where the address says nothing both are shown.
+  await page.goto('about:blank');
+  await openLesson(page, { hash: '#what-if-fail' });
+  await expect(bench.locator('figcaption')).toHaveText([/^Queue, 0\.7 · 2r, a hundred/, /^Stack, 0\.4/], {
+    timeout: 60_000,
+  });
+  await expect(kept('Worst so far')).toContainText('Stack, 0.4 · 2r, no steps, seed 0', { timeout: 60_000 });
+  expect((await axe(page)).violations.map(({ id }) => id)).toEqual([]);
+  clean();
+});
+
+test('a clicker asks, shows the figures and goes through the values of a comparison', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#what-if-step&mode=present' });
+  const bench = page.locator('#bench');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeHidden();
+  await expect(bench.getByText('Which of the two is better')).toBeVisible();
+  await expect(bench.locator('table.compare')).toHaveCount(1, { timeout: 60_000 });
+  await page.keyboard.press('PageDown');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect(bench.getByRole('columnheader', { name: '1.0 r²' })).toBeVisible({ timeout: 60_000 });
+  await page.keyboard.press('PageUp');
+  await expect(bench.getByRole('columnheader', { name: '0.2 r²' })).toBeVisible({ timeout: 60_000 });
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
+  await expect.poll(() => page.evaluate(() => location.hash)).toContain('#what-if-fail&');
+  await expect(page.locator('.challenge')).toBeVisible();
+  await expect(bench.locator('figcaption').last()).toHaveText(/^Stack/, { timeout: 60_000 });
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('PageDown');
+  await expect(bench.locator('figcaption').last()).toHaveText(/0\.4 · 2r/, { timeout: 60_000 });
+  clean();
+});
+
+test('a damaged assignment is named, and the lesson stays', async ({ page }) => {
+  await openLesson(page, { hash: '#task=AAAA' });
+  await expect(page.locator('#notice')).toContainText('no assignment that can be read');
+  await live(page, 'why');
+});
+
+for (const [kind, other] of [
+  ['uniform', 'Witkin and Heckbert'],
+  ['adaptive', 'Forces'],
+])
+  test(`the front races against ${other}, each by its own rules`, async ({ page }) => {
+    const { clean } = await openLesson(page, { hash: '#race' });
+    const race = page.locator('#race-box');
+    const start = race.getByRole('button', { name: 'Start' });
+    // One that is given up while it is prepared does not come back.
+    await race.getByLabel('Race').selectOption(kind === 'uniform' ? 'adaptive' : 'uniform');
+    await start.click();
+    await race.getByLabel('Race').selectOption(kind);
+    await start.click();
+    await expect(race.getByRole('columnheader', { name: other })).toBeVisible({ timeout: 55_000 });
+    // Of the two races no worker is left; the pictures have one.
+    await expect.poll(() => page.workers().length).toBeLessThan(2);
+    const rounds = await race.locator('.lane dt', { hasText: 'Rounds' }).locator('+ dd').allTextContents();
+    expect(rounds[0]).toBe('10');
+    expect(Number(rounds[1].replace(/\D/g, ''))).toBeGreaterThan(50);
+    await expect(race.locator('.picture[data-drawn]')).toHaveCount(2);
+    await expect(race.getByRole('img', { name: /times as long as the front/ })).toBeVisible();
+    // Both at the same cost: the front is done where the other has hardly begun, and neither has spent more.
+    const counts = async (/** @type {string} */ name) => {
+      const cells = await race.locator('.lane dt', { hasText: name }).locator('+ dd').allTextContents();
+      return cells.map((cell) => Number(cell.replace(/\D/g, '')));
+    };
+    const ends = await counts('Evaluations');
+    await race.getByRole('slider', { name: 'Spent' }).fill('100');
+    const half = await counts('Evaluations');
+    expect(half[0]).toBe(Math.min(ends[0], half[0]));
+    expect(half[1]).toBeLessThanOrEqual(Math.max(...ends) / 2);
+    expect(half[1]).toBeGreaterThan(Math.max(...ends) / 4);
+    expect(Number(await race.locator('.picture').last().getAttribute('data-drawn'))).toBe(
+      (await counts('Particles'))[1],
+    );
+    await race.getByRole('slider', { name: 'Spent' }).fill('0');
+    expect((await counts('Particles'))[1]).toBeLessThan(100);
+    await race.getByLabel('Both at the same').selectOption('seconds');
+    await race.getByRole('button', { name: 'Replay' }).click();
+    await expect.poll(() => counts('Evaluations')).toEqual(ends);
+    await expect(race.getByRole('columnheader', { name: other })).toBeVisible();
+    await expect(page.getByRole('cell', { name: '373' })).toBeVisible();
+    clean();
+  });

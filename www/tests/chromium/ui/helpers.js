@@ -1,0 +1,119 @@
+/** What the interface's browser tests share. */
+import { expect } from '@playwright/test';
+import { axe } from '../../axe.js';
+
+/** @import { Page } from '@playwright/test' */
+
+/** The panels are tested without a graphics device: software rendering of large windows is slow. */
+const ADDRESS = './?backend=canvas2d';
+
+/**
+ * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.
+ * @param {Page} page
+ * @param {{ width?: number, height?: number, hash?: string }} [options]
+ */
+export async function open(page, { width = 1280, height = 800, hash = '' } = {}) {
+  /** @type {string[]} */
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error') faults.push(message.text());
+  });
+  await page.addInitScript(() => {
+    const seen = /** @type {string[]} */ ([]);
+    /** @type {any} */ (window).violations = seen;
+    document.addEventListener('securitypolicyviolation', (event) =>
+      seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`),
+    );
+  });
+  await page.setViewportSize({ width, height });
+  await page.goto(`${ADDRESS}${hash}`);
+  await settled(page);
+  return {
+    faults,
+    clean: async () => {
+      expect(faults).toEqual([]);
+      expect(await page.evaluate(() => /** @type {any} */ (window).violations)).toEqual([]);
+    },
+  };
+}
+
+/**
+ * Brings a page back to the state in which it opens, or to that of a link, for the next step of a test.
+ * @param {Page} page
+ * @param {{ width?: number, height?: number, hash?: string }} [options]
+ */
+export async function afresh(page, { width = 1280, height = 800, hash = '' } = {}) {
+  await page.setViewportSize({ width, height });
+  await page.mouse.move(0, 0);
+  // A layer that is open, or its explanation.
+  for (let k = 0; k < 2; k += 1) await page.keyboard.press('Escape');
+  await page.evaluate(async (link) => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.dismissNotice();
+    engine.dismissHover();
+    const { run } = engine.progress.value;
+    await engine.openLink(link);
+    while (engine.progress.value.run === run) await new Promise((go) => setTimeout(go, 10));
+  }, hash);
+  await settled(page);
+}
+
+/** Waits until nothing runs and the figures are there. @param {Page} page */
+export async function settled(page) {
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await page.waitForFunction(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    return (
+      !engine.typing.value &&
+      !engine.busy.value &&
+      engine.loading.value === null &&
+      engine.reveal.value === null &&
+      engine.progress.value.phase === 'done' &&
+      (engine.report.value !== null || engine.empty.value)
+    );
+  });
+}
+
+/**
+ * Waits until nothing fades or glides any more and the camera has told where it is.
+ * @param {Page} page
+ */
+export async function atRest(page) {
+  await page.waitForFunction(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    return !engine.typing.value && !engine.busy.value && engine.reveal.value === null;
+  });
+  await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
+}
+
+/** What axe has to say; nothing is scanned half-way through a fade. @param {Page} page */
+export async function scan(page) {
+  await atRest(page);
+  return axe(page);
+}
+
+/** Opens the part of the report that is folded at first. @param {Page} page */
+export const openFigures = (page) => page.locator('.all-figures:not([open]) > summary').click();
+
+/** @param {Page} page @returns {Promise<any>} */
+export const report = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report());
+
+/** @param {Page} page @returns {Promise<any>} */
+export const state = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.state);
+
+/**
+ * Types a formula into the editor in place of the one there.
+ * @param {Page} page
+ * @param {string} text
+ */
+export async function typeFormula(page, text) {
+  const editor = page.getByRole('textbox', { name: 'Formula' });
+  await editor.click();
+  await expect(page.locator('.code-host')).toBeVisible();
+  await page.keyboard.press('ControlOrMeta+a');
+  await page.keyboard.press('Delete');
+  if (text) await page.keyboard.insertText(text);
+  await expect.poll(async () => (await state(page)).formula).toBe(text);
+}

@@ -1,0 +1,72 @@
+/** What the algorithm decides at the slots of a particle, and what is said against another decision. */
+import { expect, test } from 'vitest';
+import { ALGORITHM } from '../../../src/figures/words.js';
+import { decisionsOf, lineAt, objection } from '../../../src/learn/decisions.js';
+
+const R = 0.5;
+/** @param {number} slot @param {number | null} against @param {number | null} distance */
+const compared = (slot, against, distance) => ({
+  type: 'compared',
+  parent: 1,
+  slot,
+  position: [2 * R, 0, 0],
+  against,
+  distance,
+  limit: 1.4 * R,
+  corresponds: distance !== null && distance < 1.4 * R,
+});
+/** @param {number} slot @param {string} fate @param {number | null} particle */
+const fate = (slot, fate, particle) => ({ type: 'fate', parent: 1, slot, fate, particle });
+
+/** @type {any[]} */
+const EVENTS = [
+  { type: 'gathered', particle: 1, reach: 2, neighbours: [] },
+  fate(0, 'parent', 0),
+  compared(1, 2, 0.1 * R),
+  fate(1, 'matched', 2),
+  compared(2, 3, 1.5 * R),
+  { type: 'fronts_meet', parent: 1, slot: 2, particle: 3, is_other: false },
+  { type: 'added', particle: 4, data: {} },
+  fate(2, 'added', 4),
+  fate(3, 'outside', null),
+];
+/** @type {any} */
+const OPENED = {
+  subject: { particle: 1, level: 1, parent: 0, radius: R },
+  // Of 0, 1, 2 and 3: from the child 4 r, 2 r, 0.1 r and 1.5 r away.
+  positions: Float32Array.from([3, 0, 0, 0, 0, 0, 1.05, 0, 0, 1.75, 0, 0]),
+};
+
+test('the run decides parents, matched and new ones, each asked before it is told', () => {
+  const decisions = decisionsOf(EVENTS);
+  expect(decisions.map(({ slot, at, end, verdict, met }) => [slot, at, end, verdict.fate, met !== null])).toEqual([
+    [0, 0, 1, 'parent', false],
+    [1, 2, 3, 'matched', false],
+    [2, 4, 7, 'added', true],
+  ]);
+});
+
+test('the line that asks is that of the parent at slot 0, of a seed, too, and else that of comparing', () => {
+  const asked = decisionsOf(EVENTS).map((decision) => ALGORITHM[lineAt(decision)].of[0]);
+  expect(asked).toEqual(['fate:parent', 'compared', 'compared']);
+  const ofSeed = decisionsOf([/** @type {any} */ (compared(0, null, null)), /** @type {any} */ (fate(0, 'added', 1))]);
+  expect(ALGORITHM[lineAt(ofSeed[0])].of).toEqual(['fate:parent']);
+});
+
+test('what the run decided meets no objection, and all else does, with its reason', () => {
+  const decisions = decisionsOf(EVENTS);
+  const [parent, matched, added] = decisions;
+  for (const decision of decisions) expect(objection(OPENED, decision, decision.verdict)).toBe('');
+  expect(objection(OPENED, parent, { fate: 'added', particle: null })).toContain('Particle 0 is the parent');
+  expect(objection(OPENED, parent, { fate: 'matched', particle: 0 })).toContain('Particle 0 is the parent');
+  expect(objection(OPENED, matched, { fate: 'parent', particle: 0 })).toContain('The parent holds slot 0.');
+  expect(objection(OPENED, matched, { fate: 'added', particle: null })).toMatch(
+    /Particle 2 lies 0\.10\sr .*within 1\.40\sr/,
+  );
+  expect(objection(OPENED, matched, { fate: 'matched', particle: 3 })).toMatch(
+    /0\.10\sr .*1\.50\sr .*The nearest one counts/,
+  );
+  expect(objection(OPENED, added, { fate: 'matched', particle: 3 })).toMatch(
+    /Particle 3 lies 1\.50\sr .*only within 1\.40\sr/,
+  );
+});

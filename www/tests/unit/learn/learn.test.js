@@ -1,0 +1,242 @@
+/** The parts of the lesson that need no browser. */
+import { expect, test } from 'vitest';
+import { nearestStop, readAddress, writeAddress } from '../../../src/learn/address.js';
+import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, shotAt } from '../../../src/learn/measure.js';
+import { bestOf, ROWS, scoreOf } from '../../../src/learn/score.js';
+import { subjectOf } from '../../../src/learn/surface.js';
+import { packTask, readWork, tableOf, unpackTask } from '../../../src/learn/task.js';
+import { FAIL, SEED, seedAt, turned, USUAL } from '../../../src/learn/whatifs.js';
+import { packCarried, packed, unpackCarried, unpacked } from '../../../src/ui/surface-link.js';
+
+/** @import { Control } from '../../../src/learn/types.js' */
+
+const SURFACE = {
+  formula: 'x^2 + y^2 = a − é',
+  parameters: [{ name: 'a', label: 'a', value: -2.5, min: -2.5, max: 1, step: 0.01 }],
+  bounds: {
+    min: /** @type {[number, number, number]} */ ([-1, -1, -1]),
+    max: /** @type {[number, number, number]} */ ([1, 1, 2]),
+  },
+};
+
+/**
+ * @param {number[][]} places
+ * @param {Partial<Record<'levels' | 'parents' | 'fronts', number[]>>} [more]
+ * @returns {any}
+ */
+const particles = (places, { levels = [], parents = [], fronts = [] } = {}) => ({
+  positions: Float32Array.from(places.flat()),
+  normals: Float32Array.from(places.flat()),
+  radii: new Float32Array(places.length).fill(0.5),
+  levels: Uint32Array.from(levels),
+  parents: Uint32Array.from(parents),
+  fronts: Uint32Array.from(fronts),
+});
+
+test('an address is read as it was written, and a bare anchor is one', () => {
+  const address = { stop: 'what-if-order', parts: { surface: 'abc_-', mode: 'present' } };
+  expect(readAddress(writeAddress(address))).toEqual(address);
+  expect(readAddress('#rings')).toEqual({ stop: 'rings', parts: {} });
+  expect(readAddress('#surface=abc')).toEqual({ stop: '', parts: { surface: 'abc' } });
+  expect(readAddress('#rings&unknown=1&%E0%A4%A=2').parts).toEqual({});
+  expect(writeAddress({ stop: '', parts: {} })).toBe('');
+});
+
+test('an unknown stop leads to the one with the nearest name', () => {
+  const stops = ['why', 'rings', 'rest', 'what-if-order'];
+  expect(nearestStop('rings', stops)).toEqual({ stop: 'rings', isExact: true });
+  expect(nearestStop('ring', stops)).toEqual({ stop: 'rings', isExact: false });
+  expect(nearestStop('what-if-orders', stops)).toEqual({ stop: 'what-if-order', isExact: false });
+  expect(nearestStop('', stops)).toBe(null);
+  expect(nearestStop('x'.repeat(10_000), stops)?.isExact).toBe(false);
+});
+
+test('a surface comes out of a link as it went in, with the way back', () => {
+  const carried = { surface: SURFACE, from: '#v1.j.eyJ9' };
+  const read = unpackCarried(packCarried(carried));
+  expect(read).toEqual(carried);
+  expect(unpackCarried(packCarried({ surface: null, from: '' }))).toEqual({ surface: null, from: '' });
+});
+
+test('a damaged surface is refused, and a way back that is none is dropped', () => {
+  for (const bad of [
+    '',
+    '!',
+    'AAAA',
+    packed(3),
+    packed({ formula: 1 }),
+    packed({ ...SURFACE, bounds: { min: [0, 0, 0], max: [1, 0, 1] } }),
+  ])
+    expect(unpackCarried(bad), bad).toBe(null);
+  expect(unpackCarried(packed({ from: 'javascript:alert(1)' }))).toEqual({ surface: null, from: '' });
+  expect(unpacked('A'.repeat(100_000))).toBe(null);
+});
+
+test('the lesson says which surface stands in, and why', () => {
+  expect(subjectOf(undefined)).toMatchObject({ isOwn: false, notice: '' });
+  expect(subjectOf('%%%').notice).toContain('no surface that can be read');
+  expect(subjectOf(packCarried({ surface: null, from: '' })).notice).toContain('points');
+  expect(subjectOf(packCarried({ surface: SURFACE, from: '' }))).toMatchObject({ isOwn: true, surface: SURFACE });
+});
+
+test('the nearest distance is that of a pair, over the sum of the radii', () => {
+  const found = nearestDistances(
+    particles([
+      [0, 0, 0],
+      [0.8, 0, 0],
+      [1.9, 0, 0],
+      [40, 0, 0],
+    ]),
+  );
+  expect([...found.slice(0, 2)].map((v) => Number(v.toFixed(3)))).toEqual([0.8, 0.8]);
+  expect(found[2]).toBeCloseTo(1.1);
+  expect(found[3]).toBe(Infinity);
+});
+
+test('rings are counted on the first front alone', () => {
+  const places = Array.from({ length: 5 }, () => [0, 0, 0]);
+  expect(ringsOf(particles(places, { levels: [0, 1, 1, 0, 3], fronts: [0, 0, 0, 1, 0] }))).toEqual([1, 2, 0, 1]);
+});
+
+test('the sharpest bend is where the normals of parent and child differ most', () => {
+  const none = 0xffffffff;
+  const found = sharpestBend(
+    particles(
+      [
+        [0, 0, 1],
+        [0, 0.6, 0.8],
+        [0, 1, 0],
+      ],
+      { parents: [none, 0, 1] },
+    ),
+  );
+  expect(found).toEqual({ child: 2, parent: 1 });
+  expect(sharpestBend(particles([[0, 0, 1]], { parents: [none] }))).toBe(null);
+});
+
+test('a fine sampling counts areas', () => {
+  expect(asFineEverywhere([1, 2])).toBe(5);
+});
+
+test('an assignment comes out of a link as it went in, and what is damaged of it is set right', () => {
+  const task = {
+    title: 'Seams',
+    setup: { what: 'fail', left: 'queue~0.7~10~0', right: 'stack~0.95~0~2' },
+    locks: /** @type {Control[]} */ (['what', 'right', 'figures', 'race']),
+    questions: ['Why?', 'Where?'],
+  };
+  expect(unpackTask(packTask(task))).toEqual(task);
+  const odd = unpackTask(
+    packed({ setup: { what: 'step', left: 9, right: '1' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
+  );
+  const pressed = { what: FAIL, left: USUAL, right: turned(USUAL, SEED, seedAt([0.123456, -1, 1e-7])) };
+  expect(pressed.right).toBe('queue~0.7~10~at 0.1235 -1 1e-7');
+  expect(unpackTask(packed({ setup: pressed, questions: [] }))?.setup).toEqual(pressed);
+  const stack = 'stack~0.7~10~0';
+  for (const right of ['at 1 x 2', 'heap~0.7~10~0', 'stack~0.1~10~0', 'stack~0.7~10', 'stack~0.7~10~at 1 x 2'])
+    expect(unpackTask(packed({ setup: { ...pressed, right }, questions: [] }))?.setup.right, right).toBe(stack);
+  expect(odd).toMatchObject({ title: '', setup: { what: 'step', left: '0.6', right: '1' }, locks: [] });
+  expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
+  for (const bad of [
+    '',
+    'AAAA',
+    packed(null),
+    packed({ questions: [] }),
+    packed({ setup: { what: 'none' }, questions: [] }),
+  ])
+    expect(unpackTask(bad)).toBe(null);
+});
+
+test('a table of the work quotes what needs it and starts no formula', () => {
+  const table = tableOf({
+    assignment: '=SUM(A1)',
+    surface: 'x = 1',
+    name: 'Ada',
+    group: '',
+    answers: [{ question: 'Why, and "how"?', answer: '-3' }],
+    predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
+    runs: [{ label: 'queue', figures: { six: 0.9 }, new_per_level: [1, 6], fates_per_level: [{ added: 6 }] }],
+  });
+  expect(table.split('\r\n')).toEqual([
+    'part,name,number,value',
+    "assignment,title,,'=SUM(A1)",
+    'assignment,surface,,x = 1',
+    'assignment,name,,Ada',
+    'assignment,class,,',
+    'answer,"Why, and ""how""?",,-3',
+    'prediction,Q,,66',
+    'run,Q,,A',
+    'run 1,label,,queue',
+    'run 1,figures: six,,0.9',
+    'run 1,new_per_level,0,1',
+    'run 1,new_per_level,1,6',
+    'run 1,fates_per_level: added,0,6',
+    '',
+  ]);
+});
+
+test('a work is read from the file that it was saved as, and nothing else is one', () => {
+  const work = {
+    assignment: 'Seams',
+    surface: 'x = 1',
+    name: 'Ada',
+    group: '7b',
+    answers: [{ question: 'Why?', answer: 'So.' }],
+    predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
+    runs: [{ label: 'queue', figures: null }],
+  };
+  expect(readWork(JSON.stringify(work))).toEqual(work);
+  // A file from before there were names.
+  const { name: _name, group: _group, ...old } = work;
+  expect(readWork(JSON.stringify(old))).toMatchObject({ name: '', group: '' });
+  for (const bad of [
+    '',
+    '{',
+    'null',
+    '[]',
+    '3',
+    '{}',
+    JSON.stringify({ ...work, answers: 'no' }),
+    JSON.stringify({ ...work, runs: [null] }),
+  ])
+    expect(readWork(bad), bad).toBe(null);
+});
+
+test('at a cost a lane stands where it last had spent no more', () => {
+  const shots = /** @type {any[]} */ ([{ lane: 10 }, { lane: 20 }, { lane: 20 }, { lane: 40 }]);
+  const at = (/** @type {number} */ cost) => shots.indexOf(shotAt(shots, (lane) => Number(lane), cost));
+  expect([0, 10, 19, 20, 39, 40, 1e9].map(at)).toEqual([0, 0, 0, 2, 2, 3, 3]);
+});
+
+test('of two figures the better one is marked, unless they are written alike', () => {
+  const row = (/** @type {string} */ key) => ROWS.filter((known) => known.key === key)[0];
+  expect(bestOf([0.894, 0.739], row('six'))).toBe(0);
+  expect(bestOf([1.23, 1.17], row('hole'))).toBe(1);
+  expect(bestOf([1.08, 0.97], row('count'))).toBe(1);
+  expect(bestOf([0.7141, 0.7139], row('pair'))).toBe(-1);
+  expect(bestOf([null, 13], row('evaluations'))).toBe(-1);
+});
+
+test('a score is of the report’s own figures, of particles of many sizes of those against each size', async () => {
+  const quality = { six: 0.9, cover: 1.2, cover_local: 1.3, uncovered: 0.1, rho: 0.8, overlap_min: 0.7, area: 4 };
+  const places = {
+    holes: [{ position: [0.9, 0, 0], radius: 0.4, ratio: 1.2 }],
+    pairs: [{ particles: [0, 2], ratio: 0.8 }],
+  };
+  const lab = /** @type {any} */ ({ measure: async () => ({ quality, places }) });
+  const some = particles([
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+  ]);
+  const even = await scoreOf(lab, some, { evaluations: 30, isAdaptive: false });
+  expect(even).toMatchObject({ six: 0.9, hole: 1.2, uncovered: 0.1, pair: 0.8, evaluations: 10 });
+  // Three hexagons around discs of radius 0.5 on an area of 4.
+  expect(even.count).toBeCloseTo((3 * 2 * Math.sqrt(3) * 0.25) / 4);
+  expect(even.places.hole).toMatchObject({ places: [[0.9, 0, 0]], radius: 0.4, normal: [1, 0, 0] });
+  expect(even.places.pair?.places).toEqual([
+    [0, 0, 0],
+    [0, 1, 0],
+  ]);
+  expect(await scoreOf(lab, some, { evaluations: 30, isAdaptive: true })).toMatchObject({ hole: 1.3, pair: 0.7 });
+});

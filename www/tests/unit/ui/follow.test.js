@@ -1,0 +1,406 @@
+import { beforeAll, describe, expect, test } from 'vitest';
+import { nearest } from '../../../src/engine/vector.js';
+import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from '../../../src/figures/geometry.js';
+import { isAdaptive, momentAt } from '../../../src/figures/moment.js';
+import { numbersOfRest, pushersOf, restOf, tellRest } from '../../../src/figures/rest.js';
+import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../../src/figures/words.js';
+import { placedBefore, standIn } from '../../../src/ui/follow/find.js';
+import { circleAround } from '../../../src/ui/follow/mark.js';
+import { alikeIn } from '../../../src/ui/follow/run.js';
+import { heightsOf, stretchesOf } from '../../../src/ui/follow/tracks.js';
+import { setLocale } from '../../../src/ui/format.js';
+
+/**
+ * @import { LessonEvent } from '../../../src/engine/types.js'
+ * @import { Rest } from '../../../src/figures/types.js'
+ */
+
+beforeAll(() => setLocale('en'));
+
+/** The events of a particle with two children: one is added, one matches. @type {LessonEvent[]} */
+const events = [
+  { type: 'taken', particle: 47 },
+  { type: 'frame', particle: 47, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0] },
+  { type: 'slot', parent: 47, slot: 1, direction: [0.5, 0.866, 0], theta_rad: 0, place: [0.1, 0.1732, 0] },
+  {
+    type: 'iterate',
+    parent: 47,
+    slot: 1,
+    step: 0,
+    theta_rad: 0,
+    position: [0.1, 0.1732, 0],
+    value: 0.002,
+    slope: 4,
+  },
+  {
+    type: 'iterate',
+    parent: 47,
+    slot: 1,
+    step: 1,
+    theta_rad: -0.0125,
+    position: [0.1, 0.1732, -0.0025],
+    value: 1e-7,
+    slope: 4,
+  },
+  { type: 'landed', parent: 47, slot: 1, position: [0.1, 0.1732, -0.0025], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'slot', parent: 47, slot: 2, direction: [-0.5, 0.866, 0], theta_rad: 0, place: [-0.1, 0.1732, 0] },
+  { type: 'landed', parent: 47, slot: 2, position: [-0.1, 0.1732, 0], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'gathered', particle: 47, reach: 0.4, neighbours: [{ particle: 31, distance: 0.21 }] },
+  { type: 'fate', parent: 47, slot: 0, fate: 'parent', particle: 20 },
+  {
+    type: 'compared',
+    parent: 47,
+    slot: 1,
+    position: [0.1, 0.1732, -0.0025],
+    against: 31,
+    distance: 0.2,
+    limit: 0.14,
+    corresponds: false,
+  },
+  {
+    type: 'added',
+    particle: 74,
+    data: { position: [0.1, 0.1732, -0.0025], normal: [0, 0, 1], radius: 0.1, parent: 47, level: 4, front: 0 },
+  },
+  { type: 'fate', parent: 47, slot: 1, fate: 'added', particle: 74 },
+  {
+    type: 'compared',
+    parent: 47,
+    slot: 2,
+    position: [-0.1, 0.1732, 0],
+    against: 31,
+    distance: 0.012,
+    limit: 0.14,
+    corresponds: true,
+  },
+  { type: 'fate', parent: 47, slot: 2, fate: 'matched', particle: 31 },
+  { type: 'done', particle: 47, evaluations: 1234 },
+];
+const subject = { particle: 47, level: 3, levels: 21, parent: 20, radius: 0.1 };
+const last = events.length - 1;
+/** @param {number} at */
+const told = (at) => tell(momentAt(events, at), subject);
+
+describe('the moment of an event', () => {
+  test('holds what has happened up to it, and nothing later', () => {
+    const before = momentAt(events, 3);
+    expect(before.frame?.u).toEqual([1, 0, 0]);
+    expect(before.gathered).toBe(null);
+    expect(before.children[1].iterates).toHaveLength(1);
+    expect(before.children[1].landed).toBe(null);
+    expect(before.evaluations).toBe(1);
+    const end = momentAt(events, last);
+    expect(end.children.map(({ fate }) => fate)).toEqual(['parent', 'added', 'matched', 'open', 'open', 'open']);
+    expect(end.children.map(({ particle }) => particle)).toEqual([20, 74, 31, null, null, null]);
+    expect(end.evaluations).toBe(2);
+  });
+
+  test('is the same on the way back', () => {
+    const forwards = events.map((_, at) => JSON.stringify(momentAt(events, at)));
+    const backwards = events.map((_, at) => JSON.stringify(momentAt(events, last - at))).reverse();
+    expect(backwards).toEqual(forwards);
+  });
+
+  test('speaks of the child that an added particle is', () => {
+    const added = momentAt(events, 11);
+    expect(added.event.type).toBe('added');
+    expect(added.slot).toBe(1);
+    expect(added.isNow).toBe(true);
+    expect(added.children[1].particle).toBe(74);
+    expect(momentAt(events, 8).isNow).toBe(false);
+  });
+});
+
+describe('the words', () => {
+  test('name level, particle, child and what happens', () => {
+    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3 of 21, particle 47, slot 2: matched particle 31');
+    expect(valueText(momentAt(events, 0), subject)).toBe('Level 3 of 21, particle 47: taken from the queue');
+    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3 of 21, particle 47, slot 1: θ₁ = −0.72°');
+    expect(valueText(momentAt(events, 9), subject)).toBe('Level 3 of 21, particle 47: parent particle 20');
+    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3 of 21, particle 47, slot 1: added as particle 74');
+  });
+
+  test('tell each event with its lengths in radii', () => {
+    expect(told(1)).toContain('Slot 0 points to its parent, particle 20');
+    expect(told(5)).toBe('The child of slot 1 lands on the surface, 2.000\u00a0r from its parent.');
+    expect(told(4)).toContain('at θ₁ = −0.72°: f = ');
+    expect(told(8)).toBe('1 particle within 4\u00a0r: the children are compared with it.');
+    expect(told(10)).toContain('2.000\u00a0r from particle 31, its nearest. That is more than 1.40\u00a0r');
+    expect(told(13)).toContain('0.120\u00a0r from particle 31, its nearest. That is within 1.40\u00a0r');
+    expect(told(last)).toBe('The particle is done: 1 of its children added, 1 matched, after 2 evaluations of f.');
+  });
+
+  test('leave no event without a sentence and a line of the algorithm', () => {
+    for (const [at, event] of events.entries()) {
+      expect(told(at), event.type).toMatch(/^[A-Z\d].*\.$/);
+      expect(lineOf(event), event.type).toBeGreaterThanOrEqual(0);
+    }
+    for (const fate of /** @type {const} */ (['not_converged', 'outside', 'undefined', 'capped'])) {
+      const left = /** @type {LessonEvent} */ ({ type: 'fate', parent: 47, slot: 3, fate, particle: null });
+      expect(tell(momentAt([...events, left], events.length), subject)).toMatch(/left out/);
+      expect(ALGORITHM[lineOf(left)].text).toContain('leave it out');
+    }
+  });
+
+  test('become a text file with one line per event', () => {
+    const moments = events.map((_, at) => momentAt(events, at));
+    const lines = transcript(moments, subject, ['Particle 47']).trimEnd().split('\n');
+    expect(lines[0]).toBe('Particle 47');
+    expect(lines.slice(2)).toHaveLength(events.length);
+    expect(lines[2]).toBe('  1  Particle 47 is taken from the queue. Its children are to be placed.');
+    expect(lines.join('')).not.toMatch(/[\u00a0\u202f]/);
+  });
+});
+
+describe('the geometry', () => {
+  test('projects a place into the plane, in radii', () => {
+    const plane = { centre: [1, 1, 1], right: [1, 0, 0], up: [0, 1, 0], radius: 0.5 };
+    expect(inPlane(plane, [2, 0.5, 9])).toEqual([2, -1]);
+  });
+
+  test('puts the slots 60° apart at 2r', () => {
+    for (let slot = 0; slot < 6; slot += 1) {
+      const [[x, y], [u, v]] = [slotPlace(slot), slotPlace(slot + 1)];
+      expect(Math.hypot(x, y)).toBeCloseTo(2);
+      expect(Math.hypot(x - u, y - v)).toBeCloseTo(2);
+    }
+  });
+
+  test('frames what is close together, and nothing that coincides', () => {
+    const found = lensOf([
+      [2, 0],
+      [2, -0.01],
+    ]);
+    expect(found?.centre[1]).toBeCloseTo(-0.005);
+    expect(found?.half).toBeGreaterThan(0.005);
+    expect(lensOf([[2, 0]])).toBe(null);
+    expect(
+      lensOf([
+        [2, 0],
+        [Number.NaN, 0],
+      ]),
+    ).toBe(null);
+  });
+});
+
+describe('the particle that stands for another', () => {
+  const positions = Float32Array.of(0, 0, 0, 1, 0, 0, 2, 0, 0);
+
+  test('is the one with its number, if it is at the place', () => {
+    expect(standIn(positions, { index: 1, place: [1.1, 0, 0] }, 0.5)?.index).toBe(1);
+  });
+
+  test('is the nearest otherwise', () => {
+    expect(standIn(positions, { index: 0, place: [1.9, 0, 0] }, 0.5)?.index).toBe(2);
+    expect(standIn(positions, { index: 99, place: [0.1, 0, 0] }, 0.5)).toMatchObject({ index: 0 });
+    expect(standIn(new Float32Array(0), { index: 0, place: [0, 0, 0] }, 0.5)).toBe(null);
+  });
+
+  test('lies at the distance that is told', () => {
+    expect(nearest(positions, 3, [2, 3, 4])).toEqual({ index: 2, distance: 5 });
+    expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
+  });
+});
+
+/**
+ * An adaptive particle with two children: one is pushed into place and added, for the other there is no room.
+ * @type {LessonEvent[]}
+ */
+const sized = [
+  { type: 'taken', particle: 5 },
+  { type: 'gathered', particle: 5, reach: 0.37, neighbours: [{ particle: 2, distance: 0.2 }] },
+  { type: 'frame', particle: 5, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0] },
+  { type: 'fate', parent: 5, slot: 0, fate: 'parent', particle: 2 },
+  { type: 'arc', parent: 5, before: 2, behind: 2, angles_rad: [0, 0] },
+  { type: 'start', parent: 5, slot: 1, tangent: [0.2, 0.1, 0], position: [0.09, 0.045, 0], radius: 0.12 },
+  { type: 'push', parent: 5, slot: 1, position: [0.18, 0.09, 0], radius: 0.1 },
+  { type: 'push_on_circle', parent: 5, slot: 1, position: [0.1, 0.173, 0], radius: 0.1, overlap: -0.01 },
+  { type: 'room', parent: 5, slot: 1, phi_rad: Math.PI / 3, tau_rad: Math.PI, fits: true },
+  {
+    type: 'iterate',
+    parent: 5,
+    slot: 1,
+    step: 0,
+    theta_rad: 0,
+    position: [0.1, 0.173, 0],
+    value: 1e-7,
+    slope: 2,
+  },
+  { type: 'landed', parent: 5, slot: 1, position: [0.1, 0.173, 0], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'fate', parent: 5, slot: 1, fate: 'added', particle: 9 },
+  { type: 'start', parent: 5, slot: 2, tangent: null, position: [-0.1, 0, 0], radius: 0.1 },
+  { type: 'room', parent: 5, slot: 2, phi_rad: 1, tau_rad: 0.4, fits: false },
+  { type: 'fate', parent: 5, slot: 2, fate: 'matched', particle: null },
+  { type: 'done', particle: 5, evaluations: 300 },
+];
+
+describe('an adaptive particle', () => {
+  const parent = { particle: 5, level: 1, parent: 2, radius: 0.1 };
+  test('has as many slots as it tries, each with its way and its angles', () => {
+    expect(isAdaptive(sized)).toBe(true);
+    expect(isAdaptive(events)).toBe(false);
+    const { children, arc } = momentAt(sized, sized.length - 1);
+    expect(children.map(({ fate }) => fate)).toEqual(['parent', 'added', 'matched']);
+    expect(children[1].pushes.map(({ type }) => type)).toEqual(['start', 'push', 'push_on_circle']);
+    expect(children[1].start?.place).toEqual([0.1, 0.173, 0]);
+    expect(children[2].room?.fits).toBe(false);
+    expect(arc?.before).toBe(2);
+    // Nothing is known before its event.
+    expect(momentAt(sized, 6).children[1].pushes).toHaveLength(2);
+    expect(momentAt(sized, 6).children[1].room).toBe(null);
+  });
+
+  test('is told event by event, with a line of the algorithm for each', () => {
+    for (const [at, event] of sized.entries()) {
+      const words = tell(momentAt(sized, at), parent);
+      expect(words, event.type).toMatch(/^[A-Z\d].*\.$/);
+      expect(lineOf(event, ADAPTIVE), event.type).toBeGreaterThanOrEqual(0);
+    }
+    const say = (/** @type {number} */ at) => tell(momentAt(sized, at), parent);
+    expect(say(8)).toBe('The child of slot 1 takes φ = 60.0°; τ = 180.0° are free. There is room.');
+    expect(say(7)).toContain('It overlaps none any more.');
+    expect(say(13)).toContain('There is no room');
+    expect(say(14)).toBe('The child of slot 2 has no room and is not added.');
+  });
+
+  test('has discs at their true distances, and arcs of their width', () => {
+    const plane = { centre: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], radius: 0.1 };
+    const [x, y] = unrolled(plane, [0.16, 0, 0.12]);
+    expect(x).toBeCloseTo(2);
+    expect(y).toBeCloseTo(0);
+    expect(widthOf([6, 1])).toBeCloseTo(2 * Math.PI - 5);
+    expect(widthOf([2, 2])).toBeCloseTo(2 * Math.PI);
+    const arc = arcOf(Math.PI / 2, Math.PI, 2);
+    expect(arc[0][1]).toBeCloseTo(2);
+    expect(arc.at(-1)?.[1]).toBeCloseTo(-2);
+  });
+});
+
+describe('a relaxation step of a particle', () => {
+  const moved = /** @type {const} */ ({
+    type: 'moved',
+    particle: 47,
+    force: /** @type {[number, number, number]} */ ([0.004, 0, 0]),
+    target: /** @type {[number, number, number]} */ ([1.0024, 0, 0]),
+    position: /** @type {[number, number, number]} */ ([1.0023, 0, -0.0001]),
+    normal: /** @type {[number, number, number]} */ ([0, 0, 1]),
+    radius: 0.1,
+    is_kept: false,
+  });
+  /** @type {Rest} */
+  const rest = {
+    step: 2,
+    steps: 10,
+    size: 0.6,
+    before: 0.5,
+    after: 0.4,
+    largest: 0.35,
+    place: [1, 0, 0],
+    normal: [0, 0, 1],
+    radius: 0.1,
+    pushes: [
+      { particle: 31, distance: 0.19, force: [0.03, 0, 0], energy: 0.16, at: [0.81, 0, 0], radius: 0.1 },
+      { particle: 50, distance: 0.2, force: [-0.026, 0, 0], energy: 0.12, at: [1.2, 0, 0], radius: 0.1 },
+    ],
+    moved,
+  };
+
+  test('is told with its pushes, its move and its landing', () => {
+    expect(tellRest(rest)).toBe(
+      'Step 2 of 10: 2 particles push it, together by 0.040\u00a0r. A step of 0.6 makes that a move of 0.024\u00a0r. Back on the surface it is 0.023\u00a0r from where it was.',
+    );
+    expect(tellRest({ ...rest, moved: { ...moved, is_kept: true } })).toContain('It stays where it is, since the move');
+    // A move is cut off at 0.35 r.
+    const far = {
+      ...moved,
+      force: /** @type {[number, number, number]} */ ([0.1, 0, 0]),
+      target: /** @type {[number, number, number]} */ ([1.035, 0, 0]),
+    };
+    expect(tellRest({ ...rest, moved: far })).toContain('a move of 0.350\u00a0r, cut off there');
+    expect(tellRest({ ...rest, pushes: [] })).toContain('nobody pushes it');
+  });
+
+  test('names who pushes, the strongest first, and half of the energy of each pair', () => {
+    expect(pushersOf(rest)[0]).toBe('Particle 31, 1.90\u00a0r away, pushes by 0.300\u00a0r');
+    expect(new Map(numbersOfRest(rest)).get('Its own energy before')).toBe('0.14');
+  });
+
+  test('is fetched with the places before anything moved', async () => {
+    /** @type {unknown[]} */
+    const asked = [];
+    const client = /** @type {any} */ ({
+      ask: async (/** @type {string} */ about, /** @type {any} */ ask) => {
+        asked.push([about, ask]);
+        if (about === 'pushes')
+          return [
+            { particle: 1, distance: 3, force: [0, 0, 0], energy: 0 },
+            { particle: 2, distance: 2, force: [0, 1, 0], energy: 1 },
+          ];
+        if (about === 'seek')
+          return { positions: new Float32Array(9), normals: new Float32Array(9), radii: Float32Array.of(1, 1, 1) };
+        return ask.first === 100
+          ? [{ type: 'step_begins', step: 1, size: 0.6, energy: 2 }]
+          : [{ ...moved, particle: 0 }];
+      },
+    });
+    const level = /** @type {any} */ ({ kind: 'level', first_event: 0, events: 100 });
+    const step = /** @type {any} */ ({ kind: 'relaxation', first_event: 100, events: 5, energy: 1, largest_move: 0.1 });
+    const found = await restOf(client, [level, step], 0, 1);
+    expect(found).toMatchObject({ step: 1, steps: 1, before: 2, after: 1, largest: 0.1 });
+    // One that is too far away to push is left out.
+    expect(found?.pushes.map(({ particle }) => particle)).toEqual([2]);
+    expect(asked.slice(-2)).toEqual([
+      ['seek', { event: 101 }],
+      ['pushes', { particle: 0 }],
+    ]);
+    expect(await restOf(client, [level, step], 0, 2)).toBe(null);
+  });
+});
+
+describe('what is drawn in the picture', () => {
+  test('are circles around a place, in their plane', () => {
+    const normal = [0, 0.6, 0.8];
+    const [a, b] = tangentsOf(normal);
+    for (const place of circleAround([1, 2, 3], a, b, 0.5, 12)) {
+      const way = place.map((v, k) => v - [1, 2, 3][k]);
+      expect(Math.hypot(...way)).toBeCloseTo(0.5);
+      expect(way.reduce((sum, v, k) => sum + v * normal[k], 0)).toBeCloseTo(0);
+    }
+  });
+});
+
+describe('the front at a particle', () => {
+  const none = 0xffffffff;
+
+  test('has the children of all particles before it, and its own are still to come', () => {
+    // A seed with two children; the first of them has two, the second none, the third one.
+    const parents = [none, 0, 0, 1, 1, 3];
+    expect([0, 1, 2, 3, 4, 5].map((p) => placedBefore(parents, p))).toEqual([1, 3, 5, 5, 6, 6]);
+  });
+
+  test('does not have the seeds that come later', () => {
+    const parents = [none, 0, none, 2, 2];
+    expect([0, 1, 2, 3].map((p) => placedBefore(parents, p))).toEqual([1, 2, 3, 5]);
+  });
+});
+
+describe('the tracks of the lesson', () => {
+  test('have a bar for each stretch of one level', () => {
+    expect(stretchesOf([0, 1, 1, 1, 2, 2, 0, 1])).toEqual([1, 3, 2, 1, 1]);
+    expect(stretchesOf([])).toEqual([]);
+  });
+
+  test('have a bar for each event, the ends and the fates higher than what leads to them', () => {
+    const heights = heightsOf(events);
+    expect(heights).toHaveLength(events.length);
+    expect(heights[0]).toBe(1);
+    expect(heights[3]).toBeLessThan(heights[12]);
+  });
+
+  test('know how many first particles of a run are those of the picture', () => {
+    const placed = Float32Array.of(0, 0, 0, 1, 0, 0, 5, 0, 0);
+    const run = /** @type {any} */ ({ positions: Float32Array.of(0, 0, 0, 1.01, 0, 0, 2, 0, 0, 3, 0, 0) });
+    expect(alikeIn({ placed, count: 3 }, run, 0.1)).toBe(2);
+    expect(alikeIn({ placed, count: 1 }, run, 0.1)).toBe(1);
+  });
+});

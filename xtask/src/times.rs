@@ -1,0 +1,88 @@
+//! Where the time of the checks goes: every part with its seconds, and the slowest tests.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use serde_json::Value;
+
+/// How many tests the table names.
+const SLOWEST: usize = 10;
+
+/// Parts and tests, with their seconds.
+static PARTS: Mutex<Vec<(String, f64)>> = Mutex::new(Vec::new());
+static TESTS: Mutex<Vec<(String, f64)>> = Mutex::new(Vec::new());
+
+fn add(list: &Mutex<Vec<(String, f64)>>, name: String, seconds: f64) {
+    // A list of times has no state that a panic elsewhere could leave half-written.
+    list.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((name, seconds));
+}
+
+/// Notes the time of a part.
+pub(crate) fn part(name: &str, took: Duration) {
+    add(&PARTS, name.to_owned(), took.as_secs_f64());
+}
+
+/// Notes the time of a test in seconds.
+pub(crate) fn test(name: impl Into<String>, seconds: f64) {
+    add(&TESTS, name.into(), seconds);
+}
+
+/// Notes the times in a report of Vitest, a JSON file.
+pub(crate) fn vitest(file: &Path) {
+    let report = read(file);
+    for group in array(&report["testResults"]) {
+        for test in array(&group["assertionResults"]) {
+            if let (Some(name), Some(ms)) = (test["fullName"].as_str(), test["duration"].as_f64()) {
+                self::test(format!("node: {name}"), ms / 1000.0);
+            }
+        }
+    }
+}
+
+/// Notes the times in a report of Playwright, a JSON file.
+pub(crate) fn playwright(file: &Path) {
+    fn walk(suite: &Value) {
+        array(&suite["suites"]).iter().for_each(walk);
+        for spec in array(&suite["specs"]) {
+            for test in array(&spec["tests"]) {
+                let ms: f64 = array(&test["results"]).iter().filter_map(|run| run["duration"].as_f64()).sum();
+                let name = spec["title"].as_str().unwrap_or_default();
+                let project = test["projectName"].as_str().unwrap_or_default();
+                self::test(format!("chromium, {project}: {name}"), ms / 1000.0);
+            }
+        }
+    }
+    walk(&read(file));
+}
+
+/// A report that is missing has no times.
+fn read(file: &Path) -> Value {
+    fs::read(file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
+}
+
+fn array(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+/// Prints the parts in the order in which they ended, and the slowest tests.
+pub(crate) fn print(whole: Duration) {
+    let take = |list: &Mutex<Vec<(String, f64)>>| {
+        std::mem::take(&mut *list.lock().unwrap_or_else(std::sync::PoisonError::into_inner))
+    };
+    println!("\n  {:>7}  part", "s");
+    for (name, seconds) in take(&PARTS) {
+        println!("  {seconds:>7.1}  {name}");
+    }
+    println!("  {:>7.1}  the whole, two parts at a time", whole.as_secs_f64());
+    let mut tests = take(&TESTS);
+    tests.sort_by(|a, b| b.1.total_cmp(&a.1));
+    if !tests.is_empty() {
+        println!("\n  {:>7}  the slowest of {} tests", "s", tests.len());
+    }
+    for (name, seconds) in tests.into_iter().take(SLOWEST) {
+        println!("  {seconds:>7.1}  {name}");
+    }
+    println!();
+}
