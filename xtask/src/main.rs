@@ -59,7 +59,7 @@ enum Task {
     Build,
     /// Run the benches.
     Bench(bench::Options),
-    /// Run the paper's jobs and write docs/paper.md with its tables and figures.
+    /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
     Paper(paper::Options),
     /// Build the WebAssembly bundles into www/src/wasm (serve, test and build do this by themselves).
     Wasm {
