@@ -122,9 +122,7 @@ Written by `cargo xtask paper`. [paper.md](../paper.md) explains rows and column
 
 {}; {} jobs at a time, load average {load} at the start; particle systems stopped after {} s.
 ",
-        plan.machine,
-        plan.threads,
-        plan.limit_s
+        plan.machine, plan.threads, plan.limit_s
     )
 }
 
@@ -287,7 +285,10 @@ impl Album<'_> {
 
     fn caption(&mut self, number: u32, extension: &str, caption: &str) -> io::Result<()> {
         let plain = caption.replace('*', "");
-        writeln!(self.out, "\n### Fig. {number}\n\n![{plain}](../paper/fig-{number}.{extension})\n\n{caption}")
+        writeln!(
+            self.out,
+            "\n### Fig. {number}\n\n![{plain}](../paper/fig-{number}.{extension})\n\n{caption}"
+        )
     }
 }
 

@@ -264,12 +264,19 @@ fn documents() -> Vec<PathBuf> {
 fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
     let anchor = |heading: &str| {
         let kept = heading.trim_start_matches('#').trim().to_lowercase();
-        kept.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c)).collect::<String>().replace(' ', "-")
+        kept.chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+            .collect::<String>()
+            .replace(' ', "-")
     };
     let mut links = 0;
     for document in documents() {
         let text = fs::read_to_string(&document).expect("a document");
-        let targets = text.split("](").skip(1).chain(text.split("src=\"").skip(1)).chain(text.split("srcset=\"").skip(1));
+        let targets = text
+            .split("](")
+            .skip(1)
+            .chain(text.split("src=\"").skip(1))
+            .chain(text.split("srcset=\"").skip(1));
         for target in targets.filter_map(|rest| rest.split([')', '"']).next()) {
             if target.contains("://") {
                 continue;
@@ -293,7 +300,8 @@ fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
 fn prose_wraps_at_100_columns_and_the_readme_is_short() {
     for document in documents() {
         let text = fs::read_to_string(&document).expect("a document");
-        let is_prose = |line: &&str| !["|", "<", "!["].iter().any(|begin| line.trim_start().starts_with(begin));
+        let is_prose =
+            |line: &&str| !["|", "<", "!["].iter().any(|begin| line.trim_start().starts_with(begin));
         for line in text.lines().filter(is_prose) {
             let columns = line.chars().count();
             assert!(columns <= 100, "{}: {columns} columns: {line}", document.display());
