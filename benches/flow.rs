@@ -1,9 +1,11 @@
-//! Particles that follow a moving surface, beside fresh runs: `docs/flow.md` is what this writes.
+//! Particles that follow a moving surface, beside fresh runs: the table of `docs/flow.md`.
 //!
-//! `cargo bench --bench flow > docs/flow.md` takes each surface through a hundred frames with 5,000 and with 20,000 particles, of fronts and of
-//! refined runs, and with 5,000 of a refined run whose sizes follow the curvature. `--count N` takes another number, `--front` and `--refined`
-//! one of the two, `--adaptive` takes sizes that follow the curvature everywhere, and `--random N` the motions of N random surfaces instead, on
-//! which the constants of the flow are chosen.
+//! `cargo bench --bench flow > docs/tables/flow.md` moves each surface through a hundred frames with
+//! 5,000 and with 20,000 particles, of fronts and of refined runs, and with 5,000 of a refined run
+//! whose sizes follow the curvature. `--count N` takes another number of particles; `--front` and
+//! `--refined` run one of the two; `--adaptive` lets all sizes follow the curvature; `--random N`
+//! moves N random surfaces instead, which were used to choose the constants of the flow. Then
+//! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/flow.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 use marching_particles::field::formula::Formula;
@@ -78,20 +80,11 @@ fn finish(run: &mut Run<Formula>) {
     while run.step(u32::MAX).stop_reason.is_none() {}
 }
 
-/// Text above the table.
+/// Text above the tables.
 const HEAD: &str = "\
-# Particles that follow a moving surface
+# Particles that follow a moving surface: all figures
 
-Each surface is moved through a hundred frames by its parameter `q`, and its particles follow it. Every 25 frames they are compared with
-a fresh run of the same radius, whose figures stand in brackets; where sizes follow the curvature, every 50 frames with one of as many
-particles, and holes and pairs are over the radii there. This page is written by `cargo bench --bench flow > docs/flow.md`. All
-figures but the times are the same on every machine; README.md says what they mean, and on which machine the times were taken. *Still the
-first*: particles of the run before the surface moved, over those that the smaller of the two surfaces has room for. *Fresh / frame*: time
-of a fresh run over that of a frame.
-
-The particles of a front are kept even by births, deaths and a step of relaxation, and lose the order of the front. Those of a refined run
-move with its mesh and keep most of their order. Where a surface tears, joins or comes into the box, they go on without a mesh until they
-can be joined again.
+Written by `cargo bench --bench flow > docs/tables/flow.md`. [flow.md](../flow.md) explains the columns.
 ";
 
 const COLUMNS: &str = "\

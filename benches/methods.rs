@@ -1,9 +1,11 @@
-//! Both methods, the front and the refined one, side by side over the gallery and the models: `docs/methods.md` is what this
-//! writes.
+//! The front and the refined method over the gallery and the models: the table of
+//! `docs/methods.md`.
 //!
-//! `cargo bench --bench methods > docs/methods.md` measures every surface with 4,000 and with 20,000 particles. `--count N` takes
-//! another number, `--seeds K` takes the worst of the seeds 0 to K − 1 in each column, `--adaptive` takes sizes that follow the
-//! curvature, and names of surfaces take these alone.
+//! `cargo bench --bench methods > docs/tables/methods.md` measures every surface with 4,000 and with
+//! 20,000 particles. `--count N` takes another number, `--seeds K` reports the worst of the seeds 0 to
+//! K − 1 in each column, `--adaptive` lets sizes follow the curvature, and names of surfaces restrict
+//! the run to these. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in
+//! `docs/methods.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/settings.rs"]
@@ -26,10 +28,8 @@ const RUNS: u32 = 3;
 
 /// Text above the tables.
 const HEAD: &str = "\
-The front with ten relaxation steps and the refined method, with the same number of particles wanted: the gallery's surfaces and the
-models from points, one after the other. This page is written by `cargo bench --bench methods > docs/methods.md`. The quality
-figures, seed 0, are the same on every machine; README.md says what they mean, and on which machine the times were taken, which are
-processor time, mean of three runs. *Refined 3 ×* means that every edge of the coarse front was halved three times.";
+Written by `cargo bench --bench methods > docs/tables/methods.md`. [methods.md](../methods.md) explains
+the columns.";
 
 /// Plan of a measurement.
 struct Plan {
@@ -179,7 +179,7 @@ fn main() -> io::Result<()> {
     let plan = Plan::of(std::env::args().skip(1));
     let is_adaptive = plan.sampling == Sampling::Adaptive;
     let out = &mut io::stdout();
-    writeln!(out, "# Both methods over the gallery\n\n{HEAD}")?;
+    writeln!(out, "# Both methods over the gallery: all figures\n\n{HEAD}")?;
     for &count in &plan.counts {
         let evenness = if is_adaptive { "`size_cv`" } else { "Largest hole | Closest pair" };
         writeln!(out, "\n## {count} particles\n")?;

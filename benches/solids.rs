@@ -1,7 +1,9 @@
-//! Solids with sharp edges by both methods: `docs/solids.md` is what this writes.
+//! Solids with sharp edges by both methods: the table of `docs/solids.md`.
 //!
-//! `cargo bench --bench solids --profile dev > docs/solids.md` measures every solid with 1,500, 6,000 and 24,000 particles. With
-//! `-- FOLDER` it also writes every mesh there, for `benches/tetrahedra.py`.
+//! `cargo bench --bench solids --profile dev > docs/tables/solids.md` measures every solid with 1,500,
+//! 6,000 and 24,000 particles. With `-- FOLDER` it also writes every mesh to that folder, for
+//! `benches/tetrahedra.py`. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in
+//! `docs/solids.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../tests/it/solid_table.rs"]
@@ -22,15 +24,10 @@ const COUNTS: [u32; 3] = [1_500, 6_000, 24_000];
 /// Runs of which the fastest counts.
 const RUNS: u32 = 3;
 
-/// Text above the table.
+/// Text above the tables.
 const HEAD: &str = "\
-Solids by the front with ten relaxation steps and by the refined method. This page is written by `cargo bench --bench solids
---profile dev > docs/solids.md`; the times are wall time, fastest of three runs on a machine that had other work, without measuring and
-meshing, and all else is the same on every machine. *Euler number* is that of the mesh, which is closed if it has no note. *Off the
-edge* is the largest distance of a particle on a crease from the surface of one of its patches, over the spacing 2r. *Volume* is that of
-the mesh over the exact one. The smallest angle is that of the triangles of the report, and so are six neighbours, holes and pairs,
-which README.md defines. TetGen (package tetgen 0.8.4 of PyPI, `benches/tetrahedra.py`) fills every mesh with tetrahedra, without moving or
-adding a point on it, and their volume is the mesh's.";
+Written by `cargo bench --bench solids --profile dev > docs/tables/solids.md`.
+[solids.md](../solids.md) explains the columns.";
 
 /// A solid: its name, its field, and its exact volume, Euler number and numbers of creases and corners, where they are known.
 struct Solid {
@@ -131,7 +128,7 @@ fn main() -> io::Result<()> {
     // Cargo adds an option of its own.
     let folder = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).map(PathBuf::from);
     folder.as_ref().map_or(Ok(()), fs::create_dir_all)?;
-    writeln!(out, "# Solids with sharp edges\n\n{HEAD}")?;
+    writeln!(out, "# Solids with sharp edges: all figures\n\n{HEAD}")?;
     for count in COUNTS {
         writeln!(out, "\n## {count} particles\n")?;
         writeln!(

@@ -1,9 +1,10 @@
 //! Evenly spaced particles on an implicit surface f(x, y, z) = 0.
 //!
-//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure ([`FnField`]), a model from points, or anything that implements
-//! one method of the trait. [`sample`] covers its zero set with particles: a front grows over the surface in hexagons, generation level
-//! by generation level, and a few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and their
-//! mesh. A [`Run`] does the same in steps.
+//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure ([`FnField`]), a model from
+//! points, or anything that implements one method of the trait. [`sample`] covers its zero set with
+//! particles: a front grows over the surface in hexagons, generation level by generation level, and a
+//! few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and
+//! their mesh. A [`Run`] does the same in steps, for a caller that draws or cancels.
 //!
 //! ```
 //! use marching_particles::{Formula, Format, MeshFormat, Settings, gallery, sample};
@@ -12,7 +13,7 @@
 //! let cushion = sample(surface, &Settings::with_count(2_000))?;
 //! cushion.write(Format::Ply, &mut Vec::new())?;
 //!
-//! // In a box of one's own, by the radius; the triangles between the particles close up to a torus.
+//! // In a given box and by radius. The triangles between the particles form a torus.
 //! let torus = gallery::find("torus").ok_or("no such surface")?;
 //! let settings = Settings::with_radius(0.01).in_box(torus.bounds);
 //! let sample = sample(torus.field(), &settings)?;
@@ -24,77 +25,48 @@
 //! # Conventions
 //!
 //! * f < 0 inside; the gradient and the normal point outward.
-//! * Lengths are in the units of the field's own coordinates. A *repulsion radius* `r` belongs to every particle;
-//!   neighbours sit `2r` apart.
+//! * Lengths are in the units of the field's own coordinates. Every particle has a *repulsion radius*
+//!   `r`; neighbours sit `2r` apart.
 //! * Angles are in radians, and names say so (`angle_rad`); those of the quality figures are in degrees.
-//! * Single precision and SIMD lanes in the sampler, double precision in the oracles and the set-up.
-//! * The same field, settings and seed give the same particles to the last bit, natively and in WebAssembly: the order
-//!   of every sum is fixed, no clock or platform function is asked, transcendentals are [our own](math::functions).
-//! * A `Result` is for the user's data, a [`StopReason`] for what a run met, a [`Warning`] for what its user should know, a panic for
-//!   a mistake in the calling code; routines that can panic say when.
+//! * The sampler computes in single precision and SIMD lanes, the oracles and the set-up in double
+//!   precision.
+//! * The same field, settings and seed give the same particles to the last bit, natively and in
+//!   WebAssembly: every sum has a fixed order, no clock or platform function is used, and
+//!   transcendental functions are [our own](math::functions).
+//! * A `Result` is for the user's data, a [`StopReason`] for what a run met, a [`Warning`] for what
+//!   its user should know, and a panic for a mistake in the calling code; routines that can panic say
+//!   when.
 //!
 //! # Glossary
 //!
-//! One word for one thing, in code, comments and on the page.
+//! The words of the paper, and a dozen more that the code uses everywhere. One word for one thing.
 //!
 //! | Term | Meaning |
 //! |---|---|
-//! | field | The function f(x, y, z); f < 0 inside. |
-//! | surface | The zero set of the field within the clip box. |
-//! | component | A connected part of the surface. |
-//! | sheet | A part of the surface near one point that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
-//! | singular point | A point of the surface where ∇f = 0, so that there is no normal. |
-//! | tip, nappe | An isolated point at which sheets end as cones, and one of these sheets. |
-//! | clip box | The axis-aligned box outside of which nothing is sampled. |
-//! | fitted box | A clip box around all bounded components of the surface, with room for particles. |
-//! | border | The curves along which the surface ends: where the clip box cuts it, or f ends. Of a mesh, the edges of one triangle alone. |
 //! | particle | A point of the sample, with position, normal and repulsion radius. |
 //! | repulsion radius, r | Half of the wanted distance between neighbours. |
-//! | radius field | The repulsion radius as a function on the surface, in adaptive sampling. |
-//! | radius law | The repulsion radius that the curvature alone asks for. |
-//! | grading | Limiting the radius field to a Lipschitz slope. |
-//! | survey | The first look at the box on a grid: area, scale of the gradient, candidates for seeds. |
-//! | seed | A first particle, from which a front grows. |
-//! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
-//! | completeness | Whether every component is proven to have a witness, and every witness to be on the component of a particle or named. |
-//! | cell | A box of the octree, or of a grid of particles. |
-//! | undecided cell | A cell of the octree that may hold a component and could not be decided. |
 //! | front | The particles of the newest generation level, which grow over the surface. |
-//! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. |
-//! | branch | A smooth function that gives f where its maxima, minima and absolute values take certain operands. |
-//! | patch | A part of the surface on which one branch gives f. |
-//! | crease, corner | A curve along which two patches meet at an angle; a point at which creases meet. |
-//! | row | An entry of the particle columns. A particle on a crease has one for each patch. |
+//! | seed | A first particle, from which a front grows. |
 //! | parent, child | A particle, and one that it proposed. |
 //! | slot | One of a parent's places for children; six of them 60° apart in uniform sampling. |
-//! | arc | An interval of directions around a parent that is free for children, in adaptive sampling. |
-//! | fate | The state of a slot: open, the parent's, added, matched, not converged, outside, undefined or capped. |
-//! | match radius | The distance below which a child is identified with an existing particle. |
-//! | provisional | Said of a child that is entered but not yet projected. |
+//! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. |
+//! | fate | What became of a slot: open, the parent's, added, matched, not converged, outside, undefined or capped. |
 //! | projection | Moving a point onto the surface: along a circle around its parent, or down the gradient. |
-//! | landing | The result of a projection. |
-//! | seam | Where two fronts, or two parts of one, meet out of step. |
-//! | gap | A hole at a seam wide enough for a particle. |
 //! | relaxation | Moving all particles against their repulsion, step by step. |
 //! | energy | The sum over neighbour pairs that the relaxation lowers. |
-//! | flow | Particles of a finished run that follow a surface while it moves, frame by frame. |
-//! | transport | Moving the particles of a flow down the gradient to the new surface. |
-//! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |
-//! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
-//! | neighbour list | The particles within the range of the repulsion and a skin, kept from step to step. |
-//! | Verlet skin | What the lists reach beyond the range, so that they stay complete while particles move. |
-//! | stale list | A list whose particle has travelled half of its skin since the list was made. |
-//! | natural neighbours | The particles whose Voronoi cells share an edge in the tangent plane. |
-//! | one-ring | The natural neighbours of a particle in order around it. |
-//! | valence | The number of natural neighbours; six in a hexagonal lattice. |
-//! | hexagonal spacing, d_hex | The spacing of a perfect hexagonal lattice of as many particles on the same area. |
-//! | residual | \|f\|/\|∇f\|, the distance to the surface to first order; where f has no gradient, \|f\| over its slope along the normal. |
 //! | fission, death | Splitting and removal of particles, in the system of Witkin and Heckbert. |
-//! | budget | A count of work units after which a step returns. It is never a time. |
-//! | slice | A share of long work between two returns to the caller. |
-//! | graph, program | A formula as a list of operations in single-assignment form, and what that is compiled to. |
-//! | jet | A value with its gradient and Hessian. |
-//! | batch, lanes | Points evaluated by one call, and those of them computed by one SIMD instruction. |
+//! | field | The function f(x, y, z); f < 0 inside. |
+//! | component | A connected part of the surface. |
+//! | sheet | A part of the surface that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
+//! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
+//! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
+//! | crease, corner, patch | A curve along which two smooth parts of the surface meet at an angle; a point where creases meet; such a part. |
+//! | row | An entry of the particle columns. A particle on a crease has one for each patch. |
+//! | seam, gap | Where fronts meet out of step; a hole there that is wide enough for a particle. |
+//! | natural neighbours, valence | The particles whose Voronoi cells share an edge in the tangent plane; their number, six in a hexagonal lattice. |
+//! | defect | A particle of a mesh whose valence is not six, or on the border not four. |
+//! | refinement | Ordering a coarse front as a mesh and halving its edges, level by level. |
+//! | flow | Particles of a finished run that follow a moving surface, frame by frame. |
 //!
 //! # What stands at the root
 //!
@@ -112,8 +84,8 @@
 //! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
-//! The modules behind the root are public for the project's own tests, benchmarks and page, without a promise to stay; ARCHITECTURE.md says
-//! what each is for and who may use whom.
+//! The modules behind the root are public for the project's own tests, benchmarks and page and may
+//! change at any time; ARCHITECTURE.md says what each is for and who may use whom.
 
 #[doc(hidden)]
 pub mod differential;
@@ -192,7 +164,7 @@ pub use sampler::{
 };
 pub use topology::{Component, Topology};
 
-/// The examples of the README, so that they are compiled and run.
+/// The examples of the README, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;

@@ -1,7 +1,10 @@
-//! The paper's jobs and figures, made again: `cargo xtask paper` runs this and writes what it says to `docs/paper.md`.
+//! The paper's jobs and figures, made again: `cargo xtask paper` runs this and writes its output to
+//! `docs/tables/paper.md`.
 //!
-//! `--threads N` runs so many jobs at a time, each in a thread of its own. `--limit S` cuts runs of the particle systems off after so many seconds of processor time, `--pictures FOLDER` says where the
-//! figures go, `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the particles, to try it out.
+//! `--threads N` runs so many jobs at a time, each in a thread of its own. `--limit S` stops a particle
+//! system after so many seconds of processor time, `--pictures FOLDER` says where the figures go,
+//! `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the particles, to try
+//! it out. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/paper.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../../tests/it/settings.rs"]
@@ -101,7 +104,6 @@ fn main() -> io::Result<()> {
     head(out, &plan)?;
     let mut shown = Shown::default();
     table_1(out, &plan, &mut shown)?;
-    notes(out)?;
     table_2(out, &plan)?;
     figures(out, &plan, &shown)
 }
@@ -114,34 +116,13 @@ fn head(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     writeln!(
         out,
         "\
-# The paper, reproduced
+# The paper, reproduced: all figures
 
-The jobs and figures of *MarchingParticles: Fast Generation of Particles for the Sampling of Implicit Surfaces* (2007), made again
-by this program. `cargo xtask paper` has written this page and drawn its pictures.
+Written by `cargo xtask paper`. [paper.md](../paper.md) explains rows and columns.
 
-On {}; {} jobs at a time, load average {load} when they began. Times are seconds of processor time of one thread; other work on the
-machine makes them longer. Particles, steps and figures are the same on every machine, but
-for runs that are cut off.
-
-- **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
-  same column, and ratios.
-- **Faithful** is the paper's algorithms (`src/paper`), and those it compares them with (`src/lesson`), as they are written, one particle
-  after the other, in double precision, without regard for speed. Ratios of times are of faithful runs: like against like.
-- **Fast** is the sampler of the page and the command line, with its default settings.
-- All methods of a table have the same surface and the same radius, or law of the radius: that with which the fast sampler places the
-  printed number of particles.
-- The ellipsoid has the semi-axes 1, 0.7 and 0.5; the paper names none. The bunny is the Stanford bunny through 200 points, of which none
-  lies between the ears, as in the paper; which points the paper has is not known. In adaptive sampling the radius follows κ₁ + κ₂, as
-  in the paper; its limits, which the paper does not name, are 0.4 and 2 radii of as many particles of one size.
-- *Last step* is that of the last relaxation step or iteration; of the fast sampler the mean of the ten.
-- A run of a particle system that takes longer than {} s is **cut off**, as in the paper, and its figures are those of what was there.
-
-Hole and pair are the radius of the largest hole and the distance of the closest pair, in units of a perfect lattice: of as many particles,
-or in adaptive sampling of the particles' own radii.
+{}; {} jobs at a time, load average {load} at the start; particle systems stopped after {} s.
 ",
-        plan.machine,
-        plan.threads,
-        plan.limit_s
+        plan.machine, plan.threads, plan.limit_s
     )
 }
 
@@ -258,27 +239,10 @@ fn write_line(out: &mut dyn Write, line: &Line, runs: &Runs) -> io::Result<()> {
     writeln!(out, ", {sign}{:.1} here.", runs.other.total() / runs.ours.total())
 }
 
-fn notes(out: &mut dyn Write) -> io::Result<()> {
-    writeln!(
-        out,
-        "
-### What differs
-
-- Witkin and Heckbert's system does better here than in the paper: a lone particle grows to half of the surface's diameter before it first
-  divides, so the first particles spread over all of the surface, and their number grows by about a fifth with every iteration from then on.
-  What it lacks is order: its particles stay in the disorder in which they came to be.
-- The forces come to triangles as good as ours, with fewer particles and wider holes. Both systems cover only the component that their
-  one particle sits on; the bunny and the ellipsoid have one.
-- κ₁ + κ₂ vanishes on saddles, so that on the bunny the radius goes from its smallest to its largest over short ways. The faithful methods
-  take it as it is. The fast sampler limits how steeply it changes, and places more particles between.
-- Both particle systems also follow a surface that changes, which a front does not."
-    )
-}
-
 fn table_2(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     writeln!(
         out,
-        "\n## Table 2\n\nThe analytic ellipsoid. Seconds of the generation and of the ten relaxation steps.\n\n\
+        "\n## Table 2\n\nThe analytic ellipsoid: time of the generation and of the ten relaxation steps, printed in seconds.\n\n\
          | Particles, printed | faithful | fast | Generation, printed | faithful | fast | Relaxation, printed | faithful | fast |\n\
          |---:|---:|---:|---:|---:|---:|---:|---:|---:|"
     )?;
@@ -299,11 +263,7 @@ fn table_2(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             coarse(fast.relaxation)
         )?;
     }
-    writeln!(
-        out,
-        "\nIn the paper the relaxation takes most of the time and grows faster than the number of particles, for which it names its space \
-         partitioning. Here both grow about in proportion."
-    )
+    Ok(())
 }
 
 /// Writes a figure and its caption.
@@ -325,7 +285,10 @@ impl Album<'_> {
 
     fn caption(&mut self, number: u32, extension: &str, caption: &str) -> io::Result<()> {
         let plain = caption.replace('*', "");
-        writeln!(self.out, "\n### Fig. {number}\n\n![{plain}](paper/fig-{number}.{extension})\n\n{caption}")
+        writeln!(
+            self.out,
+            "\n### Fig. {number}\n\n![{plain}](../paper/fig-{number}.{extension})\n\n{caption}"
+        )
     }
 }
 
@@ -345,8 +308,8 @@ fn bunny(set: &Set, colour: Colour) -> Vec<u8> {
 fn figures(out: &mut dyn Write, plan: &Plan, shown: &Shown) -> io::Result<()> {
     writeln!(
         out,
-        "\n## Figures\n\nDrawn from the particles of the runs, discs of their repulsion radius. Unless said otherwise they are the faithful \
-         method's."
+        "\n## Figures\n\nDrawn from the particles of the runs as discs of their repulsion radius; of the faithful method \
+         unless the caption says otherwise."
     )?;
     let album = &mut Album { out, folder: &plan.pictures };
     let particles = |set: &Set| grouped(set.position.len());

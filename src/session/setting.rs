@@ -1,5 +1,5 @@
-//! The settings as they are shown: from this table the page builds a control for each, the command line an option, and the README a
-//! row. Defaults and ranges are those of [`Settings`].
+//! The settings as they are shown: from this table the page builds a control for each, the command
+//! line an option, and `docs/settings.md` a row. Defaults and ranges are those of [`Settings`].
 
 use super::fitting::{BoxCell, BoxFaces, BoxMode, SolidSettings};
 use crate::sampler::{GapPolicy, LawKind, Method, Sampling, Settings, SizeMode};

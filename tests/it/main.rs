@@ -16,6 +16,7 @@ mod crease_mesh;
 mod crease_quality;
 mod creased;
 mod differential;
+mod docs;
 mod door;
 mod far;
 mod faults;
@@ -54,7 +55,6 @@ mod quality;
 mod random_solids;
 #[cfg(feature = "points")]
 mod rbf;
-mod readme;
 mod refine;
 mod relax;
 mod runs;

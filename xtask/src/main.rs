@@ -63,7 +63,7 @@ enum Task {
     Build,
     /// Run the benches.
     Bench(bench::Options),
-    /// Run the paper's jobs and write docs/paper.md with its tables and figures.
+    /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
     Paper(paper::Options),
     /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test and build do the first by themselves).
     Wasm {

@@ -1,4 +1,4 @@
-//! The paper's tables and figures, made again: `docs/paper.md` and the pictures in `docs/paper`.
+//! The paper's tables and figures, made again: `docs/tables/paper.md` and the pictures in `docs/paper`.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -22,7 +22,7 @@ pub(crate) struct Options {
     threads: u32,
 }
 
-/// Runs the jobs, then writes the page and its pictures.
+/// Runs the jobs, then writes the tables and the pictures.
 pub(crate) fn paper(project: &Project, options: &Options) -> Result<()> {
     node::prepare(project)?;
     let chromium = chromium::find(project)?;
@@ -48,8 +48,8 @@ pub(crate) fn paper(project: &Project, options: &Options) -> Result<()> {
     let mut convert = Command::new(node::node()?);
     convert.current_dir(&project.www).arg("pictures/paper.js").args([&drawn, &pictures]);
     step::run("pictures (WebP)", convert.env("CHROMIUM_PATH", chromium), "")?;
-    let page = docs.join("paper.md");
-    fs::write(&page, output.stdout).with_context(|| format!("could not write {}", page.display()))?;
-    println!("  wrote {}", project.relative(&page).display());
+    let tables = docs.join("tables").join("paper.md");
+    fs::write(&tables, output.stdout).with_context(|| format!("could not write {}", tables.display()))?;
+    println!("  wrote {}", project.relative(&tables).display());
     Ok(())
 }

@@ -1,6 +1,6 @@
 /**
  * The numbers that the lesson's text states, each with where it comes from: a run on the ellipsoid, the paper's tables as
- * `docs/paper.md` prints them, or a constant of the core. A claim names its words, so that a changed text fails, too.
+ * `docs/tables/paper.md` prints them, or a constant of the core. A claim names its words, so that a changed text fails, too.
  */
 import { readFileSync } from 'node:fs';
 import { beforeAll, expect, test } from 'vitest';
@@ -26,12 +26,12 @@ const read = (path) => readFileSync(new URL(`../../../${path}`, import.meta.url)
 
 const page = read('learn/index.html');
 const sources = ['predictions', 'whatifs', 'race', 'verdict'].map((name) => read(`src/learn/${name}.js`)).join('\n');
-const paper = read('../docs/paper.md');
+const paper = read('../docs/tables/paper.md');
 
 /** Has the text of the lesson say it. @param {string} words */
 const says = (words) => expect(page.includes(words) || sources.includes(words), words).toBe(true);
 
-/** A section of `docs/paper.md`. @param {string} title */
+/** A section of `docs/tables/paper.md`. @param {string} title */
 const section = (title) => paper.split(/^##+ /m).find((part) => part.startsWith(title)) ?? '';
 
 /**

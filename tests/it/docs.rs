@@ -1,0 +1,311 @@
+//! Holds the documents to the program: the table of settings to the settings, the summaries in `docs`
+//! to the tables that the benches have written, the promised compiler to the one in use, and every
+//! link to a file.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes what differs.
+
+use marching_particles::math::shortest_text;
+use marching_particles::session::{Condition, Setting, SettingValue, settings};
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+const END: &str = "<!-- End of the table. -->\n";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Holds the table between the marks of a page to `wanted`, or writes it there.
+fn check_table(page: &str, wanted: &str) {
+    let begin = "<!-- This table is written by a test: UPDATE_GOLDEN=1 cargo test --test it docs:: -->\n";
+    let text = read(page);
+    let (before, rest) = text.split_once(begin).unwrap_or_else(|| panic!("{page} has a begin mark"));
+    let (written, after) = rest.split_once(END).unwrap_or_else(|| panic!("{page} has an end mark"));
+    if env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
+        fs::write(root().join(page), [before, begin, wanted, END, after].concat()).expect("a page");
+        return;
+    }
+    assert_eq!(written, wanted, "{page}: UPDATE_GOLDEN=1 cargo test --test it docs:: puts it right");
+}
+
+fn percent(share: f64) -> String {
+    let percent: f64 = format!("{:.3e}", 100.0 * share).parse().expect("a number");
+    format!("{} %", shortest_text(percent))
+}
+
+fn values(setting: &Setting) -> String {
+    if !setting.choices.is_empty() {
+        let values: Vec<String> =
+            setting.choices.iter().map(|choice| format!("`{}`", choice.value)).collect();
+        return values.join(", ");
+    }
+    let (min, max) = setting.accepted().into_inner();
+    match setting.default {
+        _ if setting.is_share() => format!("{} to {} of the box diagonal", percent(min), percent(max)),
+        SettingValue::Integer(_) if max >= u64::MAX as f64 => "any whole number".to_owned(),
+        _ => {
+            format!("{} to {} {}", shortest_text(min), shortest_text(max), setting.unit).trim_end().to_owned()
+        }
+    }
+}
+
+fn default(setting: &Setting) -> String {
+    match setting.default {
+        SettingValue::Choice(value) => format!("`{value}`"),
+        SettingValue::Integer(whole) => whole.to_string(),
+        SettingValue::Number(share) if setting.is_share() => percent(share),
+        SettingValue::Number(number) => shortest_text(number),
+    }
+}
+
+fn condition(Condition { name, value, equal }: &Condition) -> String {
+    format!("`{name}` {} `{value}`", if *equal { "=" } else { "≠" })
+}
+
+fn settings_table() -> String {
+    let mut rows = String::from(
+        "| Setting | Option | Values | Default | Used if | Meaning |\n| --- | --- | --- | --- | --- | --- |\n",
+    );
+    for setting in &settings() {
+        let conditions: Vec<String> = setting.when.iter().map(condition).collect();
+        rows += &format!(
+            "| `{}` | `--{}` | {} | {} | {} | {} |\n",
+            setting.name,
+            setting.option(),
+            values(setting),
+            default(setting),
+            conditions.join(", "),
+            setting.help
+        );
+    }
+    rows
+}
+
+/// A part of a table file: its heading, its text, and the rows of its table without the head.
+struct Section<'a> {
+    title: &'a str,
+    text: &'a str,
+    rows: Vec<Vec<&'a str>>,
+}
+
+/// The sections of a table file that hold a table.
+fn sections(text: &str) -> Vec<Section<'_>> {
+    let mut sections = Vec::new();
+    for (title, text) in text.split("\n##").filter_map(|part| part.split_once('\n')) {
+        let rows = text.lines().filter(|line| line.starts_with('|')).skip(2);
+        let rows: Vec<Vec<&str>> =
+            rows.map(|row| row.trim_matches('|').split('|').map(str::trim).collect()).collect();
+        if !rows.is_empty() {
+            sections.push(Section { title: title.trim_start_matches('#').trim(), text, rows });
+        }
+    }
+    sections
+}
+
+/// The number at the head of a cell.
+fn number(cell: &str) -> f64 {
+    let end = cell.find(|c: char| !"-.0123456789e".contains(c)).unwrap_or(cell.len());
+    cell[..end].parse().unwrap_or_else(|_| panic!("`{cell}` begins with a number"))
+}
+
+/// The number in the brackets of a cell.
+fn bracketed(cell: &str) -> f64 {
+    number(cell.split_once('(').unwrap_or_else(|| panic!("`{cell}` has brackets")).1)
+}
+
+fn median(numbers: impl Iterator<Item = f64>) -> f64 {
+    let mut numbers: Vec<f64> = numbers.collect();
+    numbers.sort_by(f64::total_cmp);
+    let (low, high) = ((numbers.len() - 1) / 2, numbers.len() / 2);
+    0.5 * (numbers[low] + numbers[high])
+}
+
+/// Median and worst of a column, the lowest or the highest, with so many digits.
+fn median_and_worst(rows: &[&Vec<&str>], column: usize, worst: fn(f64, f64) -> f64, digits: usize) -> String {
+    let all = || rows.iter().map(|row| number(row[column]));
+    let extreme = all().reduce(worst).expect("a row");
+    format!("{:.digits$} / {extreme:.digits$}", median(all()))
+}
+
+fn flow_summary() -> String {
+    let mut table = String::from(
+        "| Particles | Six neighbours | Largest hole | Closest pair | Still there | Speed-up |\n\
+         | --- | --: | --: | --: | --: | --: |\n",
+    );
+    for Section { title, rows, .. } in sections(&read("docs/tables/flow.md")) {
+        let last: Vec<&Vec<&str>> = rows.iter().filter(|row| row[1] == "100").collect();
+        let beside = |column: usize| {
+            let ours = median(last.iter().map(|row| number(row[column])));
+            let fresh = median(last.iter().map(|row| bracketed(row[column])));
+            format!("{ours:.2} ({fresh:.2})")
+        };
+        table += &format!(
+            "| {} | {} | {} | {} | {:.0} % | {:.1} |\n",
+            title.trim_start_matches("About "),
+            beside(3),
+            beside(4),
+            beside(5),
+            100.0 * median(last.iter().map(|row| number(row[6]).min(1.0))),
+            median(rows.iter().map(|row| number(row[10])))
+        );
+    }
+    table
+}
+
+fn methods_summary() -> String {
+    let mut table = String::from(
+        "| Particles | Method | Six neighbours, % | Mean smallest angle | Smallest angle | Triangles > 90°, % \
+         | Largest hole | Closest pair |\n| --- | --- | --: | --: | --: | --: | --: | --: |\n",
+    );
+    for Section { title, rows, .. } in sections(&read("docs/tables/methods.md")) {
+        // A surface has a row for the front, and one without a name after it if it could be refined.
+        let pairs = rows.windows(2).filter(|pair| pair[1][0].is_empty());
+        let (fronts, refined): (Vec<_>, Vec<_>) = pairs.map(|pair| (&pair[0], &pair[1])).unzip();
+        for (method, rows) in [("front", fronts), ("refined", refined)] {
+            let column = |column, worst, digits| median_and_worst(&rows, column, worst, digits);
+            table += &format!(
+                "| {} | {method}, {} surfaces | {} | {} | {} | {} | {} | {} |\n",
+                title.trim_end_matches(" particles"),
+                rows.len(),
+                column(3, f64::min, 1),
+                column(4, f64::min, 1),
+                column(5, f64::min, 1),
+                column(6, f64::max, 2),
+                column(7, f64::max, 2),
+                column(8, f64::min, 2)
+            );
+        }
+    }
+    table
+}
+
+fn solids_summary() -> String {
+    let mut table = String::from(
+        "| Particles | Method | Closed meshes | Volume off by | Off the edge | Six neighbours, % | Smallest angle \
+         | Largest hole | Closest pair |\n| --- | --- | --: | --: | --: | --: | --: | --: | --: |\n",
+    );
+    for Section { title, rows, .. } in sections(&read("docs/tables/solids.md")) {
+        for method in ["front", "refined"] {
+            // A run that could not be refined has the front's particles.
+            let is_front = method == "front";
+            let rows: Vec<&Vec<&str>> = rows.iter().filter(|row| (row[1] == "front") == is_front).collect();
+            let closed = rows.iter().filter(|row| !row[4].contains("open")).count();
+            let known = rows.iter().filter(|row| row[4].parse::<f64>().is_ok());
+            let volume = known.map(|row| (number(row[4]) - 1.0).abs()).fold(0.0, f64::max);
+            let off = rows.iter().map(|row| number(row[5])).fold(0.0, f64::max);
+            let column = |column, worst, digits| median_and_worst(&rows, column, worst, digits);
+            table += &format!(
+                "| {} | {method} | {closed} of {} | {:.2} % | {off:.0e} | {} | {} | {} | {} |\n",
+                title.trim_end_matches(" particles"),
+                rows.len(),
+                100.0 * volume,
+                column(6, f64::min, 1),
+                column(7, f64::min, 1),
+                column(8, f64::max, 2),
+                column(9, f64::min, 2)
+            );
+        }
+    }
+    table
+}
+
+fn paper_summary() -> String {
+    let mut table = String::from(
+        "| Job | Marching, printed | faithful | fast | Other method, printed | faithful | Ratio, printed | here |\n\
+         | --- | --: | --: | --: | --: | --: | --: | --: |\n",
+    );
+    for Section { title, text, rows } in sections(&read("docs/tables/paper.md")) {
+        let Some(total) = rows.iter().find(|row| row[0] == "Total time") else { continue };
+        let ratios = text.split_once("over that of the front: ").expect("a line with the ratios").1;
+        let (printed, here) = ratios.split_once(" in the paper, ").expect("both ratios");
+        let here = here.split_once(" here.").expect("our ratio").0.replace("more than ", "> ");
+        table += &format!("| {title} | {} | {printed} | {here} |\n", total[1..].join(" | "));
+    }
+    table
+}
+
+#[test]
+fn the_compiler_that_is_promised_is_the_one_that_every_check_runs_with() {
+    let promised = env!("CARGO_PKG_RUST_VERSION");
+    assert!(read("rust-toolchain.toml").contains(&format!("channel = \"{promised}.0\"")), "{promised}");
+    assert!(read("README.md").contains(&format!("Rust {promised}")), "{promised}");
+}
+
+#[test]
+fn the_table_of_settings_is_that_of_the_settings() {
+    check_table("docs/settings.md", &settings_table());
+}
+
+#[test]
+fn the_summaries_are_those_of_the_tables() {
+    check_table("docs/flow.md", &flow_summary());
+    check_table("docs/methods.md", &methods_summary());
+    check_table("docs/solids.md", &solids_summary());
+    check_table("docs/paper.md", &paper_summary());
+}
+
+/// The documents that people write: all but the tables of the benches.
+fn documents() -> Vec<PathBuf> {
+    let mut documents = Vec::new();
+    for folder in ["", "docs"] {
+        let entries = fs::read_dir(root().join(folder)).expect("a folder of documents");
+        let paths = entries.map(|entry| entry.expect("an entry of the folder").path());
+        documents.extend(paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
+    }
+    documents.sort();
+    documents
+}
+
+#[test]
+fn every_link_of_a_document_leads_to_a_file_and_a_heading() {
+    let anchor = |heading: &str| {
+        let kept = heading.trim_start_matches('#').trim().to_lowercase();
+        kept.chars()
+            .filter(|c| c.is_alphanumeric() || " -_".contains(*c))
+            .collect::<String>()
+            .replace(' ', "-")
+    };
+    let mut links = 0;
+    for document in documents() {
+        let text = fs::read_to_string(&document).expect("a document");
+        let targets = text
+            .split("](")
+            .skip(1)
+            .chain(text.split("src=\"").skip(1))
+            .chain(text.split("srcset=\"").skip(1));
+        for target in targets.filter_map(|rest| rest.split([')', '"']).next()) {
+            if target.contains("://") {
+                continue;
+            }
+            let (path, heading) = target.split_once('#').unwrap_or((target, ""));
+            let file =
+                if path.is_empty() { document.clone() } else { document.with_file_name("").join(path) };
+            assert!(file.exists(), "{}: there is no {target}", document.display());
+            let has_heading = || {
+                let text = fs::read_to_string(&file).expect("a document");
+                text.lines().any(|line| line.starts_with('#') && anchor(line) == heading)
+            };
+            assert!(heading.is_empty() || has_heading(), "{}: no heading for {target}", document.display());
+            links += 1;
+        }
+    }
+    assert!(links > 30, "{links} links were found");
+}
+
+#[test]
+fn prose_wraps_at_100_columns_and_the_readme_is_short() {
+    for document in documents() {
+        let text = fs::read_to_string(&document).expect("a document");
+        let is_prose =
+            |line: &&str| !["|", "<", "!["].iter().any(|begin| line.trim_start().starts_with(begin));
+        for line in text.lines().filter(is_prose) {
+            let columns = line.chars().count();
+            assert!(columns <= 100, "{}: {columns} columns: {line}", document.display());
+        }
+    }
+    assert!(read("README.md").len() <= 10_000, "the README has at most 10 kB");
+}
