@@ -259,7 +259,7 @@ fn what_is_cancelled_has_no_particle_outside_the_box() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::cases::proptest(16))]
 
     #[test]
     fn no_box_makes_a_hole_without_a_word(

@@ -283,6 +283,8 @@ fn solids() -> impl Strategy<Value = String> {
 }
 
 proptest! {
+    #![proptest_config(crate::cases::proptest(1000))]
+
     #[test]
     fn the_branch_at_a_point_gives_the_value_of_a_solid_there(
         text in solids(),
@@ -296,6 +298,20 @@ proptest! {
             if let Ok(mut shifted) = Formula::as_written(&format!("{text} - ({level:?})"), &[]) {
                 agrees(&mut shifted, p, &text);
             }
+        }
+    }
+}
+
+#[test]
+fn the_branch_is_told_where_choices_tie() {
+    for text in [
+        "smin(min(-(abs(x) - 1), x^2 + y^2 - z), -(min(abs(x) - 1, hypot(x, y, z) - 1)), 0)",
+        "min(abs(x) - 1, x^2 + y^2 - z)",
+        "smin(min(abs(y + 2z), abs(y + 2z)), hypot(x, y, z) - 1 + 0.1, 0)",
+    ] {
+        let mut field = Formula::parse(text).expect("a formula");
+        for p in [DVec3::ZERO, DVec3::Z * -1.338, DVec3::X * 0.27, DVec3::new(-1.54, 1.636, -1.771)] {
+            agrees(&mut field, p, text);
         }
     }
 }

@@ -483,7 +483,7 @@ fn every_run_ends_whatever_the_field() {
         "x^1000 + y^1000 - z",
     ];
     for formula in formulas {
-        sampled(formula, 1.0, &settings!(max_particles: 20_000; ..coarse()));
+        sampled(formula, 1.0, &settings!(max_particles: 4_000; ..coarse()));
     }
 }
 

@@ -95,15 +95,7 @@ fn is_bars(children: &[MathNode]) -> bool {
 }
 
 proptest! {
-    // The formulas are the same in every run, unless `PROPTEST_CASES` or `PROPTEST_RNG_SEED` is set.
-    #![proptest_config(ProptestConfig {
-        rng_seed: match std::env::var("PROPTEST_RNG_SEED") {
-            Ok(_) => ProptestConfig::default().rng_seed,
-            Err(_) => proptest::test_runner::RngSeed::Fixed(2),
-        },
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(crate::cases::proptest(1000))]
 
     #[test]
     fn no_text_makes_the_parser_panic(text in "\\PC{0,200}") {

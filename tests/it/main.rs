@@ -8,6 +8,7 @@ mod adaptive;
 mod borders;
 mod box_fit;
 mod branches;
+mod cases;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;

@@ -67,7 +67,7 @@ fn smooth_closed_surfaces_have_their_euler_number() {
 
 #[test]
 fn sets_of_varying_size_are_closed_too() {
-    let settings = settings!(sampling: Sampling::Adaptive; ..Settings::default());
+    let settings = Settings::with_count(6_000).adaptive();
     for surface in closed_surfaces() {
         assert_closed(surface, &settings);
     }

@@ -280,7 +280,7 @@ fn a_failed_job_returns_its_error_in_every_later_step() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::cases::proptest(300))]
 
     /// There are few points, many of them equal or nearly so, and some with contradictory normals.
     #[test]

@@ -547,7 +547,7 @@ const BEGINNINGS: [&str; 8] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::cases::proptest(4000))]
 
     #[test]
     fn no_bytes_make_a_reader_panic(

@@ -59,25 +59,30 @@ test('the notes have a window of their own, with the next stop and a clock, whic
   clean();
 });
 
-for (const [width, height, letters] of [
-  [1920, 1080, 24],
-  [1280, 800, 16],
-])
-  test(`a rehearsal at ${width} × ${height}: every slide is whole, with a large figure and large letters`, async ({
-    page,
-  }, info) => {
-    test.setTimeout(300_000);
-    const { clean } = await openLesson(page, { hash: '#why&mode=present', width, height });
-    await expect(page.locator('.present-bar')).toBeVisible();
-    const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
-    const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
-    for (const stop of stops) {
-      await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
-      let presses = 0;
-      let least = 1;
-      let seen = await settledSlide(page);
-      for (;;) {
-        const name = `${stop}, press ${presses}`;
+/** Windows of a class, with the smallest letters that the last row can read, in pixels. */
+const WALLS = [
+  { width: 1280, height: 800, letters: 16 },
+  { width: 1920, height: 1080, letters: 24 },
+];
+
+test('a rehearsal: in every window every slide is whole, with a large figure and large letters', async ({
+  page,
+}, info) => {
+  test.setTimeout(300_000);
+  const { clean } = await openLesson(page, { hash: '#why&mode=present', ...WALLS[0] });
+  await expect(page.locator('.present-bar')).toBeVisible();
+  const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
+  const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
+  for (const stop of stops) {
+    await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
+    let presses = 0;
+    let least = 1;
+    let seen = await settledSlide(page);
+    for (;;) {
+      for (const { width, height, letters } of WALLS) {
+        await page.setViewportSize({ width, height });
+        seen = await settledSlide(page);
+        const name = `${stop}, press ${presses}, ${width} × ${height}`;
         expect(seen.beyond, name).toEqual([]);
         expect(seen.letters, `${name}: ${seen.smallest}`).toBeGreaterThanOrEqual(letters);
         expect(seen.words, name).toBeGreaterThan(2);
@@ -85,19 +90,19 @@ for (const [width, height, letters] of [
         if (seen.figure === null) expect(seen.words, name).toBeGreaterThan(20);
         else expect(seen.figure, name).toBeGreaterThanOrEqual(0.6);
         least = Math.min(least, seen.figure ?? 1);
-        if (stop === stops.at(-1) && presses === 15) break;
-        await page.keyboard.press('Space');
-        presses += 1;
-        // The address changes before the slide does.
-        if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
-        seen = await settledSlide(page);
       }
-      const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
-      rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
+      if (stop === stops.at(-1) && presses === 15) break;
+      await page.keyboard.press('Space');
+      presses += 1;
+      // The address changes before the slide does.
+      if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
     }
-    await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
-    clean();
-  });
+    const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
+    rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
+  }
+  await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
+  clean();
+});
 
 test('an address of the last slide shows its first card with both pictures', async ({ page }) => {
   await openLesson(page, { hash: '#differences&mode=present' });

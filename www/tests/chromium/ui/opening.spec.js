@@ -53,18 +53,6 @@ test('faces the seed while the surface grows, then turns to the usual view', asy
   await clean();
 });
 
-test('stays with the seed whose events are asked for meanwhile', async ({ page }) => {
-  await page.emulateMedia({ reducedMotion: 'no-preference' });
-  const { clean } = await open(page);
-  await page.getByRole('radio', { name: 'Event' }).check();
-  await expect(page.getByRole('region', { name: 'Particle 0' })).toBeVisible();
-  await atRest(page);
-  const { yaw, pitch } = (await state(page)).view.camera;
-  const [x, y, z] = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.normals);
-  expect(Math.cos(pitch) * (x * Math.cos(yaw) + y * Math.sin(yaw)) + z * Math.sin(pitch)).toBeGreaterThan(0.5);
-  await clean();
-});
-
 test('stays as it is where motion is reduced', async ({ page }) => {
   const { clean } = await open(page);
   const { yaw, pitch } = (await state(page)).view.camera;
