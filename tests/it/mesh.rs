@@ -7,7 +7,7 @@ use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Sampling, Settings, SizeMode};
+use marching_particles::sampler::{Settings, SizeMode};
 use marching_particles::topology::Component;
 
 fn of_count(count: u32, seed: u64, match_tolerance: f64, relax_steps: u32) -> Settings {
