@@ -61,7 +61,11 @@ pub fn formula(bytes: &[u8]) {
     }
     check_batch(&mut field, random.point(2.0).as_vec3(), 1 + random.0.next_u32() as usize % 40);
     // A sum is its own only factor, provided that its last term cancels nothing.
-    if let Ok(mut sum) = Formula::as_written(&format!("({text}) + x^2 + 0.618034"), &[]) {
+    let sum = match printed.rsplit_once("; ") {
+        Some((definitions, surface)) => format!("{definitions}; ({surface}) + x^2 + 0.618034"),
+        None => format!("({text}) + x^2 + 0.618034"),
+    };
+    if let Ok(mut sum) = Formula::as_written(&sum, &[]) {
         for name in sum.auto().to_vec() {
             sum.set_parameter(&name, random.between(-2.0, 2.0)).expect("a finite value");
         }
@@ -183,7 +187,7 @@ pub fn file(bytes: &[u8]) {
     /// Larger ones are read, not solved: that takes a second.
     const MOST_SOLVED: usize = 64;
     let Some((&first, content)) = bytes.split_first() else { return };
-    let name = ["a", "a.ply", "a.obj", "a.stl", "a.xyz"][usize::from(first) % 5];
+    let name = ["a", "a.ply", "a.obj", "a.stl", "a.xyz", "a.off", "a.pcd", "a.pts"][usize::from(first) % 8];
     let tell = |fraction: f64| assert!((0.0..=1.0).contains(&fraction), "{fraction}");
     let mesh = match Reader::new(name, content.to_vec()).and_then(|reader| complete(reader.read(tell))) {
         Ok(mesh) => mesh,

@@ -183,6 +183,12 @@ pub trait Field: Send {
         None
     }
 
+    /// A sentence for the user on why f is the same everywhere, if it is known.
+    #[doc(hidden)]
+    fn why_constant(&self) -> Option<String> {
+        None
+    }
+
     /// This field as one whose surface may have creases. By default there is none: the field is smooth.
     #[doc(hidden)]
     fn branched(&mut self) -> Option<&mut dyn Branched> {
@@ -281,6 +287,10 @@ impl<P: DerefMut<Target: Field> + Send> Field for P {
 
     fn sampled_as(&self) -> Option<String> {
         (**self).sampled_as()
+    }
+
+    fn why_constant(&self) -> Option<String> {
+        (**self).why_constant()
     }
 
     fn branched(&mut self) -> Option<&mut dyn Branched> {

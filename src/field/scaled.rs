@@ -128,6 +128,10 @@ impl Field for Scaled<'_> {
         self.field.sampled_as()
     }
 
+    fn why_constant(&self) -> Option<String> {
+        self.field.why_constant()
+    }
+
     /// The branches of the other field: what they are has no scale.
     fn branched(&mut self) -> Option<&mut dyn Branched> {
         self.field.branched()

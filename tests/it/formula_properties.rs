@@ -22,6 +22,8 @@ fn formulas() -> impl Strategy<Value = String> {
     leaf.prop_recursive(5, 40, 4, |inner| {
         let calls: Vec<(&str, usize)> = FUNCTIONS
             .iter()
+            // A choice, whose first argument is a condition, is made below.
+            .filter(|f| f.name != "if")
             .map(|f| {
                 (f.name, if f.signature.contains('…') { 3 } else { f.signature.matches(',').count() + 1 })
             })
@@ -40,8 +42,18 @@ fn formulas() -> impl Strategy<Value = String> {
         );
         let powers =
             (inner.clone(), prop::sample::select(vec!["²", "³", "⁻¹", "^2", "^5", "^-3", "^0.5", "^1.5"]));
+        let conditions =
+            vec!["{} < {}", "{} >= {}", "not {} <= {}", "{} > 0.1 and {} < 1", "{} < 0 or {} > 1"];
+        let choice = (prop::sample::select(conditions), prop::collection::vec(inner.clone(), 4)).prop_map(
+            |(condition, parts)| {
+                let filled = condition.replacen("{}", &format!("({})", parts[0]), 1);
+                let filled = filled.replacen("{}", &format!("({})", parts[1]), 1);
+                format!("if({filled}, {}, {})", parts[2], parts[3])
+            },
+        );
         prop_oneof![
             3 => call,
+            1 => choice,
             5 => binary,
             2 => powers.prop_map(|(base, power)| format!("({base}){power}")),
             1 => inner.prop_map(|inner| format!("-({inner})")),
@@ -49,12 +61,18 @@ fn formulas() -> impl Strategy<Value = String> {
     })
 }
 
+/// Strategy for formulas that define a value and a function.
+fn programs() -> impl Strategy<Value = String> {
+    (formulas(), formulas(), formulas(), 0..3_u32).prop_map(|(value, body, surface, kind)| {
+        let separator = ["; ", " ;\n", "\n"][kind as usize];
+        format!("s = {value}{separator}q(u, v) = (u) - v*({body}) + s{separator}q({surface}, s) + q(s, x)")
+    })
+}
+
 /// The same formula as it might be pasted from LaTeX, where it has brackets, quotients, powers and calls.
 fn in_latex(node: &MathNode) -> Option<String> {
     let all = |children: &[MathNode]| children.iter().map(in_latex).collect::<Option<Vec<String>>>();
     match node {
-        // LaTeX writes no name for it.
-        MathNode::Token { text, .. } if text == "⌊" => None,
         MathNode::Token { text, .. } => Some(match text.as_str() {
             "\u{2061}" => " ".into(),
             "\u{2062}" | "⋅" => "\\cdot ".into(),
@@ -83,6 +101,8 @@ fn in_latex(node: &MathNode) -> Option<String> {
                 MathGroup::Msup => format!("{}^{{{}}}", parts[0], parts[1]),
                 MathGroup::Msqrt => format!("\\sqrt{{{}}}", parts.concat()),
                 MathGroup::Mroot => format!("\\sqrt[{}]{{{}}}", parts[1], parts[0]),
+                // LaTeX has an environment for choices, which is not read.
+                MathGroup::Mtable | MathGroup::Mtr | MathGroup::Mtd => return None,
                 MathGroup::Msub if parts[0].starts_with("\\operatorname") => return None,
                 MathGroup::Msub => format!("{}_{{{}}}", parts[0], parts[1]),
             })
@@ -113,6 +133,7 @@ proptest! {
     fn no_text_of_latex_makes_the_parser_panic(
         text in prop::collection::vec(
             prop::sample::select(vec![
+                "if(", " < ", "? ", ": ", ";", "\n", "r =", "f(a,b) =", "and ", "not ", "||", "%", "//", "/*", "*/", "#", "np.", "@",
                 "\\frac", "\\sqrt", "\\sin", "\\left", "\\right", "\\pi", "\\cdot", "\\operatorname", "\\", "\\le",
                 "|", "{", "}", "[", "]", "(", ")", "x", "y", "2", "1", "^", "_", "-", "=", "f(x,y,z)=", "sin", "ln ", " ",
                 "**", ",", "²", "√", "$",
@@ -204,6 +225,22 @@ proptest! {
             let again = Formula::as_written(&printed, &[]).unwrap_or_else(|e| panic!("{text} → {printed}: {e}"));
             prop_assert_eq!(again.normal_form(), printed);
             prop_assert!(field.same_tree(&again), "{} → {}", text, field.normal_form());
+        }
+    }
+
+    #[test]
+    fn printing_and_parsing_definitions_are_inverse(text in programs(), point in prop::array::uniform3(-2.0..2.0_f64)) {
+        if let Ok(mut field) = Formula::as_written(&text, &[]) {
+            let printed = field.normal_form();
+            let mut again = match Formula::as_written(&printed, &[]) {
+                Ok(again) => again,
+                Err(e) => panic!("{text} → {printed}: {e}"),
+            };
+            prop_assert_eq!(again.normal_form(), printed);
+            prop_assert!(field.same_tree(&again), "{} → {}", text, field.normal_form());
+            let (one, other) = (field.jet(point.into()).value, again.jet(point.into()).value);
+            prop_assert!(one.to_bits() == other.to_bits() || one.is_nan() && other.is_nan());
+            check_mathml(&field.mathml());
         }
     }
 
@@ -332,7 +369,7 @@ fn check_mathml(node: &MathNode) {
         MathNode::Group { tag, children } => {
             let wanted = match tag {
                 MathGroup::Mfrac | MathGroup::Msup | MathGroup::Msub | MathGroup::Mroot => 2..=2,
-                MathGroup::Msqrt => 1..=usize::MAX,
+                MathGroup::Msqrt | MathGroup::Mtable | MathGroup::Mtr | MathGroup::Mtd => 1..=usize::MAX,
                 MathGroup::Mrow => 2..=usize::MAX,
             };
             assert!(wanted.contains(&children.len()), "{tag:?} with {} children in {node:?}", children.len());
@@ -379,6 +416,19 @@ fn mathml_is_set_as_one_writes_by_hand() {
         ("hypot(x, y)", "mrow(msqrt(msup(x 2) + msup(y 2)) = 0)"),
         ("exp(-x)", "mrow(msup(e mrow(− x)) = 0)"),
         ("abs(x)", "mrow(mrow(| x |) = 0)"),
+        ("ceil(x)", "mrow(mrow(⌈ x ⌉) = 0)"),
+        ("log2(x)", "mrow(mrow(msub(log 2) apply mrow(( x ))) = 0)"),
+        ("atanh(x)", "mrow(mrow(artanh apply mrow(( x ))) = 0)"),
+        (
+            "if(x < 1 and not y > 2, y, z)",
+            "mrow(mrow({ mtable(mtr(mtd(y) mtd(mrow(if\u{a0} mrow(mrow(x < 1) ∧ mrow(¬ mrow(( mrow(y > 2) ))))))) \
+             mtr(mtd(z) mtd(otherwise)))) = 0)",
+        ),
+        ("r = x; r + y", "mtable(mtr(mtd(mrow(r = x))) mtr(mtd(mrow(mrow(r + y) = 0))))"),
+        (
+            "f(a) = a; f(x)",
+            "mtable(mtr(mtd(mrow(mrow(f apply mrow(( a ))) = a))) mtr(mtd(mrow(mrow(f apply mrow(( x ))) = 0))))",
+        ),
     ];
     for (text, wanted) in cases {
         assert_eq!(written(&Formula::as_written(text, &[]).unwrap().mathml()), wanted, "{text}");

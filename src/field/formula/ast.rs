@@ -1,9 +1,13 @@
 //! Syntax tree of a formula.
 //!
-//! Sums and products are flat lists. The depth of a tree is therefore bounded by [`MAX_DEPTH`](super::MAX_DEPTH), which
-//! the parser enforces, and recursive walks cannot overflow the stack.
+//! Sums and products are flat lists. The depth of a tree is therefore bounded by
+//! [`MAX_DEPTH`](super::MAX_DEPTH), which the parser enforces, and recursive walks cannot overflow
+//! the stack. What a formula defines is not put in the places where its name stands: the tree would
+//! grow beyond all bounds.
 
+use super::graph::Blend;
 use super::operations::{Binary, Unary};
+use super::token::Comparison;
 use core::ops::Range;
 
 /// An expression and the range of bytes it was parsed from.
@@ -33,6 +37,84 @@ pub(crate) enum ExprKind {
     Product(Vec<(Factor, Expr)>),
     Power(Box<Expr>, Box<Expr>),
     Call(Function, Vec<Expr>),
+    /// An argument of the function in whose definition it stands.
+    Argument(Reference),
+    /// A value or, with its arguments, a function that the formula defines.
+    Defined(Reference, Vec<Expr>),
+    /// The second expression where the first one, a condition, holds, else the third.
+    Choice(Box<[Expr; 3]>),
+    /// A condition, as are the two that follow. The parser lets conditions stand in choices and
+    /// conditions alone.
+    Compare(Comparison, Box<[Expr; 2]>),
+    /// Two or more conditions.
+    Logic(Connective, Vec<Expr>),
+    Not(Box<Expr>),
+}
+
+/// The place of what a name stands for, among the definitions or the arguments, and the name.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Reference {
+    pub(crate) index: usize,
+    pub(crate) name: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Connective {
+    And,
+    Or,
+}
+
+impl ExprKind {
+    pub(crate) fn is_condition(&self) -> bool {
+        matches!(self, Self::Compare(..) | Self::Logic(..) | Self::Not(_))
+    }
+}
+
+impl Expr {
+    /// Calls `visit` with each expression that is a part of this one, from left to right.
+    fn each<'a>(&'a self, visit: &mut dyn FnMut(&'a Self)) {
+        match &self.kind {
+            ExprKind::Number(_)
+            | ExprKind::Constant(_)
+            | ExprKind::Coordinate(_)
+            | ExprKind::Parameter(_)
+            | ExprKind::Argument(_) => {}
+            ExprKind::Negated(inner) | ExprKind::Not(inner) => visit(inner),
+            ExprKind::Sum(terms) => terms.iter().for_each(|(_, term)| visit(term)),
+            ExprKind::Product(factors) => factors.iter().for_each(|(_, factor)| visit(factor)),
+            ExprKind::Power(base, exponent) => [base, exponent].into_iter().for_each(|part| visit(part)),
+            ExprKind::Call(_, parts) | ExprKind::Defined(_, parts) | ExprKind::Logic(_, parts) => {
+                parts.iter().for_each(visit);
+            }
+            ExprKind::Choice(parts) => parts.iter().for_each(visit),
+            ExprKind::Compare(_, sides) => sides.iter().for_each(visit),
+        }
+    }
+
+    /// Whether `is` holds for this expression or any part of it.
+    pub(crate) fn any(&self, is: &dyn Fn(&ExprKind) -> bool) -> bool {
+        let mut found = is(&self.kind);
+        self.each(&mut |part| found = found || part.any(is));
+        found
+    }
+
+    /// The first condition in this expression that stands in the place of a number; one that stands
+    /// for the whole expression if that `is` no condition.
+    pub(crate) fn misplaced_condition(&self, is_condition: bool) -> Option<&Self> {
+        if self.kind.is_condition() && !is_condition {
+            return Some(self);
+        }
+        let (mut found, mut place) = (None, 0);
+        self.each(&mut |part| {
+            let is_condition = match &self.kind {
+                ExprKind::Choice(_) => place == 0,
+                kind => matches!(kind, ExprKind::Logic(..) | ExprKind::Not(_)),
+            };
+            place += 1;
+            found = found.or_else(|| part.misplaced_condition(is_condition));
+        });
+        found
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,11 +129,40 @@ pub(crate) enum Factor {
     Over,
 }
 
-/// The formula `left`, or the equation `left = right`.
+/// The formula `left`, or the equation `left = right`, with what it defines.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Equation {
+    /// Each refers to those before it. Of two with the same name the later one counts from there
+    /// on.
+    pub(crate) definitions: Vec<Definition>,
     pub(crate) left: Expr,
     pub(crate) right: Option<Expr>,
+}
+
+/// A value that has a name, or a function.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Definition {
+    pub(crate) name: String,
+    /// The names of the arguments of a function.
+    pub(crate) arguments: Vec<String>,
+    pub(crate) body: Expr,
+}
+
+impl Equation {
+    /// Whether the equation has the form of a definition, a name and what varies, or what has the
+    /// same name: without brackets around the name it would be taken for one.
+    pub(crate) fn looks_like_definition(&self) -> bool {
+        let Some(right) = &self.right else { return false };
+        match &self.left.kind {
+            ExprKind::Parameter(_) | ExprKind::Constant(_) => {
+                right.any(&|kind| matches!(kind, ExprKind::Coordinate(_) | ExprKind::Defined(..)))
+            }
+            ExprKind::Defined(own, arguments) if arguments.is_empty() => {
+                right.any(&|kind| matches!(kind, ExprKind::Defined(other, _) if other.name == own.name))
+            }
+            _ => false,
+        }
+    }
 }
 
 /// Names of the coordinates, by axis.
@@ -100,8 +211,14 @@ pub(crate) enum Function {
     /// An operation of the graph on two values, applied to all arguments from left to right.
     Binary(Binary),
     Hypot,
-    Smin,
-    Smax,
+    /// A smooth minimum.
+    Smin(Blend),
+    Smax(Blend),
+    /// A choice, which has a node of its own in the tree.
+    If,
+    /// A function that is defined by this text, in which its arguments are called as in its
+    /// signature.
+    Defined(&'static str),
 }
 
 /// Entry of the function reference.
@@ -142,13 +259,22 @@ functions! {
     Unary(Unary::Sign) "sign(a)" "−1, 0 or 1; its slope counts as 0.",
     Binary(Binary::Min) "min(a, b, …)" "The least of two or more values; at a tie the slope is the first one's.",
     Binary(Binary::Max) "max(a, b, …)" "The greatest of two or more values; at a tie the slope is the first one's.",
+    If "if(c, a, b)" "a where the condition c holds, else b: x < 1, not, and, or. Also written c ? a : b.",
     Unary(Unary::Floor) "floor(a)" "The greatest whole number not above a; its slope counts as 0.",
+    Defined("-floor(-a)") "ceil(a)" "The least whole number not below a.",
+    Defined("floor(a + 1/2)") "round(a)" "The nearest whole number; halves are rounded up.",
+    Defined("a - floor(a)") "fract(a)" "What a is above floor(a), from 0 to 1.",
+    Defined("a - b*floor(a/b)") "mod(a, b)" "The remainder a − b floor(a/b), with the sign of b. Also written a % b.",
     Unary(Unary::Exp) "exp(a)" "e to the power a.",
     Unary(Unary::Ln) "ln(a)" "Natural logarithm; undefined for a < 0.",
     Unary(Unary::Log10) "log10(a)" "Logarithm to base 10; undefined for a < 0.",
+    Defined("ln(a)/ln(2)") "log2(a)" "Logarithm to base 2; undefined for a < 0.",
     Unary(Unary::Sin) "sin(a)" "Sine, a in radians.",
     Unary(Unary::Cos) "cos(a)" "Cosine, a in radians.",
     Unary(Unary::Tan) "tan(a)" "Tangent, a in radians.",
+    Defined("1/cos(a)") "sec(a)" "Secant 1/cos(a).",
+    Defined("1/sin(a)") "csc(a)" "Cosecant 1/sin(a).",
+    Defined("cos(a)/sin(a)") "cot(a)" "Cotangent cos(a)/sin(a).",
     Unary(Unary::Asin) "asin(a)" "Inverse sine in radians; undefined outside −1 … 1.",
     Unary(Unary::Acos) "acos(a)" "Inverse cosine in radians; undefined outside −1 … 1.",
     Unary(Unary::Atan) "atan(a)" "Inverse tangent in radians.",
@@ -156,9 +282,25 @@ functions! {
     Unary(Unary::Sinh) "sinh(a)" "Hyperbolic sine.",
     Unary(Unary::Cosh) "cosh(a)" "Hyperbolic cosine.",
     Unary(Unary::Tanh) "tanh(a)" "Hyperbolic tangent.",
-    Hypot "hypot(a, b, …)" "Length of the vector (a, b, …): sqrt(a^2 + b^2 + …).",
-    Smin "smin(a, b, k)" "Smooth minimum: the union of two solids, blended where |a − b| < k.",
-    Smax "smax(a, b, k)" "Smooth maximum: the intersection of two solids, blended where |a − b| < k.",
+    Defined("1/cosh(a)") "sech(a)" "Hyperbolic secant 1/cosh(a).",
+    Defined("1/sinh(a)") "csch(a)" "Hyperbolic cosecant 1/sinh(a).",
+    Defined("cosh(a)/sinh(a)") "coth(a)" "Hyperbolic cotangent cosh(a)/sinh(a).",
+    Unary(Unary::Asinh) "asinh(a)" "Inverse hyperbolic sine.",
+    Unary(Unary::Acosh) "acosh(a)" "Inverse hyperbolic cosine; undefined for a < 1.",
+    Unary(Unary::Atanh) "atanh(a)" "Inverse hyperbolic tangent; undefined outside −1 … 1.",
+    Unary(Unary::Erf) "erf(a)" "Error function.",
+    Hypot "hypot(a, b, …)" "Length of the vector (a, b, …): sqrt(a^2 + b^2 + …). Also called length.",
+    Defined("min(max(a, b), c)") "clamp(a, b, c)" "a, but no less than b and no more than c.",
+    Defined("a*(1 - c) + b*c") "mix(a, b, c)" "From a, where c = 0, to b, where c = 1.",
+    Defined("if(b < a, 0, 1)") "step(a, b)" "0 where b < a, else 1; its slope counts as 0.",
+    Defined("clamp((c - a)/(b - a), 0, 1)^2*(3 - 2*clamp((c - a)/(b - a), 0, 1))") "smoothstep(a, b, c)"
+        "From 0, where c ≤ a, smoothly to 1, where c ≥ b.",
+    Smin(Blend::Cubic) "smin(a, b, k)"
+        "Smooth minimum: the union of two solids, blended where |a − b| < k by a cubic polynomial.",
+    Smax(Blend::Cubic) "smax(a, b, k)"
+        "Smooth maximum: the intersection of two solids, blended where |a − b| < k by a cubic polynomial.",
+    Smin(Blend::Quadratic) "smin2(a, b, k)" "Smooth minimum like smin, but by a quadratic polynomial, which is deeper: by k/4.",
+    Smax(Blend::Quadratic) "smax2(a, b, k)" "Smooth maximum like smax, but by a quadratic polynomial.",
 }
 
 impl Function {
@@ -179,6 +321,12 @@ impl Function {
         let signature = self.info().signature;
         let commas = signature.matches(',').count();
         if signature.contains('…') { (commas, usize::MAX) } else { (commas + 1, commas + 1) }
+    }
+
+    /// The names of its arguments, if it is defined by a text.
+    pub(crate) fn argument_names(self) -> impl Iterator<Item = String> {
+        let inside = self.info().signature.split_once('(').map_or("", |(_, inside)| inside);
+        inside.trim_end_matches(')').split(", ").map(str::to_owned)
     }
 
     /// Whether the function can have `count` arguments.

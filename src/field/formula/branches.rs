@@ -1,9 +1,11 @@
 //! The smooth branches of a formula.
 //!
-//! A *choice* is an operation that passes on one of two smooth operands: a minimum, a maximum, an absolute value (u or −u), a smooth
-//! minimum whose blend has no width. Where the choices on which f depends have taken a side, f is a smooth function, its *branch*.
-//! Its graph is that of f with each choice replaced by the operand that it takes, built anew, so that equal operations are one node:
-//! branches with the same root are the same function, as both sides of |x| are in |x|².
+//! A *choice* is an operation that passes on one of two smooth operands: a minimum, a maximum, an
+//! absolute value (u or −u), a smooth minimum whose blend has no width, or what is chosen by a
+//! condition. Where the choices on which f depends have taken a side, f is a smooth function, its
+//! *branch*. Its graph is that of f with each choice replaced by the operand that it takes, built
+//! anew, so that equal operations are one node: branches with the same root are the same function,
+//! as both sides of |x| are in |x|².
 //!
 //! An absolute value to a power above 1 has a gradient at 0 and is no choice. Neither is one that no coordinate enters, nor one of which
 //! it was found that it makes [no crease](super::creases).
@@ -46,7 +48,9 @@ pub(super) enum NodeRole {
 /// The operand of a choice that counts where its condition holds, or elsewhere; none if its value is a number there.
 pub(super) fn taken(choice: Node, holds: bool) -> Option<Id> {
     match choice {
-        Node::Binary(_, a, b) | Node::Smin(a, b, _) => Some(if holds { a } else { b }),
+        Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
+            Some(if holds { a } else { b })
+        }
         Node::Unary(Unary::Abs, u) => Some(u),
         Node::If(at_most, _, _, value) => (holds == at_most).then_some(value),
         _ => None,
@@ -219,12 +223,14 @@ impl Base {
                 _ if is_uniform || self.smooth.binary_search(&id).is_ok() => NodeRole::Plain,
                 Node::Binary(Binary::Min, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(a, b)),
                 Node::Binary(Binary::Max, a, b) => NodeRole::Choice(ChoiceCondition::AtMost(b, a)),
-                Node::Smin(a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => {
+                Node::Smin(_, a, b, k) if uniform(k) <= MIN_BLEND_WIDTH => {
                     NodeRole::Choice(ChoiceCondition::AtMost(a, b))
                 }
                 Node::Unary(Unary::Abs, u) => NodeRole::Choice(ChoiceCondition::NotNegative(u)),
                 // The slopes of minima, maxima and absolute values.
-                Node::If(_, a, b, _) => NodeRole::Choice(ChoiceCondition::AtMost(a, b)),
+                Node::If(_, a, b, _) | Node::Select(_, a, b, ..) => {
+                    NodeRole::Choice(ChoiceCondition::AtMost(a, b))
+                }
                 Node::Unary(Unary::Sign, u) if self.graph.find(Node::Unary(Unary::Abs, u)).is_some() => {
                     NodeRole::Choice(ChoiceCondition::NotNegative(u))
                 }
@@ -378,6 +384,7 @@ impl Base {
                     | Node::Unary(Unary::Abs | Unary::Sign | Unary::Floor, _)
                     | Node::Smin(..)
                     | Node::If(..)
+                    | Node::Select(..)
             )
         };
         self.graph.needed_by(&[id]).iter().all(is_smooth)
@@ -467,7 +474,10 @@ impl Branches {
             let node = graph.node(id);
             let may_choose = matches!(
                 node,
-                Node::Binary(Binary::Min | Binary::Max, ..) | Node::Unary(Unary::Abs, _) | Node::Smin(..)
+                Node::Binary(Binary::Min | Binary::Max, ..)
+                    | Node::Unary(Unary::Abs, _)
+                    | Node::Smin(..)
+                    | Node::Select(..)
             );
             may_choose && !graph.is_uniform(id)
         };

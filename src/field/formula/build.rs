@@ -1,10 +1,12 @@
 //! Translation of the syntax tree into the SSA graph.
 
 use super::MAX_OPERATIONS;
-use super::ast::{Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::ast::{Connective, Definition, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use super::statements;
+use super::token::Comparison;
 
 /// Adds f = left − right to `graph` and returns its node. `parameters` are the parameter names by index.
 ///
@@ -13,7 +15,14 @@ use super::operations::{Binary, Unary};
 /// [`ErrorKind::NotFinite`] for a constant subexpression without a finite value, [`ErrorKind::TooComplex`] if the graph
 /// grows beyond [`MAX_OPERATIONS`] nodes.
 pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str]) -> Result<Id, FormulaError> {
-    let mut builder = Builder { graph, parameters };
+    let definitions = &equation.definitions;
+    let mut builder =
+        Builder { graph, parameters, definitions, values: Vec::new(), arguments: Vec::new(), expressions: 0 };
+    for definition in definitions {
+        // A function has as many values as it has calls.
+        let value = if definition.arguments.is_empty() { builder.expression(&definition.body)? } else { 0 };
+        builder.values.push(value);
+    }
     let left = builder.expression(&equation.left)?;
     let root = match &equation.right {
         None => left,
@@ -25,13 +34,25 @@ pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str])
     Ok(root)
 }
 
+/// Maximum number of expressions that are translated, which functions of the formula's own
+/// multiply. A formula without such functions has no more expressions than bytes.
+const MAX_EXPRESSIONS: usize = 16 * MAX_OPERATIONS;
+
 struct Builder<'a> {
     graph: &'a mut Graph,
     parameters: &'a [&'a str],
+    definitions: &'a [Definition],
+    /// The node of each definition so far, if it is a value.
+    values: Vec<Id>,
+    /// The nodes of the arguments of the function whose body is being translated.
+    arguments: Vec<Id>,
+    /// Number of expressions that were translated so far.
+    expressions: usize,
 }
 
 impl Builder<'_> {
     fn expression(&mut self, expr: &Expr) -> Result<Id, FormulaError> {
+        self.expressions += 1;
         let id = match &expr.kind {
             ExprKind::Number(value) => self.graph.constant(*value),
             ExprKind::Constant(constant) => self.graph.constant(constant.value()),
@@ -41,6 +62,7 @@ impl Builder<'_> {
                 let index = index.expect("every name was resolved before the tree is built");
                 self.graph.intern(Node::Parameter(u32::try_from(index).unwrap_or(u32::MAX)))
             }
+            ExprKind::Argument(argument) => self.arguments[argument.index],
             ExprKind::Negated(inner) => {
                 let inner = self.expression(inner)?;
                 self.graph.neg(inner)
@@ -52,16 +74,73 @@ impl Builder<'_> {
                 let exponent = self.expression(exponent)?;
                 self.graph.pow(base, exponent)
             }
-            ExprKind::Call(function, arguments) => self.call(*function, arguments)?,
+            ExprKind::Call(function, arguments) => self.call(expr, *function, arguments)?,
+            ExprKind::Defined(name, arguments) if arguments.is_empty() => self.values[name.index],
+            ExprKind::Defined(name, arguments) => {
+                let arguments = self.all(arguments)?;
+                let definitions = self.definitions;
+                self.applied(expr, &definitions[name.index].body, arguments)?
+            }
+            ExprKind::Choice(parts) => {
+                let [condition, first, second] = &**parts;
+                let (first, second) = (self.expression(first)?, self.expression(second)?);
+                self.choice(condition, first, second)?
+            }
+            ExprKind::Compare(..) | ExprKind::Logic(..) | ExprKind::Not(_) => {
+                unreachable!("the parser lets conditions stand in choices alone")
+            }
         };
         if self.graph.as_constant(id).is_some_and(|value| !value.is_finite()) {
             return Err(not_finite(expr));
         }
         // Checked before differentiation, which multiplies the nodes: a hostile formula is refused cheaply.
-        if self.graph.len() > MAX_OPERATIONS {
+        if self.graph.len() > MAX_OPERATIONS || self.expressions > MAX_EXPRESSIONS {
             return Err(too_complex(expr));
         }
         Ok(id)
+    }
+
+    fn all(&mut self, arguments: &[Expr]) -> Result<Vec<Id>, FormulaError> {
+        arguments.iter().map(|argument| self.expression(argument)).collect()
+    }
+
+    /// The value of the `body` of a function for these arguments; its errors are those of the
+    /// `call`.
+    fn applied(&mut self, call: &Expr, body: &Expr, arguments: Vec<Id>) -> Result<Id, FormulaError> {
+        let outside = core::mem::replace(&mut self.arguments, arguments);
+        let result = self.expression(body);
+        self.arguments = outside;
+        result.map_err(|error| match error.kind {
+            ErrorKind::NotFinite => not_finite(call),
+            _ => FormulaError { span: call.span.clone(), ..error },
+        })
+    }
+
+    /// The node of `first` where the condition holds, and of `second` elsewhere.
+    fn choice(&mut self, condition: &Expr, first: Id, second: Id) -> Result<Id, FormulaError> {
+        match &condition.kind {
+            ExprKind::Compare(comparison, sides) => {
+                let (a, b) = (self.expression(&sides[0])?, self.expression(&sides[1])?);
+                Ok(match comparison {
+                    Comparison::AtMost => self.graph.select(a, b, first, second),
+                    Comparison::AtLeast => self.graph.select(b, a, first, second),
+                    Comparison::Less => self.graph.select(b, a, second, first),
+                    Comparison::Greater => self.graph.select(a, b, second, first),
+                })
+            }
+            ExprKind::Logic(connective, conditions) => {
+                let (mut first, mut second) = (first, second);
+                for condition in conditions.iter().rev() {
+                    match connective {
+                        Connective::And => first = self.choice(condition, first, second)?,
+                        Connective::Or => second = self.choice(condition, first, second)?,
+                    }
+                }
+                Ok(if *connective == Connective::And { first } else { second })
+            }
+            ExprKind::Not(inner) => self.choice(inner, second, first),
+            _ => unreachable!("the parser has checked conditions"),
+        }
     }
 
     fn sum(&mut self, terms: &[(Sign, Expr)]) -> Result<Id, FormulaError> {
@@ -99,10 +178,11 @@ impl Builder<'_> {
         Ok(total.expect("a product has factors"))
     }
 
-    fn call(&mut self, function: Function, arguments: &[Expr]) -> Result<Id, FormulaError> {
-        let mut ids = Vec::with_capacity(arguments.len());
-        for argument in arguments {
-            ids.push(self.expression(argument)?);
+    fn call(&mut self, call: &Expr, function: Function, arguments: &[Expr]) -> Result<Id, FormulaError> {
+        let ids = self.all(arguments)?;
+        if let Function::Defined(text) = function {
+            let body = statements::body(text, function.argument_names()).expect("the language defines it");
+            return self.applied(call, &body, ids);
         }
         let graph = &mut *self.graph;
         Ok(match function {
@@ -113,13 +193,14 @@ impl Builder<'_> {
                 let sum = fold(graph, Binary::Add, &squares);
                 graph.unary(Unary::Sqrt, sum)
             }
-            Function::Smin => graph.smin(ids[0], ids[1], ids[2]),
+            Function::Smin(blend) => graph.smin(blend, ids[0], ids[1], ids[2]),
             // smax(a, b, k) = −smin(−a, −b, k).
-            Function::Smax => {
+            Function::Smax(blend) => {
                 let (a, b) = (graph.neg(ids[0]), graph.neg(ids[1]));
-                let smooth = graph.smin(a, b, ids[2]);
+                let smooth = graph.smin(blend, a, b, ids[2]);
                 graph.neg(smooth)
             }
+            Function::If | Function::Defined(_) => unreachable!("a choice has a node of its own"),
         })
     }
 }

@@ -5,10 +5,12 @@
 //! sin(2πx²). Then a sign, a bracket that closes or another function has to come: `sin x y`, `sin x/2` and `sqrt 2x` may mean
 //! either.
 
-use super::ast::{Expr, ExprKind, Factor, Function};
+use super::ast::{Expr, ExprKind, Factor, Function, Sign};
+use super::conditions::as_condition;
+use super::elsewhere::{self, Called, NO_VECTORS};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::operations::Unary;
-use super::parse::{CallArguments, Parse, Parser, integer};
+use super::operations::{Binary, Unary};
+use super::parse::{CallArguments, Parse, Parser, integer, wrong_arity};
 use super::token::{Spanned, Token, slice};
 use core::ops::Range;
 
@@ -33,41 +35,107 @@ impl Parser<'_> {
     /// Parses the exponent and the arguments of `function`, whose name has just been consumed at `span`.
     pub(super) fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let exponent = self.exponent_of_value(function, &span)?;
-        let (arguments, whole) = if let Token::Open(_) = self.peek().token {
-            let (CallArguments { arguments, doubtful, first_doubtful }, inside) = self.arguments()?;
-            // The number of arguments tells whether a comma may be decimal: `min(1,5)` can have two only, `min(x, 1,5)` two or three.
-            let count = arguments.len();
-            let may_be_fewer = (count - doubtful..count).any(|fewer| function.takes(fewer));
-            if doubtful > 0
-                && (may_be_fewer || !function.takes(count))
-                && let Some(error) = self.decimal_comma(first_doubtful)
-            {
+        let (mut arguments, whole) = if let Token::Open(_) = self.peek().token {
+            let (call, inside) = self.arguments(Some(function))?;
+            if let Some(error) = self.doubt(&call, &|count| takes(function, count)) {
                 return Err(error);
             }
-            (arguments, span.start..inside.end)
+            (call.arguments, span.start..inside.end)
         } else {
             let operand = self.operand(function, &span)?;
             let end = operand.span.end;
             (vec![operand], span.start..end)
         };
-        if !function.takes(arguments.len()) {
-            let wanted = match function.arity() {
-                (1, 1) => "one argument".to_owned(),
-                (least, most) if least == most => format!("{least} arguments"),
-                (least, _) => format!("at least {least} arguments"),
+        let count = arguments.len();
+        if !takes(function, count) {
+            let name = slice(self.text, &span);
+            let signature = function.info().signature.replacen(function.name(), name, 1);
+            let error = match function.arity() {
+                (least, most) if least == most => wrong_arity(&signature, least, count, whole),
+                (least, _) => {
+                    let message =
+                        format!("`{signature}` takes at least {least} arguments, and here it has {count}");
+                    FormulaError::new(ErrorKind::WrongArity, whole, message)
+                }
             };
-            let message = format!(
-                "`{}` takes {wanted}, and here it has {}",
-                function.info().signature,
-                arguments.len()
-            );
-            return Err(FormulaError::new(ErrorKind::WrongArity, whole, message));
+            return Err(match &arguments[..] {
+                [point] if function == Function::Hypot => {
+                    let message = format!("{}. {NO_VECTORS}", error.message);
+                    let error = FormulaError { message, ..error };
+                    if is_point(point) { error.suggest(format!("{name}(x, y, z)")) } else { error }
+                }
+                _ => error,
+            });
         }
-        let call = Expr { kind: ExprKind::Call(function, arguments), span: whole.clone() };
+        let kind = match function {
+            Function::If => {
+                let [condition, first, second] = [0, 1, 2].map(|_| arguments.remove(0));
+                ExprKind::Choice(Box::new([as_condition(condition)?, first, second]))
+            }
+            Function::Unary(Unary::Atan) if count == 2 => {
+                ExprKind::Call(Function::Binary(Binary::Atan2), arguments)
+            }
+            _ => ExprKind::Call(function, arguments),
+        };
+        let call = Expr { kind, span: whole.clone() };
         Ok(match exponent {
             Some(exponent) => Expr { kind: ExprKind::Power(Box::new(call), Box::new(exponent)), span: whole },
             None => call,
         })
+    }
+
+    /// Parses the call of a function by a name that it has elsewhere, which has just been consumed
+    /// at `span`.
+    pub(super) fn call_of(&mut self, called: Called, span: Range<usize>) -> Parse {
+        if let Called::Function(function) = called {
+            return self.call(function, span);
+        }
+        let (CallArguments { mut arguments, .. }, inside) =
+            self.arguments(Some(Function::Hypot).filter(|_| called == Called::Dot))?;
+        let (count, whole) = (arguments.len(), span.start..inside.end);
+        let name = slice(self.text, &span);
+        let (signature, wanted) = match called {
+            Called::Power => (format!("{name}(a, b)"), 2),
+            Called::Square => (format!("{name}(a)"), 1),
+            Called::AngleOf if count == 1 => (format!("{name}[a]"), 1),
+            Called::AngleOf => (format!("{name}[a, b]"), 2),
+            _ if count < 4 || count % 2 == 1 => {
+                let message = format!("`{name}(a, b, c, d, e, f)` is a d + b e + c f. {NO_VECTORS}");
+                let error = FormulaError::new(ErrorKind::WrongArity, whole, message);
+                let is_square = count == 2 && arguments.iter().all(is_point);
+                return Err(if is_square { error.suggest("(x^2 + y^2 + z^2)") } else { error });
+            }
+            _ => (String::new(), count),
+        };
+        if count != wanted {
+            return Err(wrong_arity(&signature, wanted, count, whole));
+        }
+        let last = arguments.pop();
+        let kind = match (called, last) {
+            (Called::Power, Some(exponent)) => {
+                ExprKind::Power(Box::new(arguments.remove(0)), Box::new(exponent))
+            }
+            (Called::Square, Some(base)) => {
+                ExprKind::Power(Box::new(base), Box::new(integer(2, span.clone())))
+            }
+            (Called::AngleOf, Some(first)) if arguments.is_empty() => {
+                ExprKind::Call(Function::Unary(Unary::Atan), vec![first])
+            }
+            (Called::AngleOf, Some(second)) => {
+                ExprKind::Call(Function::Binary(Binary::Atan2), vec![second, arguments.remove(0)])
+            }
+            (_, last) => {
+                arguments.extend(last);
+                let others = arguments.split_off(count / 2);
+                let products = arguments.into_iter().zip(others).map(|(a, b)| {
+                    let span = a.span.start..b.span.end;
+                    let factors = vec![(Factor::Times, a), (Factor::Times, b)];
+                    (Sign::Plus, Expr { kind: ExprKind::Product(factors), span })
+                });
+                ExprKind::Sum(products.collect())
+            }
+        };
+        Ok(Expr { kind, span: whole })
     }
 
     /// Parses the exponent after the name of a function: in `sin^2(x)` and `sin²(x)` it applies to the value.
@@ -117,7 +185,12 @@ impl Parser<'_> {
     /// Parses what `function`, whose name stands at `span`, is applied to without brackets.
     fn operand(&mut self, function: Function, span: &Range<usize>) -> Parse {
         let name = function.name();
-        let message = format!("`{name}` needs brackets around what it is applied to");
+        let message = match function {
+            Function::If => {
+                "A choice is written `if(c, a, b)`: a where the condition c holds, else b".to_owned()
+            }
+            _ => format!("`{name}` needs brackets around what it is applied to"),
+        };
         let error = FormulaError::new(ErrorKind::MissingBrackets, span.clone(), message);
         if self.peek().token == Token::Minus
             && let Ok(operand) = self.deeper(Self::signed_power)
@@ -125,8 +198,7 @@ impl Parser<'_> {
             return Err(bracketed(self.text, error, name, &operand.span));
         }
         let begins = self.begins_factor() || matches!(self.peek().token, Token::Number(_));
-        let (least, _) = function.arity();
-        if !begins || least > 1 {
+        if !begins || !function.takes(1) {
             return Err(error.suggest(format!("{name}(…)")));
         }
         let operand = self.deeper(Self::beside)?;
@@ -153,7 +225,7 @@ impl Parser<'_> {
             let is_after_command = slice(self.text, &factors[factors.len() - 1].1.span).starts_with('\\');
             let between = slice(self.text, &(end..next.span.start));
             let is_beside = between.is_empty() || is_after_command && between.trim().is_empty();
-            if !is_beside || !(is_coefficient || is_coordinate) || Function::find(name).is_some() {
+            if !is_beside || !(is_coefficient || is_coordinate) || elsewhere::function(name).is_some() {
                 break;
             }
             let factor = self.power()?;
@@ -172,7 +244,7 @@ impl Parser<'_> {
     /// Whether what follows an operand might belong to it.
     fn is_ambiguous_after(&self) -> bool {
         let is_function = |token: &Token| match token {
-            Token::Name(name) => Function::find(name).is_some(),
+            Token::Name(name) => elsewhere::function(name).is_some(),
             token => *token == Token::Root,
         };
         match &self.peek().token {
@@ -191,4 +263,14 @@ fn bracketed(text: &str, error: FormulaError, name: &str, span: &Range<usize>) -
 
 fn is_coefficient(kind: &ExprKind) -> bool {
     matches!(kind, ExprKind::Number(_) | ExprKind::Constant(_))
+}
+
+/// Whether an argument is the point itself, as programs call it.
+fn is_point(argument: &Expr) -> bool {
+    matches!(&argument.kind, ExprKind::Parameter(name) if matches!(name.as_str(), "p" | "P" | "pos" | "point"))
+}
+
+/// Whether a function can have `count` arguments, in GLSL the inverse tangent two.
+fn takes(function: Function, count: usize) -> bool {
+    function.takes(count) || function == Function::Unary(Unary::Atan) && count == 2
 }

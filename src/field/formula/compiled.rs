@@ -61,7 +61,7 @@ impl Compiled {
         // A step function has gradient 0 almost everywhere and is not constant.
         let has_steps = graph.nodes()[..=root as usize]
             .iter()
-            .any(|node| matches!(node, Node::Unary(Unary::Floor | Unary::Sign, _)));
+            .any(|node| matches!(node, Node::Unary(Unary::Floor | Unary::Sign, _) | Node::Select(..)));
         let has_zero_gradient = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
         let mut compiled = Self {
             is_constant: graph.is_uniform(root) || (has_zero_gradient && !has_steps),

@@ -152,7 +152,7 @@ fn ties_of(base: &mut Base, part: &BranchPart, choices: &[Id], values: &[f64]) -
     for &choice in choices {
         let tied = match base.graph.node(choice) {
             Node::Unary(Unary::Abs, _) => vec![base.graph.constant(0.0)],
-            Node::Binary(_, a, b) | Node::Smin(a, b, _) => {
+            Node::Binary(_, a, b) | Node::Smin(_, a, b, _) | Node::Select(_, _, _, a, b) => {
                 vec![a, b, base.graph.combination([(a, 0.5), (b, 0.5)])]
             }
             _ => Vec::new(),
@@ -187,7 +187,7 @@ impl Base {
             let is_way = last == Some(operand) && uses[operand as usize] == 1;
             last = is_way.then_some(id);
             let is_one_of_two = matches!(self.roles[id as usize], NodeRole::Choice(_))
-                && matches!(node, Node::Binary(..) | Node::Smin(..));
+                && matches!(node, Node::Binary(..) | Node::Smin(..) | Node::Select(..));
             map[id as usize] =
                 if is_way && is_one_of_two { new(operand) } else { self.graph.built(node.mapped(new)) };
         }
@@ -339,7 +339,7 @@ impl TieSearch<'_> {
                 }
                 (NodeRole::Raised(u), _) => need(u, reach),
                 // Where the operands differ by more than the width, the blend is one of them.
-                (NodeRole::Plain, Node::Smin(a, b, k)) => {
+                (NodeRole::Plain, Node::Smin(_, a, b, k)) => {
                     let width = range(k).bounds.hi.max(MIN_BLEND_WIDTH);
                     let is_far_below = |a: Id, b: Id| range(a).bounds.hi + width < range(b).bounds.lo;
                     need(a, if is_far_below(b, a) { TieReach::Blended } else { reach });

@@ -9,7 +9,7 @@
 //! A kink has the derivative of one of its sides: abs has slope 0 at 0, min and max take the slope of the first operand
 //! at a tie, floor and sign have slope 0 everywhere.
 
-use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
+use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::program::cost;
 
@@ -78,6 +78,7 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
             Node::Binary(Binary::Min, a, b) => choose(graph, a, b, tangent[a as usize], tangent[b as usize]),
             Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[a as usize], tangent[b as usize]),
             Node::If(at_most, a, b, v) => graph.when(at_most, a, b, tangent[v as usize]),
+            Node::Select(_, a, b, u, v) => graph.select(a, b, tangent[u as usize], tangent[v as usize]),
             _ => {
                 let mut total = zero;
                 for (operand, slope) in operand_adjoints(graph, id, one).into_iter().flatten() {
@@ -113,8 +114,13 @@ fn operand_adjoints(graph: &mut Graph, id: Id, adjoint: Id) -> [Option<(Id, Id)>
             [Some((a, graph.mul(scaled, lower))), None, None]
         }
         Node::Binary(operation, a, b) => binary(graph, operation, a, b, id, adjoint),
-        Node::Smin(a, b, k) => smin(graph, a, b, k, adjoint),
+        Node::Smin(blend, a, b, k) => smin(graph, blend, a, b, k, adjoint),
         Node::If(at_most, a, b, v) => [Some((v, graph.when(at_most, a, b, adjoint))), None, None],
+        Node::Select(_, a, b, u, v) => {
+            let to_u = (u, graph.when(true, a, b, adjoint));
+            let to_v = (v, graph.when(false, a, b, adjoint));
+            [Some(to_u).filter(|_| !graph.is_uniform(u)), Some(to_v).filter(|_| !graph.is_uniform(v)), None]
+        }
     }
 }
 
@@ -184,6 +190,27 @@ fn unary(graph: &mut Graph, operation: Unary, a: Id, id: Id, adjoint: Id) -> Id 
             let slope = graph.sub(one, square);
             graph.mul(adjoint, slope)
         }
+        Unary::Asinh | Unary::Acosh => {
+            let square = graph.power(a, 2);
+            let one = graph.constant(1.0);
+            let sum = if operation == Unary::Asinh { graph.add(square, one) } else { graph.sub(square, one) };
+            let root = graph.unary(Unary::Sqrt, sum);
+            graph.div(adjoint, root)
+        }
+        Unary::Atanh => {
+            let square = graph.power(a, 2);
+            let one = graph.constant(1.0);
+            let rest = graph.sub(one, square);
+            graph.div(adjoint, rest)
+        }
+        Unary::Erf => {
+            let square = graph.power(a, 2);
+            let negated = graph.neg(square);
+            let bell = graph.unary(Unary::Exp, negated);
+            let scale = graph.constant(core::f64::consts::FRAC_2_SQRT_PI);
+            let slope = graph.mul(bell, scale);
+            graph.mul(adjoint, slope)
+        }
     }
 }
 
@@ -251,16 +278,23 @@ fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, adjoint: I
     [to_a.filter(|_| of_a).map(|term| (a, term)), to_b.filter(|_| of_b).map(|term| (b, term)), None]
 }
 
-/// Contributions of a smooth minimum. With u = (a − b)/k clamped to −1 … 1 and w = u − u|u|/2, its partial derivatives
-/// are ½ − w in a, ½ + w in b and u²/2 − |u|³/3 − 1/6 in k. The form needs no branch and is smooth at a = b.
-fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
+/// Contributions of a smooth minimum. With u = (a − b)/k clamped to −1 … 1 and the depth k p(u) of
+/// the blend below (a + b)/2, its partial derivatives are ½ − p′ in a, ½ + p′ in b and u p′ − p in
+/// k: p = 1/6 + u²/2 − |u|³/6 of a cubic blend, ¼ + u²/4 of a quadratic one. The form needs no
+/// branch and is smooth at a = b.
+fn smin(graph: &mut Graph, blend: Blend, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     let (of_a, of_b, of_k) = (!graph.is_uniform(a), !graph.is_uniform(b), !graph.is_uniform(k));
     let (_, u) = graph.blend(a, b, k);
     let half = graph.constant(0.5);
     let magnitude = graph.unary(Unary::Abs, u);
     let square = graph.mul(u, magnitude);
-    let correction = graph.mul(square, half);
-    let w = graph.sub(u, correction);
+    let w = match blend {
+        Blend::Cubic => {
+            let correction = graph.mul(square, half);
+            graph.sub(u, correction)
+        }
+        Blend::Quadratic => graph.mul(u, half),
+    };
     let to_a = of_a.then(|| {
         let slope = graph.sub(half, w);
         (a, graph.mul(adjoint, slope))
@@ -270,11 +304,21 @@ fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)
         (b, graph.mul(adjoint, slope))
     });
     let to_k = of_k.then(|| {
-        let (third, sixth) = (graph.constant(1.0 / 3.0), graph.constant(1.0 / 6.0));
-        let (uu, uuu) = (graph.power(u, 2), graph.mul(square, u));
-        let (uu, uuu) = (graph.mul(uu, half), graph.mul(uuu, third));
-        let rise = graph.sub(uu, uuu);
-        let slope = graph.sub(rise, sixth);
+        let uu = graph.power(u, 2);
+        let slope = match blend {
+            Blend::Cubic => {
+                let (third, sixth) = (graph.constant(1.0 / 3.0), graph.constant(1.0 / 6.0));
+                let uuu = graph.mul(square, u);
+                let (uu, uuu) = (graph.mul(uu, half), graph.mul(uuu, third));
+                let rise = graph.sub(uu, uuu);
+                graph.sub(rise, sixth)
+            }
+            Blend::Quadratic => {
+                let quarter = graph.constant(0.25);
+                let rise = graph.mul(uu, quarter);
+                graph.sub(rise, quarter)
+            }
+        };
         // The minimum does not depend on widths below the smallest one.
         let slope = graph.mul(adjoint, slope);
         let least = graph.constant(MIN_BLEND_WIDTH);

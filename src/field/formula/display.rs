@@ -1,11 +1,14 @@
 //! Plain text of a formula, which parses back to the same tree.
 
-use super::ast::{COORDINATES, Equation, Expr, ExprKind, Factor, Sign};
+use super::ast::{COORDINATES, Connective, Equation, Expr, ExprKind, Factor, Function, Sign};
 use crate::math::shortest_text;
 
 /// Precedence, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Precedence {
+    Or,
+    And,
+    Comparison,
     Sum,
     /// A leading sign, with the precedence of a product whose first factor it may belong to.
     Sign,
@@ -16,6 +19,9 @@ pub(super) enum Precedence {
 
 pub(super) fn level(kind: &ExprKind) -> Precedence {
     match kind {
+        ExprKind::Logic(Connective::Or, _) => Precedence::Or,
+        ExprKind::Logic(Connective::And, _) => Precedence::And,
+        ExprKind::Compare(..) | ExprKind::Not(_) => Precedence::Comparison,
         ExprKind::Sum(_) => Precedence::Sum,
         ExprKind::Negated(_) => Precedence::Sign,
         ExprKind::Product(_) => Precedence::Product,
@@ -24,7 +30,10 @@ pub(super) fn level(kind: &ExprKind) -> Precedence {
         | ExprKind::Constant(_)
         | ExprKind::Coordinate(_)
         | ExprKind::Parameter(_)
-        | ExprKind::Call(_, _) => Precedence::Atom,
+        | ExprKind::Argument(_)
+        | ExprKind::Defined(..)
+        | ExprKind::Choice(_)
+        | ExprKind::Call(..) => Precedence::Atom,
     }
 }
 
@@ -37,7 +46,25 @@ pub(super) fn plain(expr: &Expr) -> String {
 
 /// Text of an equation.
 pub(super) fn plain_equation(equation: &Equation) -> String {
-    let mut out = plain(&equation.left);
+    let mut out = String::new();
+    for definition in &equation.definitions {
+        out.push_str(&definition.name);
+        if !definition.arguments.is_empty() {
+            out.push('(');
+            out.push_str(&definition.arguments.join(", "));
+            out.push(')');
+        }
+        out.push_str(" = ");
+        write(&mut out, &definition.body);
+        out.push_str("; ");
+    }
+    if equation.looks_like_definition() {
+        out.push('(');
+        write(&mut out, &equation.left);
+        out.push(')');
+    } else {
+        write(&mut out, &equation.left);
+    }
     if let Some(right) = &equation.right {
         out.push_str(" = ");
         write(&mut out, right);
@@ -96,16 +123,45 @@ fn write(out: &mut String, expr: &Expr) {
             }
             write_at(out, exponent, Precedence::Power);
         }
-        ExprKind::Call(function, arguments) => {
-            out.push_str(function.name());
-            out.push('(');
-            for (index, argument) in arguments.iter().enumerate() {
+        ExprKind::Call(function, arguments) => write_call(out, function.name(), arguments),
+        ExprKind::Argument(reference) => out.push_str(&reference.name),
+        ExprKind::Defined(reference, arguments) if arguments.is_empty() => out.push_str(&reference.name),
+        ExprKind::Defined(reference, arguments) => write_call(out, &reference.name, arguments),
+        ExprKind::Choice(parts) => write_call(out, Function::If.name(), &**parts),
+        ExprKind::Compare(comparison, sides) => {
+            write_at(out, &sides[0], Precedence::Sum);
+            out.push(' ');
+            out.push_str(comparison.sign());
+            out.push(' ');
+            write_at(out, &sides[1], Precedence::Sum);
+        }
+        ExprKind::Logic(connective, conditions) => {
+            let (word, least) = match connective {
+                Connective::And => (" and ", Precedence::Comparison),
+                Connective::Or => (" or ", Precedence::And),
+            };
+            for (index, condition) in conditions.iter().enumerate() {
                 if index > 0 {
-                    out.push_str(", ");
+                    out.push_str(word);
                 }
-                write(out, argument);
+                write_at(out, condition, least);
             }
-            out.push(')');
+        }
+        ExprKind::Not(inner) => {
+            out.push_str("not ");
+            write_at(out, inner, Precedence::Comparison);
         }
     }
+}
+
+fn write_call(out: &mut String, name: &str, arguments: &[Expr]) {
+    out.push_str(name);
+    out.push('(');
+    for (index, argument) in arguments.iter().enumerate() {
+        if index > 0 {
+            out.push_str(", ");
+        }
+        write(out, argument);
+    }
+    out.push(')');
 }

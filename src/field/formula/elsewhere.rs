@@ -1,89 +1,232 @@
-//! Names of functions in other languages and books, each with the way to write it here.
+//! Names of other languages and books: functions that are called otherwise there, modules and
+//! vectors.
 
+use super::ast::{Constant, Function};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::token::{Spanned, Token, slice};
 
-/// The places of a call's arguments in [`call_elsewhere`]: the first, second and third, with their names in messages. No formula has
-/// these characters.
-const PLACES: [(char, &str); 3] = [('①', "a"), ('②', "b"), ('③', "c")];
-/// The place of all arguments.
-const ALL: char = '…';
+/// The places of a call's arguments in [`call_elsewhere`]: the first and the second, with their
+/// names in messages. No formula has these characters.
+const PLACES: [(char, &str); 2] = [('①', "a"), ('②', "b")];
 
-/// Function that is called `name` in other languages and books.
-pub(super) fn name_elsewhere(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "log" => "ln",
-        "lg" => "log10",
+/// The function that `name` is, with brackets behind it or without.
+pub(super) fn function(name: &str) -> Option<Function> {
+    let name = match name {
+        "sgn" | "signum" => "sign",
+        "tg" => "tan",
+        "ctg" | "cotg" | "cotan" => "cot",
+        "cosec" => "csc",
         "arcsin" => "asin",
         "arccos" => "acos",
-        "arctan" => "atan",
-        "sgn" => "sign",
+        "arctan" | "arctg" => "atan",
+        "arcsinh" | "arsinh" => "asinh",
+        "arccosh" | "arcosh" => "acosh",
+        "arctanh" | "artanh" => "atanh",
+        _ => name,
+    };
+    Function::find(name)
+}
+
+/// What a call stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Called {
+    Function(Function),
+    /// a^b
+    Power,
+    /// a^2
+    Square,
+    /// The sum of the products of the first half of the arguments with the second half.
+    Dot,
+    /// The angle of the point (a, b).
+    AngleOf,
+}
+
+/// What a call of `name`, with a bracket of this kind, stands for. Without brackets, most of these
+/// names may be those of parameters.
+pub(super) fn called(name: &str, bracket: char) -> Option<Called> {
+    // Mathematica writes `Sin[x]`.
+    if bracket == '[' {
+        match name {
+            "Log" => return called("ln", bracket),
+            "ArcTan" => return Some(Called::AngleOf),
+            _ => {}
+        }
+    }
+    let lower = name.to_ascii_lowercase();
+    Some(Called::Function(match lower.as_str() {
+        "pow" | "power" => return Some(Called::Power),
+        "square" => return Some(Called::Square),
+        "dot" => return Some(Called::Dot),
+        "fabs" | "absolute" => return called("abs", bracket),
+        "fmin" | "minimum" => return called("min", bracket),
+        "fmax" | "maximum" => return called("max", bracket),
+        "ceiling" => return called("ceil", bracket),
+        "frac" => return called("fract", bracket),
+        "cuberoot" => return called("cbrt", bracket),
+        "length" | "norm" | "len" => return called("hypot", bracket),
+        "lerp" => return called("mix", bracket),
+        "clip" => return called("clamp", bracket),
+        "where" | "ifelse" => return called("if", bracket),
+        "arctan2" => return called("atan2", bracket),
+        "sh" => return called("sinh", bracket),
+        "ch" => return called("cosh", bracket),
+        "th" => return called("tanh", bracket),
+        lower => match function(lower) {
+            Some(function) => function,
+            // The functions of C in single precision, such as `sqrtf`.
+            None => return called(lower.strip_suffix('f').filter(|rest| rest.len() > 2)?, bracket),
+        },
+    }))
+}
+
+/// How a call of `name` is written here, if there is no such function; several ways with different
+/// meanings.
+fn call_elsewhere(name: &str) -> Option<&'static [&'static str]> {
+    Some(match name {
+        "exp2" => &["2^①"],
+        "exp10" => &["10^①"],
+        "expm1" => &["exp(①) - 1"],
+        "log1p" => &["ln(1 + ①)"],
+        "cube" => &["①^3"],
+        "abs2" => &["①^2"],
+        "sqr" => &["①^2", "sqrt(①)"],
+        "inversesqrt" | "rsqrt" => &["1/sqrt(①)"],
+        "trunc" | "fix" => &["sign(①)*floor(abs(①))"],
+        "fmod" | "rem" => &["① - ②*sign(①/②)*floor(abs(①/②))"],
+        "rint" => &["round(①)"],
+        "saturate" => &["clamp(①, 0, 1)"],
+        "heaviside" => &["step(0, ①)"],
+        "erfc" => &["1 - erf(①)"],
+        "asec" | "arcsec" => &["acos(1/①)"],
+        "acsc" | "arccsc" => &["asin(1/①)"],
+        "acoth" | "arcoth" | "arccoth" => &["atanh(1/①)"],
+        "acot" | "arccot" => &["atan(1/①)", "pi/2 - atan(①)"],
+        "sind" => &["sin(①*pi/180)"],
+        "cosd" => &["cos(①*pi/180)"],
+        "tand" => &["tan(①*pi/180)"],
+        "sinpi" => &["sin(pi*①)"],
+        "cospi" => &["cos(pi*①)"],
+        "sinc" => &["sin(①)/①", "sin(pi*①)/(pi*①)"],
+        "radians" | "deg2rad" => &["①*pi/180"],
+        "degrees" | "rad2deg" => &["①*180/pi"],
         _ => return None,
     })
 }
 
-/// How a call of `name` is written here. Only calls count: as a name of its own, such as `length`, it may be a parameter.
-fn call_elsewhere(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "length" | "norm" | "len" => "hypot(…)",
-        "vec2" | "vec3" | "vec4" => "…",
-        "pow" => "①^②",
-        "abs2" => "①^2",
-        "clamp" => "min(max(①, ②), ③)",
-        "mix" | "lerp" => "①*(1 - ③) + ②*③",
-        "mod" | "fmod" => "① - ②*floor(①/②)",
-        "fract" => "① - floor(①)",
-        "ceil" => "-floor(-①)",
-        "round" => "floor(① + 1/2)",
-        "step" => "(1 + sign(② - ①))/2",
-        _ => return None,
-    })
-}
+/// Functions of other languages that have no place here. No other name is suggested for them.
+const UNKNOWN: &[&str] = &[
+    "gamma", "tgamma", "lgamma", "beta", "zeta", "besselj", "bessely", "airy", "nthroot", "surd", "sum",
+    "prod", "mean", "diff", "noise", "snoise", "perlin", "rand", "random", "hash", "real", "imag", "conj",
+    "arg", "sigmoid", "softplus", "relu", "any", "all",
+];
+
+/// Functions that make grids and pictures.
+const PROGRAM: &[&str] = &[
+    "meshgrid",
+    "ndgrid",
+    "linspace",
+    "mgrid",
+    "isosurface",
+    "fimplicit3",
+    "contourplot3d",
+    "implicitplot3d",
+    "plot",
+    "print",
+];
 
 fn is_of_vectors(name: &str) -> bool {
-    matches!(name, "dot" | "cross" | "normalize")
+    is_vector(name)
+        || matches!(
+            name,
+            "dot" | "cross" | "normalize" | "reflect" | "refract" | "transpose" | "mat2" | "mat3" | "mat4"
+        )
 }
 
-/// Whether a call of `name` means something elsewhere, so that `name` is hardly that of a definition.
+/// Whether a call of `name` makes a vector.
+pub(super) fn is_vector(name: &str) -> bool {
+    matches!(name, "vec2" | "vec3" | "vec4" | "float2" | "float3" | "float4" | "Vector" | "Vector3" | "array")
+}
+
+/// What is said where a vector stands.
+pub(super) const NO_VECTORS: &str =
+    "There are no vectors: write coordinates, such as `hypot(x, z)` for the length of (x, z)";
+
+/// Whether a call of `name` means something elsewhere, so that `name` is hardly that of a
+/// definition of f.
 pub(super) fn is_elsewhere(name: &str) -> bool {
-    name_elsewhere(name).is_some() || call_elsewhere(name).is_some() || is_of_vectors(name)
+    let lower = name.to_ascii_lowercase();
+    called(name, '(').is_some()
+        || call_elsewhere(name).is_some()
+        || is_of_vectors(name)
+        || matches!(name, "log" | "lg")
+        || [UNKNOWN, PROGRAM].iter().any(|list| list.contains(&lower.as_str()))
+}
+
+/// The error for a name that means several logarithms, at this place; none for another name.
+pub(super) fn logarithm(name: &str, span: core::ops::Range<usize>) -> Option<FormulaError> {
+    let (choices, meanings) = match name {
+        "log" | "Log" | "LOG" => (
+            &["ln", "log10", "log2"][..],
+            "`ln` is the natural one, `log10` and `log2` are those to base 10 and 2",
+        ),
+        "lg" => (&["log10", "log2"][..], "`log10` and `log2` are those to base 10 and 2"),
+        _ => return None,
+    };
+    let message = format!("`{name}` means several logarithms: {meanings}");
+    let error = FormulaError::new(ErrorKind::UnknownFunction, span, message);
+    Some(error.choose(choices.iter().map(|&choice| choice.to_owned())))
 }
 
 /// The error for a call that is written otherwise here: that of the name which is token `at`, before a bracket. None for the call of
 /// another function.
 pub(super) fn call_error(text: &str, tokens: &[Spanned], at: usize) -> Option<FormulaError> {
     let Spanned { token: Token::Name(name), span } = &tokens[at] else { return None };
+    let error = |message: String| FormulaError::new(ErrorKind::UnknownFunction, span.clone(), message);
+    let lower = name.to_ascii_lowercase();
+    if let Some(error) = logarithm(name, span.clone()) {
+        return Some(error);
+    }
     if is_of_vectors(name) {
-        let message =
-            format!("There is no `{name}` and no vector: write coordinates, as in `x*x + y*y + z*z`");
-        return Some(FormulaError::new(ErrorKind::UnknownFunction, span.clone(), message));
+        return Some(error(NO_VECTORS.into()));
     }
-    let written = call_elsewhere(name)?;
-    let example =
-        PLACES.iter().fold(written.to_owned(), |done, &(place, letter)| done.replace(place, letter));
-    let message = match written {
-        "…" => format!("There is no `{name}` and no vector: write the coordinates one by one"),
-        _ => format!("There is no function `{name}`: write `{}`", example.replace(ALL, "a, b, …")),
+    if PROGRAM.contains(&lower.as_str()) {
+        return Some(error(format!("Type the formula alone, without `{name}`")));
+    }
+    if UNKNOWN.contains(&lower.as_str()) {
+        return Some(error(format!(
+            "There is no function `{name}` here: define it first, as in `{name}(a) = …;`"
+        )));
+    }
+    let written = call_elsewhere(&lower)?;
+    let example = |way: &str| {
+        let filled = PLACES.iter().fold(way.to_owned(), |done, &(place, letter)| done.replace(place, letter));
+        format!("`{filled}`")
     };
+    let ways: Vec<String> = written.iter().map(|way| example(way)).collect();
+    let message = format!("There is no function `{name}`: write {}", ways.join(" or "));
     let (arguments, close) = arguments(text, tokens, at + 1)?;
-    let wanted = PLACES.iter().filter(|(place, _)| written.contains(*place)).count();
-    let whole = span.start..tokens[close].span.end;
-    if arguments.is_empty() || wanted > 0 && arguments.len() != wanted {
-        return Some(FormulaError::new(ErrorKind::UnknownFunction, span.clone(), message));
+    let wanted = PLACES.iter().filter(|(place, _)| written[0].contains(*place)).count();
+    if arguments.len() != wanted {
+        return Some(error(message));
     }
-    let filled = PLACES
-        .iter()
-        .zip(&arguments)
-        .fold(written.to_owned(), |done, (&(place, _), argument)| done.replace(place, &as_operand(argument)));
-    let filled = filled.replace(ALL, &arguments.join(", "));
     let before = at.checked_sub(1).map(|before| &tokens[before].token);
     let is_term = matches!(before, None | Some(Token::Plus | Token::Open(_) | Token::Comma | Token::Equals))
         && matches!(
             tokens[close + 1].token,
             Token::End | Token::Plus | Token::Minus | Token::Close(_) | Token::Comma | Token::Equals
         );
-    let mended = if is_term || wanted == 0 { filled } else { format!("({filled})") };
-    Some(FormulaError::new(ErrorKind::UnknownFunction, whole, message).suggest(mended))
+    let filled = |way: &str| {
+        let filled = PLACES
+            .iter()
+            .zip(&arguments)
+            .fold(way.to_owned(), |done, (&(place, _), argument)| done.replace(place, &as_operand(argument)));
+        if is_term { filled } else { format!("({filled})") }
+    };
+    let whole = FormulaError::new(ErrorKind::UnknownFunction, span.start..tokens[close].span.end, message);
+    Some(match written {
+        [only] => whole.suggest(filled(only)),
+        several => whole.choose(several.iter().map(|way| filled(way))),
+    })
 }
 
 /// The arguments in the bracket that token `open` opens, as they are written, and the token that closes it. None without a bracket;
@@ -118,15 +261,57 @@ fn as_operand(argument: &str) -> String {
     if is_one { argument.to_owned() } else { format!("({argument})") }
 }
 
-/// The error for a component of a vector, as in `p.x`: the point stands at `point..point + 1` after a name. None for anything else.
-pub(super) fn component_error(text: &str, last: Option<&Spanned>, point: usize) -> Option<FormulaError> {
-    let Spanned { token: Token::Name(name), span } = last? else { return None };
-    let component: String = text.get(point + 1..)?.chars().take_while(|c| c.is_alphanumeric()).collect();
-    let is_component = component.len() == 1 && matches!(component.as_str(), "x" | "y" | "z");
-    if span.end != point || !is_component {
+/// The error for components of a vector, as in `p.x` and `length(p.xz)`: the point stands at
+/// `point..point + 1` after a name. None for anything else.
+pub(super) fn component_error(text: &str, tokens: &[Spanned], point: usize) -> Option<FormulaError> {
+    let [before @ .., Spanned { token: Token::Name(name), span }] = tokens else { return None };
+    let components: String = text.get(point + 1..)?.chars().take_while(|c| c.is_alphanumeric()).collect();
+    let is_component = |c: char| matches!(c, 'x' | 'y' | 'z');
+    if span.end != point || !matches!(components.len(), 1..=3) || !components.chars().all(is_component) {
         return None;
     }
-    let message = format!("There are no vectors: write `{component}` in place of `{name}.{component}`");
-    let span = span.start..point + 1 + component.len();
-    Some(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message).suggest(component))
+    let span = span.start..point + 1 + components.len();
+    let apart: Vec<String> = components.chars().map(String::from).collect();
+    // Several components are the arguments of a length.
+    let is_length = match before {
+        [.., Spanned { token: Token::Name(function), .. }, Spanned { token: Token::Open('('), .. }] => {
+            is_vector(function) || called(function, '(') == Some(Called::Function(Function::Hypot))
+        }
+        _ => false,
+    };
+    let written = apart.join(", ");
+    let message = format!("There are no vectors: write `{written}` in place of `{name}.{components}`");
+    let error = FormulaError::new(ErrorKind::UnexpectedSymbol, span, message);
+    Some(if is_length || apart.len() == 1 { error.suggest(written) } else { error })
+}
+
+/// Whether `name` is that of a module whose functions are written `np.sin` or `std::sin`.
+pub(super) fn is_module(name: &str) -> bool {
+    matches!(
+        name,
+        "np" | "numpy"
+            | "jnp"
+            | "math"
+            | "Math"
+            | "cmath"
+            | "sp"
+            | "sympy"
+            | "scipy"
+            | "special"
+            | "linalg"
+            | "torch"
+            | "tf"
+            | "std"
+            | "glm"
+    )
+}
+
+/// The name here of the function or the constant that a module calls `name`.
+pub(super) fn member(name: &str) -> Option<String> {
+    let lower = name.to_ascii_lowercase();
+    match lower.as_str() {
+        "log" => Some("ln".into()),
+        lower if Constant::find(lower).is_some() || is_elsewhere(lower) => Some(lower.into()),
+        _ => None,
+    }
 }

@@ -38,6 +38,8 @@ pub enum FormulaErrorKind {
     UnknownName,
     /// An unknown name is used like a function.
     UnknownFunction,
+    /// A definition has a name that is taken, refers to itself or to a later one, or is missing.
+    BadDefinition,
     /// A constant expression has no finite value, such as `1/0` or `1e999`.
     NotFinite,
     /// A declared parameter has an unusable name, range or value.
@@ -57,6 +59,8 @@ pub struct FormulaError {
     pub span: Range<usize>,
     /// Text that would correct the span, if there is a good guess.
     pub suggestion: Option<String>,
+    /// Texts for the span, each with another meaning, where the formula has several readings.
+    pub choices: Box<[String]>,
     /// The formula with every mistake of this kind corrected, if there are several.
     pub mended: Option<Box<Mended>>,
     /// The unknown name, which could be declared as a parameter ("add a slider").
@@ -74,12 +78,31 @@ pub struct Mended {
 }
 
 impl FormulaError {
+    /// Error for a condition in the place of a number.
+    pub(super) fn misplaced_condition(span: &Range<usize>) -> Self {
+        let message = "A comparison stands in the condition of a choice alone: `if(x < 1, a, b)`";
+        Self::new(FormulaErrorKind::UnexpectedSymbol, span.clone(), message)
+    }
+
     pub(crate) fn new(kind: FormulaErrorKind, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), span, suggestion: None, mended: None, name: None }
+        Self {
+            kind,
+            message: message.into(),
+            span,
+            suggestion: None,
+            choices: Box::default(),
+            mended: None,
+            name: None,
+        }
     }
 
     pub(crate) fn suggest(mut self, suggestion: impl Into<String>) -> Self {
         self.suggestion = Some(suggestion.into());
+        self
+    }
+
+    pub(crate) fn choose(mut self, choices: impl IntoIterator<Item = String>) -> Self {
+        self.choices = choices.into_iter().collect();
         self
     }
 

@@ -192,5 +192,8 @@ fn execute_unary(operation: Unary, i: &Instruction, registers: &RegisterCells<'_
         Unary::Sinh => unary(registers, i, |a| a.map(functions::sinh)),
         Unary::Cosh => unary(registers, i, |a| a.map(functions::cosh)),
         Unary::Tanh => unary(registers, i, |a| a.map(functions::tanh)),
+        Unary::Asinh | Unary::Acosh | Unary::Atanh | Unary::Erf => {
+            unary(registers, i, |a| a.map(|a| operation.evaluate(f64::from(a)) as f32));
+        }
     }
 }

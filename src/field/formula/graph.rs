@@ -21,9 +21,19 @@ pub(super) enum Node {
     /// Integer power with an exponent other than 0 and 1.
     Power(Id, i32),
     /// Smooth minimum of two values, with its blend width.
-    Smin(Id, Id, Id),
+    Smin(Blend, Id, Id, Id),
     /// The third value where the first is at most the second, or, with `false`, where it is not; else 0.
     If(bool, Id, Id, Id),
+    /// The third value where the first is at most the second, else the fourth; whether it is known
+    /// that the last two are equal where the first two are.
+    Select(bool, Id, Id, Id, Id),
+}
+
+/// The polynomial of a smooth minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Blend {
+    Quadratic,
+    Cubic,
 }
 
 impl Node {
@@ -40,11 +50,8 @@ impl Node {
                 visit(a);
                 visit(b);
             }
-            Self::Smin(a, b, c) | Self::If(_, a, b, c) => {
-                visit(a);
-                visit(b);
-                visit(c);
-            }
+            Self::Smin(_, a, b, c) | Self::If(_, a, b, c) => [a, b, c].into_iter().for_each(visit),
+            Self::Select(_, a, b, c, d) => [a, b, c, d].into_iter().for_each(visit),
         }
     }
 
@@ -55,8 +62,9 @@ impl Node {
             Self::Unary(operation, a) => Self::Unary(operation, map(a)),
             Self::Power(a, n) => Self::Power(map(a), n),
             Self::Binary(operation, a, b) => Self::Binary(operation, map(a), map(b)),
-            Self::Smin(a, b, c) => Self::Smin(map(a), map(b), map(c)),
+            Self::Smin(blend, a, b, c) => Self::Smin(blend, map(a), map(b), map(c)),
             Self::If(at_most, a, b, c) => Self::If(at_most, map(a), map(b), map(c)),
+            Self::Select(joins, a, b, c, d) => Self::Select(joins, map(a), map(b), map(c), map(d)),
         }
     }
 
@@ -69,10 +77,13 @@ impl Node {
             Self::Unary(operation, a) => operation.evaluate(value(a)),
             Self::Binary(operation, a, b) => operation.evaluate(value(a), value(b)),
             Self::Power(a, n) => power(value(a), n),
-            Self::Smin(a, b, k) => smin(value(a), value(b), value(k)),
-            Self::If(_, a, b, _) if value(a).is_nan() || value(b).is_nan() => f64::NAN,
+            Self::Smin(blend, a, b, k) => smin(blend, value(a), value(b), value(k)),
+            Self::If(_, a, b, _) | Self::Select(_, a, b, ..) if value(a).is_nan() || value(b).is_nan() => {
+                f64::NAN
+            }
             Self::If(at_most, a, b, v) if (value(a) <= value(b)) == at_most => value(v),
             Self::If(..) => 0.0,
+            Self::Select(_, a, b, u, v) => value(if value(a) <= value(b) { u } else { v }),
         }
     }
 }
@@ -99,12 +110,17 @@ pub(super) fn whole_power<T: Copy + Mul<Output = T>>(one: T, x: T, n: u32) -> T 
 /// its inverse, and no picture shows a blend as narrow.
 pub(super) const MIN_BLEND_WIDTH: f64 = 1e-9;
 
-/// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. It is twice continuously
-/// differentiable and equals the minimum where |a − b| ≥ k.
-pub(super) fn smin(a: f64, b: f64, k: f64) -> f64 {
+/// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1, or min(a, b) − k
+/// (1 − |u|)²/4. It equals the minimum where |a − b| ≥ k and is continuously differentiable, the
+/// cubic one twice (I. Quilez, "Smooth minimum", 2013).
+pub(super) fn smin(blend: Blend, a: f64, b: f64, k: f64) -> f64 {
     let k = Binary::Max.evaluate(k, MIN_BLEND_WIDTH);
     let gap = 1.0 - Binary::Min.evaluate(((a - b) / k).abs(), 1.0);
-    Binary::Min.evaluate(a, b) - k * (gap * gap * gap) / 6.0
+    let depth = match blend {
+        Blend::Cubic => k * (gap * gap * gap) / 6.0,
+        Blend::Quadratic => k * (gap * gap) / 4.0,
+    };
+    Binary::Min.evaluate(a, b) - depth
 }
 
 /// The nodes, with the coordinates that each depends on.
@@ -184,7 +200,10 @@ impl Graph {
                     | Unary::Abs
                     | Unary::Atan
                     | Unary::Sinh
-                    | Unary::Tanh,
+                    | Unary::Tanh
+                    | Unary::Asinh
+                    | Unary::Atanh
+                    | Unary::Erf,
                     a,
                 ) => open.push(a),
                 _ if factors.contains(&id) => {}
@@ -283,8 +302,9 @@ impl Graph {
             Node::Unary(operation, a) => self.unary(operation, a),
             Node::Binary(operation, a, b) => self.binary(operation, a, b),
             Node::Power(a, n) => self.power(a, n),
-            Node::Smin(a, b, k) => self.smin(a, b, k),
+            Node::Smin(blend, a, b, k) => self.smin(blend, a, b, k),
             Node::If(at_most, a, b, value) => self.when(at_most, a, b, value),
+            Node::Select(_, a, b, u, v) => self.select(a, b, u, v),
         }
     }
 
@@ -550,11 +570,11 @@ impl Graph {
         }
     }
 
-    pub(super) fn smin(&mut self, a: Id, b: Id, k: Id) -> Id {
+    pub(super) fn smin(&mut self, blend: Blend, a: Id, b: Id, k: Id) -> Id {
         if self.as_constant(k).is_some_and(|k| k <= MIN_BLEND_WIDTH) {
             return self.binary(Binary::Min, a, b);
         }
-        self.folded(Node::Smin(a, b, k))
+        self.folded(Node::Smin(blend, a, b, k))
     }
 
     /// The width of the blend of a smooth minimum, which is no smaller than [`MIN_BLEND_WIDTH`], and the difference of its operands over
@@ -572,5 +592,52 @@ impl Graph {
     /// The node of `value` where a ≤ b, or, unless `at_most`, where it is not; and of 0 elsewhere.
     pub(super) fn when(&mut self, at_most: bool, a: Id, b: Id, value: Id) -> Id {
         if self.is(value, 0.0) { value } else { self.folded(Node::If(at_most, a, b, value)) }
+    }
+
+    /// The node of `u` where a ≤ b and of `v` elsewhere: a minimum, a maximum or an absolute value
+    /// where it is one, whose continuity is known.
+    pub(super) fn select(&mut self, a: Id, b: Id, u: Id, v: Id) -> Id {
+        if u == v {
+            return u;
+        }
+        if let (Some(a), Some(b)) = (self.as_constant(a), self.as_constant(b)) {
+            return if a <= b { u } else { v };
+        }
+        if [u, v] == [a, b] {
+            return self.binary(Binary::Min, a, b);
+        }
+        if [u, v] == [b, a] {
+            return self.binary(Binary::Max, a, b);
+        }
+        let difference = self.sub(b, a);
+        let opposite = self.neg(difference);
+        if [u, v] == [difference, opposite] {
+            return self.unary(Unary::Abs, difference);
+        }
+        if [u, v] == [opposite, difference] {
+            let size = self.unary(Unary::Abs, difference);
+            return self.neg(size);
+        }
+        let joins = self.is_joined(a, b, u, v);
+        self.folded(Node::Select(joins, a, b, u, v))
+    }
+
+    /// Whether two values are the same node once `a` and `b` are one: u and v of a choice are then
+    /// equal on its tie a = b.
+    fn is_joined(&self, a: Id, b: Id, u: Id, v: Id) -> bool {
+        let (gone, kept) = if self.is_uniform(a) { (b, a) } else { (a, b) };
+        let mut tied = self.clone();
+        let mut map: Vec<Id> = (0..self.len() as Id).collect();
+        map[gone as usize] = kept;
+        for id in self.needed_by(&[u, v]).into_iter().filter(|&id| id != gone) {
+            let node = self.node(id).mapped(|operand| map[operand as usize]);
+            map[id as usize] = match node {
+                _ if node == self.node(id) => id,
+                // The choices in it are not looked into again.
+                Node::Select(..) => tied.intern(node),
+                _ => tied.built(node),
+            };
+        }
+        map[u as usize] == map[v as usize]
     }
 }

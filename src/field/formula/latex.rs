@@ -1,7 +1,6 @@
 //! The commands of LaTeX that a formula may have, as it is pasted from a text.
 
-use super::elsewhere::name_elsewhere;
-use super::token::{Bar, Token};
+use super::token::{Bar, Comparison, Token};
 
 /// The meaning of a LaTeX command.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,8 +11,10 @@ pub(super) enum LatexCommand {
     Side(Bar),
     /// The beginning of a name in braces.
     Word,
-    /// The sign of an inequality.
-    Comparison(char),
+    /// The sign that two sides are not equal.
+    Unequal,
+    /// No meaning, nor has the group in braces that follows.
+    Label,
     /// A token of the formula language.
     Token(Token),
 }
@@ -64,13 +65,26 @@ pub(super) fn greek(name: &str) -> Option<&'static str> {
 pub(super) fn command(word: &str) -> Option<LatexCommand> {
     let token = match word {
         "," | ";" | ":" | "!" | " " | "quad" | "qquad" | "displaystyle" | "textstyle" | "big" | "Big"
-        | "bigg" | "Bigg" | "(" | ")" | "[" | "]" | "limits" => return Some(LatexCommand::Nothing),
+        | "bigg" | "Bigg" | "(" | ")" | "[" | "]" | "limits" | "\\" | "\n" | "\r" | "nonumber" => {
+            return Some(LatexCommand::Nothing);
+        }
         "left" | "bigl" | "Bigl" | "biggl" | "Biggl" => return Some(LatexCommand::Side(Bar::Opening)),
         "right" | "bigr" | "Bigr" | "biggr" | "Biggr" => return Some(LatexCommand::Side(Bar::Closing)),
         "operatorname" | "mathrm" | "text" | "mathit" => return Some(LatexCommand::Word),
-        "lt" | "le" | "leq" | "leqslant" => return Some(LatexCommand::Comparison('<')),
-        "gt" | "ge" | "geq" | "geqslant" => return Some(LatexCommand::Comparison('>')),
-        "ne" | "neq" => return Some(LatexCommand::Comparison('≠')),
+        "ne" | "neq" => return Some(LatexCommand::Unequal),
+        "begin" | "end" | "label" | "tag" => return Some(LatexCommand::Label),
+        "lt" => Token::Compare(Comparison::Less),
+        "gt" => Token::Compare(Comparison::Greater),
+        "le" | "leq" | "leqslant" => Token::Compare(Comparison::AtMost),
+        "ge" | "geq" | "geqslant" => Token::Compare(Comparison::AtLeast),
+        "land" | "wedge" => Token::And,
+        "lor" | "vee" => Token::Or,
+        "lnot" | "neg" => Token::Not,
+        "bmod" | "%" => Token::Percent,
+        "lfloor" => Token::Open('⌊'),
+        "rfloor" => Token::Close('⌋'),
+        "lceil" => Token::Open('⌈'),
+        "rceil" => Token::Close('⌉'),
         "frac" | "dfrac" | "tfrac" => Token::Fraction,
         "sqrt" => Token::Root,
         "cdot" | "times" | "ast" => Token::Star,
@@ -80,10 +94,13 @@ pub(super) fn command(word: &str) -> Option<LatexCommand> {
         "rvert" => Token::Bar(Bar::Closing),
         "{" => Token::Open('{'),
         "}" => Token::Close('}'),
-        "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "exp" | "ln" | "log" | "lg" | "min" | "max"
-        | "pi" | "tau" | "phi" => Token::Name(word.into()),
+        "sin" | "cos" | "tan" | "sec" | "csc" | "cot" | "sinh" | "cosh" | "tanh" | "coth" | "exp" | "ln"
+        | "log" | "lg" | "min" | "max" | "pi" | "tau" | "phi" => Token::Name(word.into()),
         "varphi" => Token::Name("phi".into()),
-        "arcsin" | "arccos" | "arctan" | "sgn" => Token::Name(name_elsewhere(word)?.into()),
+        "arcsin" => Token::Name("asin".into()),
+        "arccos" => Token::Name("acos".into()),
+        "arctan" => Token::Name("atan".into()),
+        "sgn" => Token::Name("sign".into()),
         _ => Token::Name(greek(word)?.into()),
     };
     Some(LatexCommand::Token(token))

@@ -1,12 +1,16 @@
 //! Lexer: text to tokens.
 //!
-//! Characters that look like ASCII operators or digits are mapped to them, and [`latex`](super::latex) says what a command
-//! such as `\frac` stands for. Any other character outside the language is an error that names its code point.
+//! Characters that look like ASCII operators or digits are mapped to them, and
+//! [`latex`](super::latex) says what a command such as `\frac` stands for. Left out are comments
+//! (`// …`, `# …`, `/* … */`, `(* … *)`, and `% …` at the beginning of a line or statement), the
+//! names of modules (`np.sin`), the points of `x.^2`, and the `f` of `1.0f`. Any other character
+//! outside the language is an error that names its code point.
 
-use super::elsewhere::component_error;
+use super::elsewhere::{component_error, is_module, member};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::latex::{self, LatexCommand};
-use super::token::{Bar, Spanned, Token, slice};
+use super::spelling::is_known;
+use super::token::{Bar, Comparison, Spanned, Token, slice};
 use core::ops::Range;
 
 /// Character that `c` stands for in a formula.
@@ -44,11 +48,6 @@ fn name_of(c: char) -> Option<&'static str> {
         '∛' => Some("cbrt"),
         _ => None,
     }
-}
-
-/// Signs of an inequality.
-fn is_comparison(c: char) -> bool {
-    matches!(c, '<' | '>' | '≤' | '≥' | '≠')
 }
 
 /// The letters of names: Latin ones, and Greek ones but π, τ and φ, which are constants.
@@ -129,38 +128,80 @@ impl Lexer<'_> {
         index
     }
 
-    /// Appends the token that begins with the next character, `c`, or skips white space.
+    /// Appends the token that begins with the next character, `c`, or skips white space and
+    /// comments.
     fn token(&mut self, c: char) -> Result<(), FormulaError> {
         let start = self.next;
         self.next += 1;
-        let token = match c {
+        let following = self.get(self.next);
+        let token = match (c, following) {
             _ if c.is_ascii_whitespace() => return Ok(()),
-            '+' => Token::Plus,
-            '-' => Token::Minus,
-            '*' if self.take('*') => Token::Caret,
-            '*' => Token::Star,
-            '/' => Token::Slash,
-            '^' => Token::Caret,
-            '(' | '[' | '{' => Token::Open(c),
-            ')' | ']' | '}' => Token::Close(c),
-            '|' => Token::Bar(Bar::Either),
-            ',' => Token::Comma,
-            '=' => {
-                self.take('=');
-                Token::Equals
+            ('/', Some('/')) => return self.remark(start),
+            ('#', _) => {
+                self.skip_line();
+                return Ok(());
             }
+            ('%', _) if self.begins_line(start) => {
+                self.skip_line();
+                return Ok(());
+            }
+            ('/', Some('*')) => return self.comment(start, ['*', '/']),
+            ('(', Some('*')) => return self.comment(start, ['*', ')']),
+            // The element by element operators of MATLAB, and its sign that a line goes on.
+            ('.', Some('^' | '*' | '/')) => return Ok(()),
+            ('.', Some('.')) if self.get(self.next + 1) == Some('.') => {
+                self.skip_line();
+                return Ok(());
+            }
+            ('+', _) => Token::Plus,
+            ('=' | '-', Some('>')) => self.pair(Token::Arrow),
+            ('-', _) => Token::Minus,
+            ('*', Some('*')) => self.pair(Token::Caret),
+            ('*', _) => Token::Star,
+            ('/', _) => Token::Slash,
+            ('%', _) => Token::Percent,
+            ('^', _) => Token::Caret,
+            ('(' | '[' | '{' | '⌊' | '⌈', _) => Token::Open(c),
+            (')' | ']' | '}' | '⌋' | '⌉', _) => Token::Close(c),
+            ('|', _) => Token::Bar(Bar::Either),
+            (',', _) => Token::Comma,
+            (';', _) => Token::Separator,
+            ('?', _) => Token::Question,
+            (':', Some('=')) => self.pair(Token::Equals),
+            (':', _) => Token::Colon,
+            ('@', _) => Token::At,
+            ('=', Some('=')) => self.pair(Token::Equals),
+            ('=', _) => Token::Equals,
+            ('≠', _) | ('!' | '~', Some('=')) => {
+                self.next += usize::from(c != '≠');
+                return Err(unequal(self.span(start, self.next)));
+            }
+            ('<', Some('=')) => self.pair(Token::Compare(Comparison::AtMost)),
+            ('>', Some('=')) => self.pair(Token::Compare(Comparison::AtLeast)),
+            ('<', _) => Token::Compare(Comparison::Less),
+            ('>', _) => Token::Compare(Comparison::Greater),
+            ('≤', _) => Token::Compare(Comparison::AtMost),
+            ('≥', _) => Token::Compare(Comparison::AtLeast),
+            ('!' | '~' | '¬', _) => Token::Not,
+            ('&', Some('&')) => self.pair(Token::And),
+            // LaTeX aligns lines at it.
+            ('&', _) if self.text.contains('\\') => return Ok(()),
+            ('&' | '∧', _) => Token::And,
+            ('∨', _) => Token::Or,
             // The sign around a formula in a text.
-            '$' => return Ok(()),
-            '\\' => return self.command(start),
-            _ if is_comparison(c) => {
-                self.take('=');
-                return Err(comparison(c, self.span(start, self.next)));
-            }
-            '0'..='9' | '.' => Token::Number(self.number(start)?),
+            ('$', _) => return Ok(()),
+            ('\\', _) => return self.command(start),
+            ('0'..='9' | '.', _) => Token::Number(self.number(start)?),
             _ if superscript(c).is_some() || c == '⁻' => Token::Superscript(self.superscript(start)?),
             _ if name_of(c).is_some() => Token::Name(name_of(c).unwrap_or_default().into()),
             _ if starts_name(c) => {
                 let name = self.name(start);
+                if is_module(&name)
+                    && let Some(token) = self.member(start)?
+                {
+                    self.tokens.push(Spanned { token, span: self.span(start, self.next) });
+                    return Ok(());
+                }
                 if self.is_product(&name) {
                     for (offset, letter) in name.chars().enumerate() {
                         let span = self.span(start + offset, start + offset + 1);
@@ -168,7 +209,17 @@ impl Lexer<'_> {
                     }
                     return Ok(());
                 }
-                Token::Name(name)
+                match name.as_str() {
+                    _ if self.declared.contains(&name.as_str()) => Token::Name(name),
+                    "and" => Token::And,
+                    "or" => Token::Or,
+                    "not" => Token::Not,
+                    "import" | "from" if self.begins_line(start) => {
+                        self.skip_line();
+                        return Ok(());
+                    }
+                    _ => Token::Name(name),
+                }
             }
             _ => return Err(unexpected_character(self.text, c, self.span(start, self.next))),
         };
@@ -176,11 +227,86 @@ impl Lexer<'_> {
         Ok(())
     }
 
-    /// Consumes the next character if it is `c`.
-    fn take(&mut self, c: char) -> bool {
-        let found = self.get(self.next) == Some(c);
-        self.next += usize::from(found);
-        found
+    /// Consumes the second character of a token.
+    fn pair(&mut self, token: Token) -> Token {
+        self.next += 1;
+        token
+    }
+
+    /// Skips what is left of the line.
+    fn skip_line(&mut self) {
+        while self.get(self.next).is_some_and(|c| c != '\n' && c != '\r') {
+            self.next += 1;
+        }
+    }
+
+    /// Whether no token stands before character `start` in its line or its statement.
+    fn begins_line(&self, start: usize) -> bool {
+        self.tokens.last().is_none_or(|last| {
+            let between = last.span.end..self.offset(start);
+            last.token == Token::Separator || slice(self.text, &between).contains(['\n', '\r'])
+        })
+    }
+
+    /// Skips the comment that `//` at character `start` begins. What might be the divisor of a
+    /// whole division, as in Python, is an error.
+    fn remark(&mut self, start: usize) -> Result<(), FormulaError> {
+        let begins_line = self.begins_line(start);
+        self.skip_line();
+        let rest = self.span(start + 2, self.next);
+        let mut words = slice(self.text, &rest)
+            .split(|c: char| !continues_name(c))
+            .filter(|word| !word.is_empty())
+            .peekable();
+        let is_known =
+            |word: &str| word.parse::<f64>().is_ok() || is_known(word) || self.declared.contains(&word);
+        if begins_line || words.peek().is_none() || !words.all(is_known) {
+            return Ok(());
+        }
+        let message = "`//` begins a comment: the whole part of a quotient is `floor(a/b)`";
+        Err(FormulaError::new(ErrorKind::Ambiguous, self.span(start, start + 2), message))
+    }
+
+    /// Skips a comment up to these two characters.
+    fn comment(&mut self, start: usize, end: [char; 2]) -> Result<(), FormulaError> {
+        while let Some(c) = self.get(self.next + 1) {
+            self.next += 1;
+            if [c, self.get(self.next + 1).unwrap_or(' ')] == end {
+                self.next += 2;
+                return Ok(());
+            }
+        }
+        let message = format!("This comment is not closed: `{}{}` ends it", end[0], end[1]);
+        Err(FormulaError::new(ErrorKind::UnexpectedEnd, self.span(start, start + 2), message))
+    }
+
+    /// Consumes what follows the name of a module: the name of its member, as it is called here.
+    /// None if nothing follows.
+    fn member(&mut self, start: usize) -> Result<Option<Token>, FormulaError> {
+        loop {
+            let sign = match [self.get(self.next), self.get(self.next + 1)] {
+                [Some('.'), _] => 1,
+                [Some(':'), Some(':')] => 2,
+                _ => return Ok(None),
+            };
+            let begin = self.next + sign;
+            if !self.get(begin).is_some_and(starts_name) {
+                return Ok(None);
+            }
+            self.next = begin;
+            let name = self.name(begin);
+            if is_module(&name) {
+                continue;
+            }
+            return match member(&name) {
+                Some(known) => Ok(Some(Token::Name(known))),
+                None => {
+                    let span = self.span(start, self.next);
+                    let message = format!("`{}` is not known here", slice(self.text, &span));
+                    Err(FormulaError::new(ErrorKind::UnknownFunction, span, message))
+                }
+            };
+        }
     }
 
     /// Consumes the name that begins at character `start`; the subscript of `r_{12}` belongs to it.
@@ -207,6 +333,15 @@ impl Lexer<'_> {
         }
         let inside = self.written(open + 1, end);
         (self.get(end) == Some('}') && !inside.is_empty()).then_some((inside, end + 1))
+    }
+
+    /// Skips a group in braces, if one follows.
+    fn skip_group(&mut self) {
+        let open = self.after_spaces(self.next);
+        if self.get(open) == Some('{') {
+            let rest = &self.characters[open..];
+            self.next = rest.iter().position(|&(_, c)| c == '}').map_or(self.next, |close| open + close + 1);
+        }
     }
 
     /// Index of the first character from `index` on that is no white space.
@@ -256,7 +391,18 @@ impl Lexer<'_> {
                     _ => Token::Name(name),
                 }
             }
-            Some(LatexCommand::Comparison(c)) => return Err(comparison(c, self.span(start, self.next))),
+            Some(LatexCommand::Unequal) => return Err(unequal(self.span(start, self.next))),
+            Some(LatexCommand::Label) => {
+                let from = self.next;
+                self.skip_group();
+                let span = self.span(start, self.next);
+                let name = self.written(from, self.next);
+                if ["cases", "matrix", "array"].iter().any(|table| name.contains(table)) {
+                    let message = "A choice is written `if(c, a, b)`: a where the condition c holds, else b";
+                    return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
+                }
+                return Ok(());
+            }
             Some(LatexCommand::Token(token)) => token,
             None => {
                 let span = self.span(start, self.next);
@@ -299,11 +445,20 @@ impl Lexer<'_> {
         }
         self.next = i;
         let written = self.written(start, i);
+        // A number of C in single precision.
+        if let Some(suffix @ ('f' | 'F')) = self.get(i)
+            && written.len() > 1
+            && written.contains(['.', 'e', 'E'])
+            && !self.get(i + 1).is_some_and(continues_name)
+            && !self.names(suffix)
+        {
+            self.next = i + 1;
+        }
         let second_point = self.get(i) == Some('.');
         let value = if written == "." || second_point { None } else { written.parse::<f64>().ok() };
         let Some(value) = value else {
             let point = self.span(start, start).start;
-            if let Some(error) = component_error(self.text, self.tokens.last(), point) {
+            if let Some(error) = component_error(self.text, &self.tokens, point) {
                 return Err(error);
             }
             let span = self.span(start, (i + usize::from(second_point)).max(start + 1));
@@ -315,6 +470,17 @@ impl Lexer<'_> {
             return Err(FormulaError::new(ErrorKind::NotFinite, self.span(start, i), message));
         }
         Ok(value)
+    }
+
+    /// Whether a letter stands somewhere as a name of its own, not behind a number.
+    fn names(&self, letter: char) -> bool {
+        let is_alone = |at: usize| {
+            let before = at.checked_sub(1).and_then(|before| self.get(before));
+            !before.is_some_and(|c| continues_name(c) || c == '.')
+                && !self.get(at + 1).is_some_and(continues_name)
+        };
+        let mut places = self.characters.iter().enumerate().filter(|&(_, &(_, c))| c == letter);
+        self.declared.contains(&letter.to_string().as_str()) || places.any(|(at, _)| is_alone(at))
     }
 
     /// Consumes the superscript integer that begins at character `start`; a larger one counts as the largest `i32`.
@@ -337,13 +503,10 @@ impl Lexer<'_> {
     }
 }
 
-/// Error for the sign `c` of an inequality.
-fn comparison(c: char, span: Range<usize>) -> FormulaError {
-    let message = if c == '≠' {
-        "A surface is where two sides are equal: write `=`"
-    } else {
-        "An inequality describes a solid, and its surface is where both sides are equal: write `=`"
-    };
+/// Error for a sign that two sides are not equal.
+fn unequal(span: Range<usize>) -> FormulaError {
+    let message =
+        "A surface is where two sides are equal: write `=`; a condition compares by `<`, `<=`, `>` or `>=`";
     FormulaError::new(ErrorKind::UnexpectedCharacter, span, message).suggest("=")
 }
 
@@ -367,9 +530,5 @@ fn unexpected_character(text: &str, c: char, span: Range<usize>) -> FormulaError
         format!("U+{point:04X}, {name}, cannot stand in a formula")
     };
     let error = FormulaError::new(ErrorKind::UnexpectedCharacter, span, message);
-    match c {
-        ';' => error.suggest(","),
-        _ if !name.is_empty() => error.suggest(""),
-        _ => error,
-    }
+    if name.is_empty() { error } else { error.suggest("") }
 }

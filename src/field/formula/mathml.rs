@@ -1,9 +1,10 @@
 //! Presentation MathML of a formula, with fractions, roots, powers and Greek letters.
 
-use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
+use super::ast::{COORDINATES, Connective, Constant, Equation, Expr, ExprKind, Factor, Function, Sign};
 use super::display::{Precedence, level};
 use super::latex::greek;
 use super::operations::Unary;
+use super::token::Comparison;
 use crate::math::shortest_text;
 use serde::Serialize;
 
@@ -24,6 +25,12 @@ pub enum MathGroup {
     Msqrt,
     /// The radicand of a root, and its degree.
     Mroot,
+    /// Rows of a table.
+    Mtable,
+    /// Cells of a row.
+    Mtr,
+    /// One or more elements in a cell.
+    Mtd,
 }
 
 /// Element of MathML Core with text.
@@ -60,10 +67,30 @@ pub enum MathNode {
     },
 }
 
-/// Content of the `math` element for an equation. A formula without `=` gets `= 0`.
+/// Content of the `math` element for an equation. A formula without `=` gets `= 0`. With
+/// definitions it is a table, of which the surface is the last row.
 pub(super) fn equation(equation: &Equation) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
-    row([expression(&equation.left), mo("="), right])
+    let surface = row([expression(&equation.left), mo("="), right]);
+    if equation.definitions.is_empty() {
+        return surface;
+    }
+    let definitions = equation.definitions.iter().map(|definition| {
+        let name = parameter(&definition.name);
+        let head = if definition.arguments.is_empty() {
+            name
+        } else {
+            applied(name, definition.arguments.iter().map(|argument| parameter(argument)))
+        };
+        row([head, mo("="), expression(&definition.body)])
+    });
+    table(definitions.chain([surface]).map(|row| vec![row]))
+}
+
+fn table(rows: impl Iterator<Item = Vec<MathNode>>) -> MathNode {
+    let cell = |content: MathNode| group(MathGroup::Mtd, [content]);
+    let rows = rows.map(|row| group(MathGroup::Mtr, row.into_iter().map(cell).collect::<Vec<_>>()));
+    group(MathGroup::Mtable, rows.collect::<Vec<_>>())
 }
 
 /// U+2062 INVISIBLE TIMES.
@@ -121,6 +148,36 @@ fn expression(expr: &Expr) -> MathNode {
         ExprKind::Product(factors) => product(factors),
         ExprKind::Power(base, exponent) => power(base, exponent),
         ExprKind::Call(function, arguments) => call(*function, arguments),
+        ExprKind::Argument(reference) => parameter(&reference.name),
+        ExprKind::Defined(reference, inputs) if inputs.is_empty() => parameter(&reference.name),
+        ExprKind::Defined(reference, inputs) => {
+            applied(parameter(&reference.name), inputs.iter().map(expression))
+        }
+        ExprKind::Choice(parts) => {
+            let [condition, first, second] = &**parts;
+            let cases = [
+                vec![expression(first), row([mi("if\u{a0}"), expression(condition)])],
+                vec![expression(second), mi("otherwise")],
+            ];
+            row([mo("{"), table(cases.into_iter())])
+        }
+        ExprKind::Compare(comparison, sides) => {
+            let sign = match comparison {
+                Comparison::Less => "<",
+                Comparison::AtMost => "≤",
+                Comparison::Greater => ">",
+                Comparison::AtLeast => "≥",
+            };
+            row([at(&sides[0], Precedence::Sum), mo(sign), at(&sides[1], Precedence::Sum)])
+        }
+        ExprKind::Logic(connective, conditions) => {
+            let (sign, least) = match connective {
+                Connective::And => ("∧", Precedence::Comparison),
+                Connective::Or => ("∨", Precedence::And),
+            };
+            row(separated(conditions.iter().map(|condition| at(condition, least)), sign))
+        }
+        ExprKind::Not(inner) => row([mo("¬"), at(inner, Precedence::Atom)]),
     }
 }
 
@@ -178,7 +235,7 @@ fn power(base: &Expr, exponent: &Expr) -> MathNode {
         && let Some(name) = plain_name(*function)
         && *n >= 2.0
     {
-        return row([msup(mi(name), number(*n)), mo(APPLY), arguments(inputs)]);
+        return applied(msup(mi(name), number(*n)), inputs.iter().map(expression));
     }
     let exponential = matches!(base.kind, ExprKind::Call(Function::Unary(Unary::Exp | Unary::Log10), _));
     let long_number = matches!(base.kind, ExprKind::Number(value) if shortest_text(value).contains('e'));
@@ -199,19 +256,25 @@ fn call(function: Function, inputs: &[Expr]) -> MathNode {
             let squares = inputs.iter().map(|input| msup(at(input, Precedence::Atom), mn("2")));
             group(MathGroup::Msqrt, separated(squares, "+"))
         }
+        _ if function.name() == "ceil" => fenced(["⌈", "⌉"], first()),
         _ => {
             let name = match plain_name(function) {
                 Some(name) => mi(name),
-                None => group(MathGroup::Msub, [mi("log"), mn("10")]),
+                None => group(MathGroup::Msub, [mi("log"), mn(function.name().trim_start_matches("log"))]),
             };
-            row([name, mo(APPLY), arguments(inputs)])
+            applied(name, inputs.iter().map(expression))
         }
     }
 }
 
-fn arguments(inputs: &[Expr]) -> MathNode {
+/// A function with its arguments.
+fn applied(name: MathNode, arguments: impl Iterator<Item = MathNode>) -> MathNode {
+    row([name, mo(APPLY), listed(arguments)])
+}
+
+fn listed(arguments: impl Iterator<Item = MathNode>) -> MathNode {
     let mut out = vec![mo("(")];
-    out.extend(separated(inputs.iter().map(expression), ","));
+    out.extend(separated(arguments, ","));
     out.push(mo(")"));
     row(out)
 }
@@ -266,6 +329,10 @@ fn plain_name(function: Function) -> Option<&'static str> {
         Function::Unary(Unary::Asin) => "arcsin",
         Function::Unary(Unary::Acos) => "arccos",
         Function::Unary(Unary::Atan) => "arctan",
+        Function::Unary(Unary::Asinh) => "arsinh",
+        Function::Unary(Unary::Acosh) => "arcosh",
+        Function::Unary(Unary::Atanh) => "artanh",
+        other if matches!(other.name(), "log2" | "ceil") => return None,
         other => other.name(),
     })
 }

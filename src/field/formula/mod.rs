@@ -2,18 +2,34 @@
 //!
 //! # Language
 //!
-//! A formula consists of the coordinates `x y z`, numbers, the constants `pi`, `e`, `tau` and `phi` (the golden ratio),
-//! named parameters, the operators `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`]. At most one `=` stands
-//! for the difference of its sides. A product may be written without `*` where there is only one reading: `2x`, `x y`,
-//! `xyz`, `3(x + 1)`. `^` is right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is
-//! two thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `√`, `π`, `τ`, `φ` and full-width
-//! characters are accepted.
+//! A formula consists of the coordinates `x y z`, numbers, the constants `pi`, `e`, `tau` and `phi`
+//! (the golden ratio), named parameters, the operators `+ - * / % ^`, brackets, and the functions
+//! of [`FUNCTIONS`]. At most one `=` stands for the difference of its sides. A product may be
+//! written without `*` where there is only one reading: `2x`, `x y`, `xyz`, `3(x + 1)`. `^` is
+//! right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is two
+//! thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `√`, `π`, `τ`,
+//! `φ` and full-width characters are accepted.
 //!
-//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a function without brackets where there
-//! is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of a definition `f(x, y, z) = …`, and what LaTeX has for
-//! all this: `\frac{1}{2}`, `\sqrt[3]{x}`, `x^{2}`, `\left|x\right|`, `\sin\theta`, `\cdot`.
+//! A fraction of two numbers multiplies what stands beside it: `9/4y^2` is (9/4)y² and `1/2x` is
+//! (1/2)x. Beside any other divisor, and for what is a number itself, as in `1/2pi`, there are two
+//! readings, which the error offers.
 //!
-//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling.
+//! `if(c, a, b)` and `c ? a : b` choose by a condition: comparisons by `<`, `<=`, `>`, `>=`, joined
+//! by `and`, `or` and `not` (`&&`, `||`, `!`). `a % b` is `mod(a, b)`, with the sign of b.
+//!
+//! [Definitions](statements) come before the surface, each ended by a `;` or its line: `r =
+//! hypot(x, y); (r - 1)^2 + z^2 =
+//! 0.1`, `f(a, b) = a^2 + b^2; f(x, y) = z`. Comments are `// …`, `# …`, `/* … */` and `(* … *)`.
+//!
+//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a
+//! function without brackets where there is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x
+//! y`), the head of a definition `f(x, y, z) = …`, what LaTeX has for all this (`\frac{1}{2}`,
+//! `\sqrt[3]{x}`, `\left|x\right|`, `\sin\theta`), and what programs write: `x.^2`, `np.sin(x)`,
+//! `Sin[x]`, `pow(x, 2.0f)`, `length(vec3(x, y, z))`, `lambda x, y, z: …`.
+//!
+//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling, or like
+//! functions written as one with their arguments: `xsinx`. A text with several readings is an error
+//! that offers each of them.
 //!
 //! # Evaluation
 //!
@@ -27,6 +43,7 @@ mod branches;
 mod build;
 mod call;
 mod compiled;
+mod conditions;
 mod control;
 mod creases;
 mod derivative;
@@ -40,6 +57,7 @@ mod interval;
 mod latex;
 mod lex;
 mod mathml;
+mod names;
 mod operations;
 mod parse;
 mod periods;
@@ -48,6 +66,8 @@ mod program;
 mod repair;
 mod scalar;
 mod solids;
+mod spelling;
+mod statements;
 #[cfg(test)]
 mod tests;
 mod token;
@@ -61,7 +81,7 @@ pub use mathml::{MathGroup, MathNode, MathToken};
 use super::{Bounded, BranchNumbers, Branched, Enclosure, Field, Jet, UnitCell};
 use crate::math::{Bounds, Interval, LANES, Lanes, Sym3};
 use crate::slices::Work;
-use ast::{COORDINATES, Constant, Equation, Function};
+use ast::Equation;
 use branches::Branches;
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
@@ -443,10 +463,35 @@ fn place(origin: DVec3, p: DVec3) -> DVec3 {
 }
 
 /// Syntax tree of `text`, and its undeclared names.
-fn syntax(text: &str, declared: &[&str]) -> Result<(parse::Parsed, Vec<String>), FormulaError> {
-    let parsed = parse::parse(text, declared)?;
-    let automatic = automatic_names(&parsed.names, declared)?;
+fn syntax(text: &str, declared: &[&str]) -> Result<(statements::Parsed, Vec<String>), FormulaError> {
+    let parsed = statements::parse(text, declared)?;
+    let automatic = automatic_names(text, &parsed, declared)?;
     Ok((parsed, automatic))
+}
+
+/// The number that a text without names stands for, in the language of formulas: `2*pi`, `1e-3`,
+/// `sqrt(2)/3`.
+///
+/// # Errors
+///
+/// Any of [`FormulaErrorKind`], with its span in bytes of `text`: [`FormulaErrorKind::UnknownName`]
+/// for a coordinate or a parameter.
+pub fn number(text: &str) -> Result<f64, FormulaError> {
+    let statements::Parsed { equation, names } = statements::parse(text, &[])?;
+    let varying = equation.left.any(&|kind| matches!(kind, ast::ExprKind::Coordinate(_)));
+    let mut graph = Graph::default();
+    let number = match build::build(
+        &mut graph,
+        &equation,
+        &names.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+    )? {
+        root if equation.right.is_none() => graph.as_constant(root),
+        _ => None,
+    };
+    let span = names.first().map_or(0..text.len(), |(_, span)| span.clone());
+    number.filter(|_| !varying && names.is_empty()).ok_or_else(|| {
+        FormulaError::new(FormulaErrorKind::UnknownName, span, format!("`{text}` is not a number"))
+    })
 }
 
 /// Checks that every declared parameter has a usable name, range and value.
@@ -456,8 +501,7 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
         if !lex::is_name(name) {
             return bad(format!("`{name}` cannot be the name of a parameter: a letter comes first"));
         }
-        if COORDINATES.contains(&&**name) || Constant::find(name).is_some() || Function::find(name).is_some()
-        {
+        if spelling::is_known(name) || matches!(&**name, "and" | "or" | "not") {
             return bad(format!("`{name}` has a meaning of its own and cannot be a parameter"));
         }
         if declared[..index].iter().any(|other| other.name == *name) {
@@ -472,63 +516,23 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
 
 /// Undeclared names, which become automatic parameters, if none looks like a misspelling.
 fn automatic_names(
-    names: &[(String, core::ops::Range<usize>)],
+    text: &str,
+    parsed: &statements::Parsed,
     declared: &[&str],
 ) -> Result<Vec<String>, FormulaError> {
-    let unknown: Vec<&(String, core::ops::Range<usize>)> =
-        names.iter().filter(|(name, _)| !declared.contains(&name.as_str())).collect();
-    for (name, span) in &unknown {
-        let Some((meant, message)) = likely_misspelling(name, declared) else { continue };
-        return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message)
-            .suggest(meant)
-            .unknown(name));
-    }
-    Ok(unknown.into_iter().map(|(name, _)| name.clone()).collect())
-}
-
-/// The correction of a misspelt `name`, with the message that suggests it.
-fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)> {
-    // `x2` usually means a square and `cosx` a cosine; few parameters are called so.
-    if let Some((axis, digit)) = name.split_at_checked(1)
-        && COORDINATES.contains(&axis)
-        && let Ok(exponent) = digit.parse::<u8>()
-    {
-        let meant = format!("{axis}^{exponent}");
-        let message = format!(
-            "`{name}` is no name of a coordinate: a power is written `{meant}`. Or add a slider `{name}`"
-        );
-        return Some((meant, message));
-    }
-    for function in FUNCTIONS {
-        if let Some(rest) = name.strip_prefix(function.name)
-            && !rest.is_empty()
-            && rest.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'))
-        {
-            let meant = format!("{}({rest})", function.name);
-            let message = format!("`{name}` reads as one name: write `{meant}`. Or add a slider `{name}`");
-            return Some((meant, message));
+    let defined = parsed.equation.definitions.iter().map(|definition| definition.name.as_str());
+    let meant: Vec<&str> = declared.iter().copied().chain(defined).collect();
+    let all: Vec<&str> =
+        meant.iter().copied().chain(parsed.names.iter().map(|(name, _)| name.as_str())).collect();
+    let unknown = parsed.names.iter().filter(|(name, _)| !declared.contains(&name.as_str()));
+    let mut automatic = Vec::new();
+    for (name, span) in unknown {
+        if let Some(error) = spelling::unlikely_parameter(text, name, span, &meant, &all) {
+            return Err(error);
         }
+        automatic.push(name.clone());
     }
-    if let Some(meant) = elsewhere::name_elsewhere(name) {
-        let message = format!("Unknown name `{name}`: did you mean `{meant}(…)`? Or add a slider `{name}`");
-        return Some((meant.to_owned(), message));
-    }
-    if name.chars().count() == 1 && !COORDINATES.iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
-        return None;
-    }
-    let words = COORDINATES
-        .into_iter()
-        .chain(Constant::ALL.map(Constant::name))
-        .chain(FUNCTIONS.iter().map(|function| function.name))
-        .chain(declared.iter().copied());
-    // A name that differs by a digit or an index, such as `phi0` or `r_1`, differs on purpose.
-    let indexed = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains('_');
-    let meant = parse::similar(name, words).filter(|meant| {
-        let long = name.chars().count() >= 3 && meant.chars().count() >= 3;
-        meant.eq_ignore_ascii_case(name) || (long && !indexed)
-    })?;
-    let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
-    Some((meant.to_owned(), message))
+    Ok(automatic)
 }
 
 impl Field for Formula {
@@ -647,6 +651,16 @@ impl Field for Formula {
 
     fn branched(&mut self) -> Option<&mut dyn Branched> {
         Some(self)
+    }
+
+    fn why_constant(&self) -> Option<String> {
+        let has_coordinates =
+            self.surface.0.nodes().iter().any(|node| matches!(node, graph::Node::Coordinate(_)));
+        if has_coordinates {
+            None
+        } else {
+            self.parameters.first().map(|first| spelling::no_coordinate(&first.name))
+        }
     }
 
     /// The equation that [`Formula::without_powers`] has found.

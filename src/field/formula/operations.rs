@@ -21,6 +21,10 @@ pub(crate) enum Unary {
     Sinh,
     Cosh,
     Tanh,
+    Asinh,
+    Acosh,
+    Atanh,
+    Erf,
 }
 
 /// Operations of two operands.
@@ -77,6 +81,12 @@ impl Unary {
             Self::Sinh => libm::sinh(a),
             Self::Cosh => libm::cosh(a),
             Self::Tanh => libm::tanh(a),
+            Self::Asinh => libm::asinh(a),
+            // Below 1, where there is none, `libm` is not bound to give NaN.
+            Self::Acosh if a < 1.0 => f64::NAN,
+            Self::Acosh => libm::acosh(a),
+            Self::Atanh => libm::atanh(a),
+            Self::Erf => libm::erf(a),
         }
     }
 
@@ -118,6 +128,19 @@ impl Unary {
             Self::Tanh => {
                 let first = 1.0 - value * value;
                 (first, -2.0 * value * first)
+            }
+            Self::Asinh | Self::Acosh => {
+                let square = if self == Self::Asinh { a * a + 1.0 } else { a * a - 1.0 };
+                let first = 1.0 / square.sqrt();
+                (first, -a * first / square)
+            }
+            Self::Atanh => {
+                let first = 1.0 / (1.0 - a * a);
+                (first, 2.0 * a * first * first)
+            }
+            Self::Erf => {
+                let first = core::f64::consts::FRAC_2_SQRT_PI * libm::exp(-a * a);
+                (first, -2.0 * a * first)
             }
         };
         [value, first, second]

@@ -1,77 +1,56 @@
 //! Recursive-descent parser: tokens to a syntax tree.
 //!
 //! ```text
-//! equation := [ name "(" "x" "," "y" "," "z" ")" "=" ] sum [ "=" sum ]
-//! sum      := term { ("+" | "-") term }
-//! term     := ("-" | "+") term | product
-//! product  := power { "*" signed | "/" signed | power }      juxtaposition: no number but the first
-//! signed   := ("-" | "+") signed | power
-//! power    := atom [ superscript | "^" signed ]               "^" binds to the right
-//! atom     := number | name | "(" sum ")" | "|" sum "|" | "\frac" group group | "\sqrt" [ "[" sum "]" ] group
-//!           | function [ exponent ] ( "(" sum { "," sum } ")" | operand )
+//! formula   := { definition ";" } surface [ ";" ]               see `statements` surface   :=
+//! value [ "=" value ] value     := logic [ "?" value ":" value ] logic     := both { "or" both }
+//! conditions, as are the two that follow; or a sum both      := compared { "and" compared }
+//! compared  := "not" compared | sum { ( "<" | "<=" | ">" | ">=" ) sum } sum       := term { ("+" |
+//! "-") term } term      := ("-" | "+") term | product product   := power { ("*" | "/" | "%")
+//! signed | power }      juxtaposition: no number but the first signed    := ("-" | "+") signed |
+//! power power     := atom [ superscript | "^" signed ]               "^" binds to the right atom
+//! := number | name | "(" value ")" | "|" sum "|" | "\frac" group group | "\sqrt" [ "[" value "]" ]
+//! group
+//!            | function [ exponent ] ( "(" value { "," value } ")" | operand )
 //! ```
 //!
 //! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call) says what a function without
 //! brackets is applied to.
 
-use super::ast::{COORDINATES, Constant, Equation, Expr, ExprKind, FUNCTIONS, Factor, Function, Sign};
-use super::elsewhere::{call_error, is_elsewhere, name_elsewhere};
+use super::MAX_DEPTH;
+use super::ast::{Constant, Definition, Expr, ExprKind, Factor, Function, Sign};
+use super::elsewhere::{self, NO_VECTORS, called, is_vector};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::tokens;
 use super::operations::Unary;
 use super::token::{Bar, Spanned, Token, closing, slice};
-use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
-
-/// A parsed formula and the names in it that are neither coordinates, constants nor functions.
-pub(super) struct Parsed {
-    pub(super) equation: Equation,
-    /// Each name once, in order of appearance, with the span of its first occurrence.
-    pub(super) names: Vec<(String, Range<usize>)>,
-}
-
-/// Parses `text`. `declared` are the names of the declared parameters.
-///
-/// # Errors
-///
-/// The first error from left to right, with the text it concerns and, where there is a good guess, a correction.
-pub(super) fn parse(text: &str, declared: &[&str]) -> Result<Parsed, FormulaError> {
-    if text.len() > MAX_FORMULA_BYTES {
-        let message = format!("A formula has at most {MAX_FORMULA_BYTES} bytes; this one has {}", text.len());
-        let end = (0..=MAX_FORMULA_BYTES).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
-        return Err(FormulaError::new(ErrorKind::TooLong, end..text.len(), message));
-    }
-    let tokens = tokens(text, declared)?;
-    if tokens.len() == 1 {
-        let message = "Type a formula of x, y and z, for example `x^2 + y^2 + z^2 = 1`";
-        return Err(FormulaError::new(ErrorKind::Empty, 0..0, message));
-    }
-    let mut parser =
-        Parser { text, tokens, next: 0, depth: 0, is_in_bars: false, declared, names: Vec::new() };
-    parser.head()?;
-    let left = parser.sum()?;
-    let right = if parser.take(&Token::Equals) { Some(parser.sum()?) } else { None };
-    let rest = parser.peek().clone();
-    match rest.token {
-        Token::End => Ok(Parsed { equation: Equation { left, right }, names: parser.names }),
-        Token::Equals => {
-            let message = "A formula has one `=` at most";
-            Err(FormulaError::new(ErrorKind::TooManyEquations, rest.span, message))
-        }
-        _ => Err(parser.unexpected()),
-    }
-}
 
 pub(super) struct Parser<'a> {
     pub(super) text: &'a str,
     pub(super) tokens: Vec<Spanned>,
     /// Index of the next token.
     pub(super) next: usize,
-    depth: usize,
+    pub(super) depth: usize,
+    /// The greatest depth so far in the present definition.
+    pub(super) deepest: usize,
     /// Whether the innermost bracket around the next token is a bar, which a bar after an operand closes.
-    is_in_bars: bool,
-    declared: &'a [&'a str],
-    names: Vec<(String, Range<usize>)>,
+    pub(super) is_in_bars: bool,
+    /// Whether a comparison stands before the next token in its bracket, so that `||` is a logical
+    /// operator.
+    pub(super) has_comparison: bool,
+    /// Number of brackets around the next token.
+    brackets: usize,
+    /// The first sign of a comparison.
+    pub(super) comparison: Option<Range<usize>>,
+    /// Whether calls are written as in Mathematica, so that `E` is Euler's number.
+    pub(super) is_mathematica: bool,
+    pub(super) declared: &'a [&'a str],
+    /// What was defined so far, with the depth of each.
+    pub(super) definitions: Vec<(Definition, usize)>,
+    /// The name that is being defined, with its arguments.
+    pub(super) present: Option<(String, Vec<String>)>,
+    /// Names that are neither coordinates, constants, functions nor defined, each once, with the
+    /// span of its first occurrence.
+    pub(super) names: Vec<(String, Range<usize>)>,
 }
 
 pub(super) type Parse = Result<Expr, FormulaError>;
@@ -79,54 +58,36 @@ pub(super) type Parse = Result<Expr, FormulaError>;
 /// The arguments of a function.
 pub(super) struct CallArguments {
     pub(super) arguments: Vec<Expr>,
-    /// Number of the commas between them that may be decimal ones, and the token of the first.
-    pub(super) doubtful: usize,
-    pub(super) first_doubtful: usize,
+    /// The commas between them that may be decimal ones: the token of each, and the argument after
+    /// it.
+    doubtful: Vec<(usize, usize)>,
+    /// Whether a comma that is none has no space after it.
+    is_tight: bool,
 }
 
-impl Parser<'_> {
-    /// Skips the head of a definition `f(x, y, z) = …`, whose body is the formula.
-    fn head(&mut self) -> Result<(), FormulaError> {
-        let [Spanned { token: Token::Name(name), span }, Spanned { token: Token::Open('('), .. }, rest @ ..] =
-            &self.tokens[..]
-        else {
-            return Ok(());
-        };
-        let mut left_out: Vec<&str> = COORDINATES.to_vec();
-        let mut end = None;
-        for (k, pair) in rest.chunks_exact(2).enumerate() {
-            let [Spanned { token: Token::Name(axis), .. }, after] = pair else { return Ok(()) };
-            let Some(place) = left_out.iter().position(|left| left == axis) else { return Ok(()) };
-            left_out.remove(place);
-            match after.token {
-                Token::Comma => {}
-                Token::Close(')') => {
-                    end = Some(2 + 2 * (k + 1));
-                    break;
-                }
-                _ => return Ok(()),
+impl<'a> Parser<'a> {
+    pub(super) fn new(text: &'a str, tokens: Vec<Spanned>, declared: &'a [&'a str]) -> Self {
+        let is_mathematica = tokens.windows(2).any(|pair| match pair {
+            [Spanned { token: Token::Name(name), .. }, Spanned { token: Token::Open('['), .. }] => {
+                name.starts_with(|c: char| c.is_ascii_uppercase()) && called(name, '[').is_some()
             }
-        }
-        let Some(end) = end.filter(|&end| self.tokens[end].token == Token::Equals) else { return Ok(()) };
-        if Function::find(name).is_some() || COORDINATES.contains(&name.as_str()) || is_elsewhere(name) {
-            return Ok(());
-        }
-        let whole = span.start..self.tokens[end].span.end;
-        match left_out[..] {
-            [] => {
-                self.next = end + 1;
-                Ok(())
-            }
-            [height] => {
-                let message = format!(
-                    "A function of two coordinates is no surface by itself: its graph is `{height} = …`"
-                );
-                Err(FormulaError::new(ErrorKind::Ambiguous, whole, message).suggest(format!("{height} =")))
-            }
-            _ => {
-                let message = format!("Write `{name}(x, y, z) = …`, or an equation of x, y and z");
-                Err(FormulaError::new(ErrorKind::Ambiguous, whole, message))
-            }
+            _ => false,
+        });
+        Self {
+            text,
+            tokens,
+            next: 0,
+            depth: 0,
+            deepest: 0,
+            is_in_bars: false,
+            has_comparison: false,
+            brackets: 0,
+            comparison: None,
+            is_mathematica,
+            declared,
+            definitions: Vec::new(),
+            present: None,
+            names: Vec::new(),
         }
     }
 
@@ -154,6 +115,7 @@ impl Parser<'_> {
             return Err(FormulaError::new(ErrorKind::TooDeep, self.peek().span.clone(), message));
         }
         self.depth += 1;
+        self.deepest = self.deepest.max(self.depth);
         let result = parse(self);
         self.depth -= 1;
         result
@@ -171,6 +133,9 @@ impl Parser<'_> {
                 span.clone(),
                 "Something is missing at the end",
             );
+        }
+        if let Token::Compare(_) = token {
+            return inequality(span.clone());
         }
         let written = slice(self.text, span);
         let previous = self.next.checked_sub(1).map(|index| &self.tokens[index].token);
@@ -190,6 +155,11 @@ impl Parser<'_> {
             _ => format!("`{written}` cannot stand here"),
         };
         FormulaError::new(ErrorKind::UnexpectedSymbol, span.clone(), message)
+    }
+
+    /// Error for the next token, with this message.
+    pub(super) fn cannot_stand(&self, message: &str) -> FormulaError {
+        FormulaError::new(ErrorKind::UnexpectedSymbol, self.peek().span.clone(), message)
     }
 
     /// The numbers on both sides of the comma that is token `at`, if it may be a decimal one: they have no point, and there is no space.
@@ -218,7 +188,23 @@ impl Parser<'_> {
         Some(FormulaError::new(ErrorKind::DecimalComma, span, message).suggest(suggestion))
     }
 
-    fn sum(&mut self) -> Parse {
+    /// Error for a comma between the arguments of a function that may be a decimal one, where
+    /// `takes` says which numbers of arguments there may be: `min(1,5)` can have two only, `min(x,
+    /// 1,5)` two or three. Where the other commas have no space after them either, commas separate,
+    /// unless on both sides of one there is nothing but a number: `max(x-1,3-y,z)`, but not
+    /// `max(x,1,5)`.
+    pub(super) fn doubt(&self, call: &CallArguments, takes: &dyn Fn(usize) -> bool) -> Option<FormulaError> {
+        let (count, doubtful) = (call.arguments.len(), &call.doubtful);
+        let &(first, _) = doubtful.first()?;
+        let may_be_fewer = (count - doubtful.len()..count).any(takes);
+        let is_number = |at: usize| matches!(call.arguments[at].kind, ExprKind::Number(_));
+        let separates =
+            call.is_tight && !doubtful.iter().any(|&(_, after)| is_number(after) && is_number(after - 1));
+        let is_decimal = !takes(count) || may_be_fewer && !separates;
+        if is_decimal { self.decimal_comma(first) } else { None }
+    }
+
+    pub(super) fn sum(&mut self) -> Parse {
         let first = self.term()?;
         let mut terms = vec![(Sign::Plus, first)];
         loop {
@@ -258,31 +244,92 @@ impl Parser<'_> {
 
     fn product(&mut self) -> Parse {
         let first = self.power()?;
+        if first.kind.is_condition() {
+            let is_operand =
+                matches!(self.peek().token, Token::Star | Token::Slash | Token::Percent | Token::Caret);
+            return if is_operand { Err(FormulaError::misplaced_condition(&first.span)) } else { Ok(first) };
+        }
         let mut factors = vec![(Factor::Times, first)];
+        let mut is_remainder = false;
         loop {
             if self.take(&Token::Star) {
                 factors.push((Factor::Times, self.signed_power()?));
             } else if self.take(&Token::Slash) {
                 factors.push((Factor::Over, self.signed_power()?));
+            } else if self.take(&Token::Percent) {
+                self.check_remark()?;
+                let divisor = self.signed_power()?;
+                let dividend = flatten(core::mem::take(&mut factors), ExprKind::Product);
+                factors.push((Factor::Times, named_call("mod", vec![dividend, divisor])));
+                is_remainder = true;
+                continue;
             } else if self.begins_factor() {
                 self.check_bars(&factors)?;
-                let after_division = matches!(factors.last(), Some((Factor::Over, _)));
-                let divisor = factors.last().map_or(0..0, |(_, factor)| factor.span.clone());
+                self.check_line()?;
+                let divisor = self.tokens[self.next - 1].span.end;
                 let factor = self.power()?;
-                if after_division {
-                    let span = divisor.start..factor.span.end;
-                    let (below, beside) = (slice(self.text, &divisor), slice(self.text, &factor.span));
-                    let message =
-                        format!("What is divided by? Write `/({below} {beside})` or `/{below}*{beside}`");
-                    return Err(FormulaError::new(ErrorKind::Ambiguous, span, message)
-                        .suggest(format!("({below} {beside})")));
+                let after_division = is_remainder || matches!(factors.last(), Some((Factor::Over, _)));
+                if after_division && !is_fraction_of(&factors, &factor) {
+                    return Err(self.what_divides(&factors, divisor, &factor));
                 }
                 factors.push((Factor::Times, factor));
             } else {
                 break;
             }
+            is_remainder = false;
         }
         Ok(flatten(factors, ExprKind::Product))
+    }
+
+    /// Error for a factor beside a divisor, which ends at byte `end`.
+    fn what_divides(&self, factors: &[(Factor, Expr)], end: usize, factor: &Expr) -> FormulaError {
+        let (mut start, sign) = match factors.last() {
+            Some((Factor::Over, divisor)) => (divisor.span.start, '/'),
+            _ => (end, '%'),
+        };
+        if let [.., (_, Expr { kind: ExprKind::Call(_, parts), .. })] = factors
+            && let ('%', [_, divisor]) = (sign, &parts[..])
+        {
+            start = divisor.span.start;
+        }
+        let (below, beside) = (slice(self.text, &(start..end)), slice(self.text, &factor.span));
+        let ways = [format!("({below} {beside})"), format!("{below}*{beside}")];
+        let message = format!("What is divided by? Write `{sign}{}` or `{sign}{}`", ways[0], ways[1]);
+        FormulaError::new(ErrorKind::Ambiguous, start..factor.span.end, message).choose(ways)
+    }
+
+    /// An error after `%`, which has just been consumed, if words follow: in MATLAB and LaTeX it
+    /// begins a comment.
+    fn check_remark(&self) -> Result<(), FormulaError> {
+        let Token::Name(name) = &self.peek().token else { return Ok(()) };
+        let is_word = name.chars().count() > 1
+            && !self.declared.contains(&name.as_str())
+            && !self.definitions.iter().any(|(definition, _)| definition.name == *name)
+            && elsewhere::function(name).is_none()
+            && Constant::find(name).is_none();
+        if !is_word {
+            return Ok(());
+        }
+        let span = self.tokens[self.next - 1].span.clone();
+        let message = "`%` is the remainder of a division here: a comment begins with `//`";
+        Err(FormulaError::new(ErrorKind::Ambiguous, span, message).suggest("//"))
+    }
+
+    /// An error where the next token begins both a factor and a line, outside brackets: it may
+    /// begin something else. LaTeX has no lines.
+    fn check_line(&self) -> Result<(), FormulaError> {
+        let Spanned { span, .. } = self.peek();
+        let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
+        if self.brackets > 0
+            || !slice(self.text, &(before..span.start)).contains('\n')
+            || self.text.contains('\\')
+        {
+            return Ok(());
+        }
+        let message = "A new line begins here without a sign: write `*` to multiply. What comes before the surface has to be a \
+            definition, such as `r = hypot(x, y)`";
+        let written = slice(self.text, span);
+        Err(FormulaError::new(ErrorKind::Ambiguous, span.clone(), message).suggest(format!("*{written}")))
     }
 
     /// Whether the next token begins a factor that stands beside the one before it.
@@ -291,7 +338,7 @@ impl Parser<'_> {
             Token::Name(_) | Token::Open(_) | Token::Fraction | Token::Root | Token::Bar(Bar::Opening) => {
                 true
             }
-            Token::Bar(Bar::Either) => !self.is_in_bars,
+            Token::Bar(Bar::Either) => !(self.is_in_bars || self.has_comparison && self.is_double_bar()),
             _ => false,
         }
     }
@@ -345,9 +392,13 @@ impl Parser<'_> {
                 self.next += 1;
                 self.name(name, span)
             }
-            Token::Open(_) => {
-                let (inner, span) = self.bracketed(|parser| parser.within(false, Self::sum))?;
-                Ok(Expr { span, ..inner })
+            Token::Open(bracket) => {
+                let (inner, span) = self.bracketed(|parser| parser.within(false, Self::value))?;
+                Ok(match bracket {
+                    '⌊' => Expr { span, ..named_call("floor", vec![inner]) },
+                    '⌈' => Expr { span, ..named_call("ceil", vec![inner]) },
+                    _ => Expr { span, ..inner },
+                })
             }
             Token::Bar(Bar::Either | Bar::Opening) => {
                 self.next += 1;
@@ -399,9 +450,12 @@ impl Parser<'_> {
 
     /// Applies `parse` one nesting level deeper, within bars or within brackets.
     fn within(&mut self, bars: bool, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
-        let outside = core::mem::replace(&mut self.is_in_bars, bars);
+        let outside = (self.is_in_bars, self.has_comparison);
+        (self.is_in_bars, self.has_comparison) = (bars, false);
+        self.brackets += 1;
         let result = self.deeper(parse);
-        self.is_in_bars = outside;
+        self.brackets -= 1;
+        (self.is_in_bars, self.has_comparison) = outside;
         result
     }
 
@@ -419,22 +473,63 @@ impl Parser<'_> {
     }
 
     /// Parses the arguments of a function with the brackets around them; returns their span, too.
-    pub(super) fn arguments(&mut self) -> Result<(CallArguments, Range<usize>), FormulaError> {
+    /// The components of vectors are arguments of a length: `length(vec3(x, y, z))`, `norm([x, y,
+    /// z])`.
+    pub(super) fn arguments(
+        &mut self,
+        function: Option<Function>,
+    ) -> Result<(CallArguments, Range<usize>), FormulaError> {
         self.bracketed(|parser| {
-            let (mut arguments, mut doubtful, mut first_doubtful) = (Vec::new(), 0, 0);
-            if !matches!(parser.peek().token, Token::Close(_)) {
-                arguments.push(parser.within(false, Self::sum)?);
-                while parser.take(&Token::Comma) {
-                    let comma = parser.next - 1;
-                    if parser.numbers_beside(comma).is_some() {
-                        first_doubtful = if doubtful == 0 { comma } else { first_doubtful };
-                        doubtful += 1;
-                    }
-                    arguments.push(parser.within(false, Self::sum)?);
+            let mut call = CallArguments { arguments: Vec::new(), doubtful: Vec::new(), is_tight: false };
+            if matches!(parser.peek().token, Token::Close(_)) {
+                return Ok(call);
+            }
+            loop {
+                if function == Some(Function::Hypot) && parser.begins_vector() {
+                    call.arguments.extend(parser.components()?);
+                } else {
+                    call.arguments.push(parser.within(false, Self::value)?);
+                }
+                if !parser.take(&Token::Comma) {
+                    return match parser.peek().token {
+                        Token::Separator => {
+                            let message = "A comma separates arguments; `;` ends a definition";
+                            Err(parser.cannot_stand(message).suggest(","))
+                        }
+                        Token::Equals if function == Some(Function::If) => {
+                            Err(parser.cannot_stand("A condition compares by `<`, `<=`, `>` or `>=`"))
+                        }
+                        _ => Ok(call),
+                    };
+                }
+                let comma = parser.next - 1;
+                if parser.numbers_beside(comma).is_some() {
+                    call.doubtful.push((comma, call.arguments.len()));
+                } else {
+                    call.is_tight |= parser.tokens[comma].span.end == parser.peek().span.start;
                 }
             }
-            Ok(CallArguments { arguments, doubtful, first_doubtful })
         })
+    }
+
+    /// Whether a vector begins with the next token: `vec3(…)`, or a list in brackets.
+    fn begins_vector(&self) -> bool {
+        match &self.peek().token {
+            Token::Name(name) => is_vector(name) && matches!(self.second().token, Token::Open(_)),
+            Token::Open(_) => self.has_comma(),
+            _ => false,
+        }
+    }
+
+    /// Parses a vector: its components.
+    fn components(&mut self) -> Result<Vec<Expr>, FormulaError> {
+        let start = self.peek().span.start;
+        self.next += usize::from(matches!(self.peek().token, Token::Name(_)));
+        let (call, inside) = self.arguments(None)?;
+        if !matches!(self.peek().token, Token::Comma | Token::Close(_)) {
+            return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, start..inside.end, NO_VECTORS));
+        }
+        Ok(call.arguments)
     }
 
     /// Consumes the bracket that closes the one at `span` and returns its end.
@@ -459,6 +554,11 @@ impl Parser<'_> {
                 let end = self.text.len();
                 FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(closing)
             }
+            Token::Separator => {
+                let at = self.peek().span.start;
+                FormulaError::new(ErrorKind::UnexpectedSymbol, at..at, format!("{message} before `;`"))
+                    .suggest(closing)
+            }
             Token::Equals => {
                 let before = self.next.checked_sub(1).map_or(0, |last| self.tokens[last].span.end);
                 // Editors close a bracket as soon as it is opened: that one stands too far to the right.
@@ -474,49 +574,45 @@ impl Parser<'_> {
             _ => self.unexpected(),
         }
     }
+}
 
-    /// Parses what begins with `name`, which has just been consumed.
-    fn name(&mut self, name: String, span: Range<usize>) -> Parse {
-        if let Some(axis) = COORDINATES.iter().position(|&coordinate| coordinate == name) {
-            let axis = u8::try_from(axis).unwrap_or(0);
-            return Ok(Expr { kind: ExprKind::Coordinate(axis), span });
-        }
-        if let Some(constant) = Constant::find(&name) {
-            return Ok(Expr { kind: ExprKind::Constant(constant), span });
-        }
-        if let Some(function) = Function::find(&name) {
-            return self.call(function, span);
-        }
-        if self.peek().token == Token::Open('(') && !self.declared.contains(&name.as_str()) {
-            if let Some(error) = call_error(self.text, &self.tokens, self.next - 1) {
-                return Err(error);
-            }
-            let guess = self.similar(&name);
-            let has_arguments = self.has_comma();
-            let message = match guess {
-                Some(guess) => format!("There is no function `{name}`: did you mean `{guess}`?"),
-                None if has_arguments => {
-                    format!("There is no function `{name}`: write its formula in its place")
-                }
-                None => format!("There is no function `{name}`; to multiply, write `{name}*(`"),
-            };
-            let error = FormulaError::new(ErrorKind::UnknownFunction, span, message);
-            return Err(match guess {
-                Some(guess) => error.suggest(guess),
-                None if has_arguments => error,
-                None => error.suggest(format!("{name}*")),
-            });
-        }
-        if !self.names.iter().any(|(known, _)| *known == name) {
-            self.names.push((name.clone(), span.clone()));
-        }
-        Ok(Expr { kind: ExprKind::Parameter(name), span })
-    }
+/// Error for the sign of an inequality.
+pub(super) fn inequality(span: Range<usize>) -> FormulaError {
+    let message = "An inequality describes a solid, and its surface is where both sides are equal: write `=`";
+    FormulaError::new(ErrorKind::UnexpectedCharacter, span, message).suggest("=")
+}
 
-    /// Function that was probably meant by `name`.
-    fn similar(&self, name: &str) -> Option<&'static str> {
-        name_elsewhere(name).or_else(|| similar(name, FUNCTIONS.iter().map(|function| function.name)))
-    }
+pub(super) fn wrong_arity(signature: &str, wanted: usize, given: usize, span: Range<usize>) -> FormulaError {
+    let wanted = if wanted == 1 { "one argument".to_owned() } else { format!("{wanted} arguments") };
+    let message = format!("`{signature}` takes {wanted}, and here it has {given}");
+    FormulaError::new(ErrorKind::WrongArity, span, message)
+}
+
+/// Whether a factor stands beside a fraction of two numbers: `9/4y^2` is (9/4)y². A factor that is
+/// a number itself may belong to the divisor, as in `1/2pi`.
+fn is_fraction_of(factors: &[(Factor, Expr)], factor: &Expr) -> bool {
+    let is_fraction = matches!(
+        factors,
+        [
+            ..,
+            (Factor::Times, Expr { kind: ExprKind::Number(_), .. }),
+            (Factor::Over, Expr { kind: ExprKind::Number(_), .. })
+        ]
+    );
+    let is_named = |kind: &ExprKind| {
+        matches!(
+            kind,
+            ExprKind::Coordinate(_) | ExprKind::Parameter(_) | ExprKind::Argument(_) | ExprKind::Defined(..)
+        )
+    };
+    is_fraction && factor.any(&is_named)
+}
+
+/// A call of the function `name`, which the language has.
+fn named_call(name: &str, arguments: Vec<Expr>) -> Expr {
+    let function = Function::find(name).expect("a function of the language");
+    let ends = [arguments.first(), arguments.last()].map(|end| end.map_or(0..0, |end| end.span.clone()));
+    Expr { kind: ExprKind::Call(function, arguments), span: ends[0].start..ends[1].end }
 }
 
 /// Tree of an integer; a negative one is a negated number.
@@ -555,47 +651,4 @@ fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> ExprKind) -
     let start = items.first().map_or(0, |(_, item)| item.span.start);
     let end = items.last().map_or(0, |(_, item)| item.span.end);
     Expr { kind: list(items), span: start..end }
-}
-
-/// Word of `known` that `name` is probably a misspelling of: one that differs in case only, or by one edit (two for a
-/// long name). Ties go to the word with the same first letter, then to the one with the fewest letters that `name` has not:
-/// `siin` is rather `sin` than `sign`.
-pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let length = name.chars().count();
-    let allowed = if length > 5 { 2 } else { 1 };
-    known
-        .filter_map(|word| {
-            let distance = if word.eq_ignore_ascii_case(name) { 0 } else { edit_distance(name, word) };
-            let close = distance == 0 || (length >= 2 && word.len() >= 2 && distance <= allowed);
-            // Misspellings rarely concern the first letter.
-            let other_start = word.chars().next() != name.chars().next();
-            let foreign = word.chars().filter(|&letter| !name.contains(letter)).count();
-            (close && word != name).then_some((distance, other_start, foreign, word))
-        })
-        .min_by_key(|&(distance, other_start, foreign, _)| (distance, other_start, foreign))
-        .map(|(.., word)| word)
-}
-
-/// Edit distance (optimal string alignment): insertions, deletions, substitutions and swaps of adjacent characters.
-/// Lengths that differ by more than two give `usize::MAX`.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let a: Vec<char> = a.chars().collect();
-    let b: Vec<char> = b.chars().collect();
-    if a.len().abs_diff(b.len()) > 2 {
-        return usize::MAX;
-    }
-    let mut before: Vec<usize> = Vec::new();
-    let mut previous: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i; b.len() + 1];
-        for j in 1..=b.len() {
-            let substituted = previous[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = substituted.min(previous[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                row[j] = row[j].min(before[j - 2] + 1);
-            }
-        }
-        before = core::mem::replace(&mut previous, row);
-    }
-    previous[b.len()]
 }

@@ -1,11 +1,12 @@
 //! Compiler from a graph to a straight-line program over a small register file, for batches of points.
 //!
-//! A node that depends on no coordinate is a *uniform*. It is computed once, in double precision, whenever a parameter
-//! changes, and enters the instructions as a broadcast operand. The varying nodes are lowered: integer powers become
-//! products, smooth minima their polynomial. A register is reused as soon as its value is dead, so that a block of points
-//! stays in the first-level cache.
+//! A node that depends on no coordinate is a *uniform*. It is computed once, in double precision,
+//! whenever a parameter changes, and enters the instructions as a broadcast operand. The varying
+//! nodes are lowered: integer powers become products, smooth minima their polynomial, choices sums
+//! of two. A register is reused as soon as its value is dead, so that a block of points stays in
+//! the first-level cache.
 
-use super::graph::{Graph, Id, Node};
+use super::graph::{Blend, Graph, Id, Node};
 use super::operations::{Binary, Unary};
 
 /// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
@@ -58,7 +59,11 @@ impl Program {
     /// called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let (low, outputs) = graph.rewritten(outputs, |low, node| match node {
-            Node::Smin(a, b, k) => smooth_minimum(low, a, b, k),
+            Node::Smin(blend, a, b, k) => smooth_minimum(low, blend, a, b, k),
+            Node::Select(_, a, b, u, v) => {
+                let (u, v) = (low.when(true, a, b, u), low.when(false, a, b, v));
+                low.add(u, v)
+            }
             Node::Power(a, n) => integer_power(low, a, n),
             node => low.intern(node),
         });
@@ -90,18 +95,23 @@ pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> usize {
     graph.needed_by(outputs).iter().filter(|id| is_operation(id)).count()
 }
 
-/// The smooth minimum as min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1.
-fn smooth_minimum(low: &mut Graph, a: Id, b: Id, k: Id) -> Id {
+/// The smooth minimum as min(a, b) − k (1 − |u|)³/6, or min(a, b) − k (1 − |u|)²/4, with u = (a −
+/// b)/k clamped to −1 … 1.
+fn smooth_minimum(low: &mut Graph, blend: Blend, a: Id, b: Id, k: Id) -> Id {
     let (width, u) = low.blend(a, b, k);
     let magnitude = low.unary(Unary::Abs, u);
     let one = low.constant(1.0);
     let gap = low.sub(one, magnitude);
-    let cube = integer_power(low, gap, 3);
-    let sixth = low.constant(1.0 / 6.0);
-    let depth = low.mul(width, sixth);
-    let blend = low.mul(cube, depth);
+    let (degree, share) = match blend {
+        Blend::Cubic => (3, 1.0 / 6.0),
+        Blend::Quadratic => (2, 0.25),
+    };
+    let power = integer_power(low, gap, degree);
+    let share = low.constant(share);
+    let depth = low.mul(width, share);
+    let depth = low.mul(power, depth);
     let least = low.binary(Binary::Min, a, b);
-    low.sub(least, blend)
+    low.sub(least, depth)
 }
 
 /// x^n, as products, of 1/x for negative n, if it varies.
@@ -212,8 +222,8 @@ impl<'a> Compiler<'a> {
                 let operands = [self.operand(a), self.operand(b), self.operand(c)];
                 self.push(Op::If(at_most), operands)
             }
-            Node::Constant(_) | Node::Parameter(_) | Node::Power(..) | Node::Smin(..) => {
-                unreachable!("uniform nodes have no instruction, powers and smooth minima were expanded")
+            Node::Constant(_) | Node::Parameter(_) | Node::Power(..) | Node::Smin(..) | Node::Select(..) => {
+                unreachable!("uniform nodes have no instruction, powers and what is like them were expanded")
             }
         }
     }

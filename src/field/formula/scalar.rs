@@ -2,7 +2,7 @@
 //!
 //! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check one by the other.
 
-use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node, power, smin};
+use super::graph::{Blend, Graph, Id, MIN_BLEND_WIDTH, Node, power, smin};
 use super::operations::{Binary, Unary};
 use crate::field::Jet;
 use crate::math::Sym3;
@@ -149,7 +149,9 @@ fn order<const N: usize>(
             a.apply([power(a.value, n), d1, d2], axes)
         }
         Node::Binary(operation, a, b) => binary(operation, operand(a), operand(b), axes),
-        Node::Smin(a, b, k) => smooth_minimum(&operand(a).jet, &operand(b).jet, &operand(k).jet, axes),
+        Node::Smin(blend, a, b, k) => {
+            smooth_minimum(blend, &operand(a).jet, &operand(b).jet, &operand(k).jet, axes)
+        }
         Node::If(at_most, a, b, v) => {
             let (a, b, v) = (operand(a).jet.value, operand(b).jet.value, operand(v).jet);
             if a.is_nan() || b.is_nan() {
@@ -158,6 +160,14 @@ fn order<const N: usize>(
                 v
             } else {
                 ForwardJet::uniform(0.0)
+            }
+        }
+        Node::Select(_, a, b, u, v) => {
+            let (a, b) = (operand(a).jet.value, operand(b).jet.value);
+            if a.is_nan() || b.is_nan() {
+                ForwardJet::uniform(0.0).scale(f64::NAN)
+            } else {
+                operand(if a <= b { u } else { v }).jet
             }
         }
     }
@@ -210,15 +220,16 @@ fn binary<const N: usize>(
     }
 }
 
-/// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the
-/// smaller of a and b.
+/// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b|
+/// < k, or (a + b)/2 − k (1/4 + u²/4), else the smaller of a and b.
 fn smooth_minimum<const N: usize>(
+    blend: Blend,
     a: &ForwardJet<N>,
     b: &ForwardJet<N>,
     k: &ForwardJet<N>,
     axes: u8,
 ) -> ForwardJet<N> {
-    let value = smin(a.value, b.value, k.value);
+    let value = smin(blend, a.value, b.value, k.value);
     let k = if k.value > MIN_BLEND_WIDTH { *k } else { ForwardJet::uniform(MIN_BLEND_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
     let u = difference.mul(&k.reciprocal(axes));
@@ -228,14 +239,17 @@ fn smooth_minimum<const N: usize>(
     if u.value <= -1.0 {
         return ForwardJet { value, ..*a };
     }
-    let size = u.value.abs();
-    let blend = u.apply(
-        [
-            1.0 / 6.0 + 0.5 * u.value * u.value - size * size * size / 6.0,
-            u.value - 0.5 * u.value * size,
-            1.0 - size,
-        ],
+    let (u_value, size) = (u.value, u.value.abs());
+    let depth = u.apply(
+        match blend {
+            Blend::Cubic => [
+                1.0 / 6.0 + 0.5 * u_value * u_value - size * size * size / 6.0,
+                u_value - 0.5 * u_value * size,
+                1.0 - size,
+            ],
+            Blend::Quadratic => [0.25 + 0.25 * u_value * u_value, 0.5 * u_value, 0.5],
+        },
         axes,
     );
-    ForwardJet { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
+    ForwardJet { value, ..a.add(b).scale(0.5).add(&k.mul(&depth).scale(-1.0)) }
 }

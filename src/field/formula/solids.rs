@@ -107,6 +107,11 @@ impl SheetBuilder<'_> {
             Node::Unary(Unary::Abs, u) if self.left > 1 => {
                 self.both(!is_negative, &shifted(u, shift), &turned(u, shift))
             }
+            Node::Select(_, a, b, u, v) if self.left > 1 => {
+                self.left -= 1;
+                let (u, v) = (self.side(&shifted(u, shift)), self.side(&shifted(v, shift)));
+                self.graph.select(a, b, u, v)
+            }
             _ => {
                 let gradient = derivative::gradient(self.graph, node);
                 let squares = gradient.map(|slope| self.graph.power(slope, 2));

@@ -4,7 +4,7 @@ use super::branches::Branches;
 use super::graph::Graph;
 use super::operations::{Binary, Unary};
 use super::program::{Op, Program};
-use super::{Formula, build, derivative, parse};
+use super::{Formula, build, derivative, statements};
 use crate::field::{Field as _, gallery};
 
 fn compiled(text: &str) -> Formula {
@@ -78,7 +78,7 @@ fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
         let declared = surface.parameters;
         let names: Vec<&str> = declared.iter().map(|parameter| &*parameter.name).collect();
         let values: Vec<f64> = declared.iter().map(|parameter| parameter.value).collect();
-        let parsed = parse::parse(surface.formula, &names).expect("the gallery parses");
+        let parsed = statements::parse(surface.formula, &names).expect("the gallery parses");
         let mut graph = Graph::default();
         let root = build::build(&mut graph, &parsed.equation, &names).expect("the gallery compiles");
         graph.let_zero_annihilate();

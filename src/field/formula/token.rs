@@ -12,8 +12,10 @@ pub(super) enum Token {
     Minus,
     Star,
     Slash,
+    /// The remainder of a division.
+    Percent,
     Caret,
-    /// Opening bracket: round, square or curly.
+    /// Opening bracket: round, square or curly, of `⌊x⌋` or of `⌈x⌉`.
     Open(char),
     Close(char),
     Bar(Bar),
@@ -23,7 +25,40 @@ pub(super) enum Token {
     Root,
     Comma,
     Equals,
+    Compare(Comparison),
+    And,
+    Or,
+    Not,
+    /// `?` and `:` of a choice.
+    Question,
+    Colon,
+    /// The sign before the arguments of a nameless function, `@(x, y, z)`.
+    At,
+    /// The sign after the arguments of a nameless function, `(x, y, z) =>`.
+    Arrow,
+    /// `;`, or the end of a line that ends a definition.
+    Separator,
     End,
+}
+
+/// A comparison of two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Comparison {
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+}
+
+impl Comparison {
+    pub(super) fn sign(self) -> &'static str {
+        match self {
+            Self::Less => "<",
+            Self::AtMost => "<=",
+            Self::Greater => ">",
+            Self::AtLeast => ">=",
+        }
+    }
 }
 
 /// A bar of an absolute value.
@@ -40,6 +75,8 @@ pub(super) fn closing(open: char) -> char {
     match open {
         '[' => ']',
         '{' => '}',
+        '⌊' => '⌋',
+        '⌈' => '⌉',
         _ => ')',
     }
 }

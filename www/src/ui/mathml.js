@@ -57,6 +57,20 @@ export function partsOfMath(node) {
  */
 const isOpen = (node) => node.tag === 'mrow' && (operatorOf(node.children[0]) === null || isBreak(node.children[0]));
 
+/**
+ * Returns the lines of a formula: its definitions and its surface, which are the rows of a table.
+ * @param {MathNode} node
+ * @returns {MathNode[]}
+ */
+const linesOf = (node) =>
+  node.tag === 'mtable' ? node.children.flatMap((row) => ('children' in row ? cellsOf(row.children) : [])) : [node];
+
+/** @param {MathNode[]} cells */
+const cellsOf = (cells) => cells.flatMap((cell) => ('children' in cell ? cell.children : [cell]));
+
+/** Returns the lines of a formula, each as several elements, between which it may break. @param {MathNode} node */
+export const mathLines = (node) => linesOf(node).map(mathParts);
+
 /** Returns the formula as several elements, between which a line may break. @param {MathNode} node */
 export const mathParts = (node) =>
   partsOfMath(node).map((part) => {

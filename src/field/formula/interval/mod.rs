@@ -139,13 +139,17 @@ fn row_of<'a, const N: usize>(
                 Binary::Atan2 => Row::each(n, |k| a.at(k).angle(b.at(k))),
             }
         }
-        Node::Smin(a, b, width) => {
+        Node::Smin(blend, a, b, width) => {
             let [a, b, width] = [a, b, width].map(known);
-            Row::each(n, |k| Range::smooth_minimum(a.at(k), b.at(k), width.at(k)))
+            Row::each(n, |k| Range::smooth_minimum(blend, a.at(k), b.at(k), width.at(k)))
         }
         Node::If(at_most, a, b, value) => {
             let [a, b, value] = [a, b, value].map(known);
             Row::each(n, |k| Range::choice(a.at(k), b.at(k), value.at(k), at_most))
+        }
+        Node::Select(joins, a, b, u, v) => {
+            let [a, b, u, v] = [a, b, u, v].map(known);
+            Row::each(n, |k| Range::select(joins, a.at(k), b.at(k), u.at(k), v.at(k)))
         }
     }
 }

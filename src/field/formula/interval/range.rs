@@ -1,7 +1,7 @@
 //! A single interval, with the operations that are too rare or too long for [rows](super::rows).
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
+use crate::field::formula::graph::{Blend, MIN_BLEND_WIDTH, smin};
 use crate::field::formula::operations::Unary;
 use crate::math::{Bounds, Interval};
 
@@ -220,6 +220,25 @@ impl Range {
                 let range = self.increasing(libm::tanh);
                 Self { bounds: range.bounds.cut_to(Interval::symmetric(1.0)), ..range }
             }
+            Unary::Asinh => self.increasing(libm::asinh),
+            Unary::Acosh => {
+                let cut = self.cut(1.0, f64::INFINITY);
+                if cut.is_empty() { NOTHING } else { cut.increasing(libm::acosh).at_least(0.0) }
+            }
+            Unary::Atanh => {
+                let cut = self.cut(-1.0, 1.0);
+                if cut.is_empty() {
+                    return NOTHING;
+                }
+                // There are poles at both ends.
+                let range = cut.increasing(libm::atanh);
+                let is_inside = cut.bounds.lo > -1.0 && cut.bounds.hi < 1.0;
+                Self { flags: if is_inside { range.flags } else { range.flags & !DEFINED }, ..range }
+            }
+            Unary::Erf => {
+                let range = self.increasing(libm::erf);
+                Self { bounds: range.bounds.cut_to(Interval::symmetric(1.0)), ..range }
+            }
         }
     }
 
@@ -280,7 +299,7 @@ impl Range {
     }
 
     /// Range of the smooth minimum, which increases with a and b and decreases with k.
-    pub(super) fn smooth_minimum(a: Self, b: Self, k: Self) -> Self {
+    pub(super) fn smooth_minimum(blend: Blend, a: Self, b: Self, k: Self) -> Self {
         if a.is_empty() || b.is_empty() || k.is_empty() {
             return NOTHING;
         }
@@ -293,7 +312,7 @@ impl Range {
         }
         let scale = LIBRARY_ERROR * (a.lo.abs().min(b.lo.abs()) + a.hi.abs().min(b.hi.abs()) + widest);
         let least = |x: f64, y: f64, k: f64| {
-            if x.is_infinite() || y.is_infinite() { x.min(y) } else { smin(x, y, k) }
+            if x.is_infinite() || y.is_infinite() { x.min(y) } else { smin(blend, x, y, k) }
         };
         let lo = least(a.lo, b.lo, widest) - scale;
         let hi = least(a.hi, b.hi, narrowest) + scale;
@@ -316,5 +335,35 @@ impl Range {
             let Interval { lo, hi } = value.bounds;
             Self { bounds: Interval::new(lo.min(0.0), hi.max(0.0)), flags: flags & !CONTINUOUS }
         }
+    }
+
+    /// Range of a choice: `u` where a ≤ b, `v` elsewhere. It `joins` them if they are equal where a
+    /// = b.
+    pub(super) fn select(joins: bool, a: Self, b: Self, u: Self, v: Self) -> Self {
+        if a.is_empty() || b.is_empty() {
+            return NOTHING;
+        }
+        let of_condition = joined(a.flags, b.flags);
+        let only = |taken: Self| Self {
+            flags: joined(of_condition, taken.flags) | taken.flags & (NONZERO | EMPTY),
+            ..taken
+        };
+        if a.bounds.hi <= b.bounds.lo || v.is_empty() && u.is_empty() {
+            return only(u);
+        }
+        if a.bounds.lo > b.bounds.hi {
+            return only(v);
+        }
+        // Where one of the values is none, the choice is none, too.
+        let either = match (u.is_empty(), v.is_empty()) {
+            (true, _) => Self { flags: v.flags & !DEFINED, ..v },
+            (_, true) => Self { flags: u.flags & !DEFINED, ..u },
+            _ => Self {
+                bounds: Interval::new(u.bounds.lo.min(v.bounds.lo), u.bounds.hi.max(v.bounds.hi)),
+                flags: u.flags & v.flags,
+            },
+        };
+        let lost = if joins { 0 } else { CONTINUOUS };
+        Self { flags: joined(of_condition, either.flags) & !lost | either.flags & NONZERO, ..either }
     }
 }

@@ -4,6 +4,7 @@ import { cutOf, enlarge } from '../box.js';
 import { button } from '../button.js';
 import { h, live } from '../dom.js';
 import { formatSignificant } from '../format.js';
+import { numberBox, showNumber } from '../number.js';
 
 /** @import { Bounds, Engine, ReadonlySignal } from '../../engine/types.js' */
 
@@ -66,29 +67,20 @@ export function createClipBox(engine) {
  * @param {{ i: number, end: 'min' | 'max', name: string }} side  `i`: number of the axis
  */
 function createNumber(engine, bounds, { i, end, name }) {
-  const input = h('input', {
-    type: 'number',
-    class: 'box',
-    step: 'any',
-    inputmode: 'decimal',
-    'aria-label': name,
-    on: {
-      change: () => commit(input.valueAsNumber),
-      keydown: (event) => {
-        if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
-        event.preventDefault();
-        const now = bounds.peek();
-        if (!now) return;
-        const step =
-          10 ** Math.round(Math.log10(Math.max(1e-6, (now.max[i] - now.min[i]) * STEP_SHARE))) /
-          (event.shiftKey ? 10 : 1);
-        commit(Number((now[end][i] + (event.key === 'ArrowUp' ? step : -step)).toPrecision(12)));
-      },
-    },
+  const input = numberBox({ name });
+  input.addEventListener('change', () => void engine.readNumber(input.value).then((value) => commit(value ?? NaN)));
+  input.addEventListener('keydown', (event) => {
+    if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
+    event.preventDefault();
+    const now = bounds.peek();
+    if (!now) return;
+    const step =
+      10 ** Math.round(Math.log10(Math.max(1e-6, (now.max[i] - now.min[i]) * STEP_SHARE))) / (event.shiftKey ? 10 : 1);
+    commit(Number((now[end][i] + (event.key === 'ArrowUp' ? step : -step)).toPrecision(12)));
   });
   /** @param {Bounds} now */
   function write(now) {
-    input.value = String(Number(now[end][i].toPrecision(6)));
+    showNumber(input, String(Number(now[end][i].toPrecision(6))));
   }
   /** @param {number} value */
   function commit(value) {

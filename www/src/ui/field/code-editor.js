@@ -64,11 +64,12 @@ const faultField = StateField.define({
 function tokens(functions) {
   const known = new Set(functions.map(({ name }) => name));
   const marks = Object.fromEntries(
-    ['number', 'function', 'axis', 'name'].map((name) => [name, Decoration.mark({ class: `cm-${name}` })]),
+    ['number', 'function', 'axis', 'name', 'comment'].map((name) => [name, Decoration.mark({ class: `cm-${name}` })]),
   );
   const decorator = new MatchDecorator({
-    regexp: /(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|([\p{L}_][\p{L}\p{N}_]*)/gu,
-    decoration: ([, number, name]) => {
+    regexp: /(\/\/.*|#.*|\/\*.*?\*\/)|(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|([\p{L}_][\p{L}\p{N}_]*)/gu,
+    decoration: ([, comment, number, name]) => {
+      if (comment) return marks.comment;
       if (number) return marks.number;
       if (known.has(name)) return marks.function;
       return /^[xyz]$/.test(name) ? marks.axis : marks.name;
@@ -89,6 +90,14 @@ function tokens(functions) {
     { decorations: (plugin) => plugin.decorations },
   );
 }
+
+/** Returns the completions for what a formula defines. @param {string} formula */
+const definedIn = (formula) =>
+  [...formula.matchAll(/(?<=^|[;\n])\s*([\p{L}_][\p{L}\p{N}_]*)\s*(\([^()]*\))?\s*=/gu)].map(([, name, list]) => ({
+    label: name,
+    detail: list ?? ' defined',
+    apply: list ? `${name}(` : name,
+  }));
 
 /**
  * @param {Functions} functions
@@ -111,6 +120,7 @@ function completion(functions, names) {
               info: help,
               apply: signature.includes('(') ? `${name}(` : name,
             })),
+            ...definedIn(context.state.doc.toString()),
             ...names().map((name) => ({ label: name, detail: ' parameter' })),
           ],
         };
@@ -136,6 +146,7 @@ const theme = EditorView.theme({
   '.cm-axis': { color: 'var(--ink)' },
   '.cm-function': { color: 'var(--accent-strong)' },
   '.cm-name': { color: 'var(--accent-strong)', fontStyle: 'italic' },
+  '.cm-comment': { color: 'var(--ink-3)' },
   '.cm-fault': {
     backgroundColor: 'var(--fault-soft)',
     textDecoration: 'underline wavy var(--fault) 1px',

@@ -107,6 +107,7 @@ function createPosition(engine, { bounds, plane, axis }) {
       const [now, box] = [plane.peek(), bounds.peek()];
       if (now && box) engine.setPlane({ ...now, offset: dot(now.normal, centreOf(box)) });
     },
+    read: engine.readNumber,
   });
   live(slider.range, () => {
     const [now, box, straight] = [plane.value, bounds.value, axis.value];
@@ -150,6 +151,7 @@ function createAngles(engine, { plane, axis, free }) {
       describe: (value) => `${formatSignificant(value, 3)}°`,
       change: (value, live) => turn({ [key]: value / DEGREES }, live),
       reset: () => turn({ [key]: 0 }),
+      read: engine.readNumber,
     });
     const caption = h('span', { class: 'name quiet' }, short);
     explain(caption, () => ({

@@ -27,15 +27,20 @@ export function describeFault(formula, fault) {
   const end = Math.min(Math.max(start, fault.end), formula.length);
   /** @type {Repair[]} */
   const repairs = fault.name === null ? [] : [{ label: `Add slider ${fault.name}`, declare: fault.name }];
+  /** @param {string} marked @param {string} text */
+  const labelOf = (marked, text) =>
+    marked === ''
+      ? `Insert ${shorten(text)}`
+      : text === ''
+        ? `Remove ${shorten(marked)}`
+        : `Change to ${shorten(text)}`;
+  const choices = fault.choices ?? [];
+  repairs.unshift(
+    ...choices.map((text) => ({ label: labelOf(formula.slice(start, end), text), replace: { start, end, text } })),
+  );
   const mending = fault.suggestion;
   if (mending !== null) {
-    const marked = formula.slice(start, end);
-    const label =
-      marked === ''
-        ? `Insert ${shorten(mending)}`
-        : mending === ''
-          ? `Remove ${shorten(marked)}`
-          : `Change to ${shorten(mending)}`;
+    const label = labelOf(formula.slice(start, end), mending);
     const { mended } = fault;
     repairs.unshift(
       mended

@@ -3,9 +3,9 @@ import { FILE_TYPES } from '../../engine/constants.js';
 
 /** @import { Engine, LoadingError } from '../../engine/types.js' */
 
-/** Names of the file formats, such as PLY and OBJ. `.txt` is only another extension of XYZ. */
+/** Names of the file formats, such as PLY and OBJ. `.txt` and `.asc` are only other extensions of XYZ. */
 const FORMATS = FILE_TYPES.split(',')
-  .filter((type) => type !== '.txt')
+  .filter((type) => !['.txt', '.asc'].includes(type))
   .map((type) => type.slice(1).toUpperCase());
 
 /** @param {string[]} words */

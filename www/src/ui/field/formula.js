@@ -2,7 +2,7 @@
 import { computed } from '@preact/signals-core';
 import { button } from '../button.js';
 import { fill, h, live, query, uniqueId } from '../dom.js';
-import { mathElement, mathParts } from '../mathml.js';
+import { mathElement, mathLines } from '../mathml.js';
 import { describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
@@ -22,7 +22,7 @@ export function createFormula(engine, description) {
   const preview = createPreview(engine);
   const help = button(
     { class: 'plain small', press: () => openFunctions(description, (name) => input.insert(name)) },
-    'Functions',
+    'Syntax',
   );
   const section = h(
     'div',
@@ -210,7 +210,7 @@ function createPreview(engine) {
     preview.classList.add('long');
     fill(
       preview,
-      mathParts(tree).flatMap((part) => [part, h('wbr')]),
+      mathLines(tree).flatMap((parts, k) => [k > 0 && h('br'), ...parts.flatMap((part) => [part, h('wbr')])]),
     );
   };
   live(preview, () => {

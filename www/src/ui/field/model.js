@@ -81,6 +81,7 @@ function createCentres(engine, { limits }, model) {
       if (!live) engine.setCentres(value);
     },
     reset: () => engine.setCentres(usual),
+    read: engine.readNumber,
   });
   const caption = h('span', { class: 'name' }, 'Centres');
   const row = h('div', { class: 'row centres' }, caption, slider.range, slider.box);

@@ -88,6 +88,7 @@ function createRow(engine, { name, label, value, min, max, step }, { values, mot
     describe: (now) => formatStep(now, step / 10),
     change: (now, live) => engine.setParameter(name, now, { live }),
     reset: () => engine.resetParameter(name),
+    read: engine.readNumber,
   });
   const caption = h('span', { class: 'name' }, h('var', null, name));
   const isPlaying = computed(() => motion.playing.value === name);

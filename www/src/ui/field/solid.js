@@ -1,6 +1,5 @@
 /** The choices of the solid that is made of a surface: closed by the clip box, a sheet of some thickness. */
 import { computed, signal } from '@preact/signals-core';
-import { readThickness } from '../box.js';
 import { h, live, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 
@@ -47,11 +46,12 @@ export function createSolid(engine, { settings }) {
     autocomplete: 'off',
     'aria-describedby': told,
     'aria-invalid': () => String(wrong.value !== ''),
-    on: { change: () => commit() },
+    on: { change: () => void commit() },
   });
   const thickness = h('label', { class: 'check' }, 'Thickness', box);
-  function commit() {
-    const value = readThickness(box.value);
+  async function commit() {
+    const number = box.value.trim() === '' ? 0 : await engine.readNumber(box.value);
+    const value = number !== null && number >= 0 ? number : null;
     wrong.value = value === null ? 'A thickness is a number from 0 on, in the units of x, y and z.' : '';
     if (value === 0) engine.resetSetting(THICKNESS);
     else if (value !== null) engine.setSetting(THICKNESS, value);
