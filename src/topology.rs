@@ -129,22 +129,33 @@ impl Topology {
         self.crowded_edges.is_empty() && self.pinched_vertices.is_empty()
     }
 
-    /// Whether the triangles form a manifold without border.
+    /// Whether there are triangles, and they form a manifold without border.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        self.is_manifold() && self.borders.is_empty()
+        self.is_manifold() && self.encloses()
     }
 
-    /// Whether every edge has two triangles of equal orientation, so that they enclose a volume. They may touch each other at vertices.
+    /// Whether there are triangles, and every edge has two of equal orientation, so that they enclose a volume. They may touch each other at
+    /// vertices.
     #[must_use]
     pub fn encloses(&self) -> bool {
-        self.crowded_edges.is_empty() && self.borders.is_empty()
+        !self.components.is_empty() && self.crowded_edges.is_empty() && self.borders.is_empty()
     }
 
     /// Sum of the Euler numbers of the components.
     #[must_use]
     pub fn euler(&self) -> i64 {
         self.components.iter().map(Component::euler).sum()
+    }
+
+    /// Takes part in turning the triangles round: those around the vertices for which `is_turned` holds are now counter-clockwise seen
+    /// from the other side.
+    pub(crate) fn turn(&mut self, is_turned: impl Fn(u32) -> bool) {
+        self.borders
+            .iter_mut()
+            .filter(|border| is_turned(border[0]))
+            .for_each(|border| border[1..].reverse());
+        self.crowded_edges.iter_mut().filter(|edge| is_turned(edge[0])).for_each(|edge| edge.swap(0, 1));
     }
 
     /// Looks at the corners of a vertex: its crowded edges, its fans and its border edges.

@@ -3,6 +3,7 @@
 //! The specification is Khronos', <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
 use super::RecordText;
+use super::vertices::Indexed;
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use std::io::{self, Write};
@@ -30,15 +31,15 @@ struct BufferColumn {
     bytes: Vec<u8>,
 }
 
-/// Writes the triangles with the normals of the particles, their generation levels as colours and, for programs, as the
+/// Writes the triangles with the normals of their vertices, the generation levels of their particles as colours and, for programs, as the
 /// attribute `_LEVEL`. The z axis, which points up here, is turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
-    triangles: &[[u32; 3]],
+    vertices: &Indexed,
     record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let columns = columns(particles, triangles);
+    let columns = columns(particles, vertices);
     let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
     let mut text = document(&columns, length, particles.origin, record).into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -59,36 +60,38 @@ pub(super) fn write(
 }
 
 /// The contents of the buffer; each column is a multiple of four bytes long. The triangles come last.
-fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<BufferColumn> {
+fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed) -> Vec<BufferColumn> {
     if triangles.is_empty() {
         return Vec::new();
     }
+    let positions: Vec<Vec3> = rows.iter().map(|&row| particles.position[row as usize]).collect();
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
-    for &p in &particles.position {
+    for &p in &positions {
         (lo, hi) = (lo.min(p), hi.max(p));
     }
     let accessor = |kind: u32, shape: &str, rest: &str| {
-        format!(r#""componentType":{kind},"type":"{shape}","count":{}{rest}"#, particles.len())
+        format!(r#""componentType":{kind},"type":"{shape}","count":{}{rest}"#, rows.len())
     };
     let vectors =
         |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
+    let levels = rows.iter().map(|&row| particles.level[row as usize]);
     let attribute = |name, accessor, bytes| BufferColumn { name, target: ARRAY_BUFFER, accessor, bytes };
     let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
     let index_count = 3 * triangles.len();
     vec![
-        attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&particles.position)),
-        attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(&particles.normal)),
+        attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&positions)),
+        attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(normals)),
         attribute(
             "COLOR_0",
             accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
-            particles.level.iter().flat_map(|&level| colour(level)).collect(),
+            levels.clone().flat_map(colour).collect(),
         ),
         // Attributes may not be whole numbers of 32 bits.
         attribute(
             "_LEVEL",
             accessor(FLOAT, "SCALAR", ""),
-            particles.level.iter().flat_map(|&level| (level as f32).to_le_bytes()).collect(),
+            levels.flat_map(|level| (level as f32).to_le_bytes()).collect(),
         ),
         BufferColumn {
             name: "indices",

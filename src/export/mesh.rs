@@ -1,6 +1,8 @@
 //! Triangle meshes of particles as files, and the formats of text and STL among them.
 
-use super::{File, Placement, RecordText};
+use super::vertices::{Indexed, Vertices};
+use super::{File, FileContent, Placement, RecordText};
+use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
 use crate::quality;
 use core::ops::Range;
@@ -12,11 +14,11 @@ use std::io::{self, Write};
 pub enum MeshFormat {
     /// Binary glTF 2.0: triangles, normals, and generation levels as colours.
     Glb,
-    /// Wavefront OBJ: triangles and normals, as text.
+    /// Wavefront OBJ: triangles and normals, as text. With [`Vertices::Split`] the normals are numbered apart from the points.
     Obj,
     /// Binary STL: triangles with their own normals. Single precision, no connectivity.
     Stl,
-    /// Binary little-endian PLY: the columns of the particles, and the triangles.
+    /// Binary little-endian PLY: points with normals, and the triangles; with [`Vertices::Columns`] all columns of the particles.
     Ply,
     /// 3MF: triangles and their unit, for printers.
     ThreeMf,
@@ -46,20 +48,25 @@ pub struct MeshFile {
     pub format: MeshFormat,
     /// Size and orientation of the mesh in it.
     pub placement: Placement,
+    /// The vertices of the particles on sharp edges, in GLB, OBJ and PLY.
+    pub vertices: Vertices,
     /// The record that it carries, but for STL.
     pub record: RecordText,
 }
 
 impl From<MeshFormat> for MeshFile {
     fn from(format: MeshFormat) -> Self {
-        Self { format, placement: Placement::default(), record: RecordText::default() }
+        Self {
+            format,
+            placement: Placement::default(),
+            vertices: Vertices::default(),
+            record: RecordText::default(),
+        }
     }
 }
 
-/// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
-/// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every row of a particle is a vertex, so that normals are
-/// split at creases, whether it is in a triangle or not, so that indices stay; but in 3MF, which has no normals, every particle is one.
-/// `measured` is as for [`write`](super::write).
+/// Writes the mesh over `particles` to `out`, which should be buffered. Closed parts face outward, and their normals with them, whether f is
+/// smaller or larger inside; open ones are as f has them. `measured` is as for [`write`](super::write).
 ///
 /// # Errors
 ///
@@ -67,22 +74,22 @@ impl From<MeshFormat> for MeshFile {
 ///
 /// # Panics
 ///
-/// If a triangle names a particle that is not there.
+/// If the mesh is not one of these particles.
 pub fn write_mesh(
     file: &MeshFile,
     particles: &Particles,
     measured: &quality::Measurements,
-    triangles: &[[u32; 3]],
+    mesh: &Triangulation,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let placed = file.placement.placed(file.format, particles, measured);
-    let (particles, measured) = placed.as_ref().map_or((particles, measured), |(p, m)| (p, m));
-    File { wish: file, particles, measured, triangles }.write(out)
+    let content = FileContent::new(file, particles, measured, mesh);
+    File::new(file, particles, measured, &content).write(out)
 }
 
+/// Writes rows of points, of the `normals` and of triangles.
 pub(super) fn obj(
     particles: &Particles,
-    triangles: &[[u32; 3]],
+    [vertices, normals]: [&Indexed; 2],
     record: &RecordText,
     rows: Range<usize>,
     out: &mut dyn Write,
@@ -90,25 +97,27 @@ pub(super) fn obj(
     if rows.start == 0 {
         write!(out, "# Marching Particles\n{}", record.comment("#"))?;
     }
-    let n = particles.len();
+    let (points, all) = (vertices.rows.len(), vertices.rows.len() + normals.normals.len());
     for row in rows {
-        if row < n {
-            let [x, y, z] = super::coordinates(particles, row);
+        if let Some(&vertex) = vertices.rows.get(row) {
+            let [x, y, z] = super::coordinates(particles, vertex as usize);
             writeln!(out, "v {x} {y} {z}")?;
-        } else if let Some(normal) = particles.normal.get(row - n) {
+        } else if let Some(normal) = normals.normals.get(row - points) {
             writeln!(out, "vn {} {} {}", normal.x, normal.y, normal.z)?;
         } else {
-            // Counted from 1; the normal has the number of the vertex.
-            let [a, b, c] = triangles[row - 2 * n].map(|v| v + 1);
-            writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
+            // Counted from 1.
+            let [a, b, c] = vertices.triangles[row - all].map(|v| v + 1);
+            let [na, nb, nc] = normals.triangles[row - all].map(|v| v + 1);
+            writeln!(out, "f {a}//{na} {b}//{nb} {c}//{nc}")?;
         }
     }
     Ok(())
 }
 
+/// Writes rows of triangles.
 pub(super) fn stl(
     particles: &Particles,
-    triangles: &[[u32; 3]],
+    vertices: &Indexed,
     rows: Range<usize>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -117,11 +126,11 @@ pub(super) fn stl(
         // It must not begin with "solid", which marks the text form.
         header[..18].copy_from_slice(b"Marching Particles");
         out.write_all(&header)?;
-        let count = u32::try_from(triangles.len()).map_err(io::Error::other)?;
+        let count = u32::try_from(vertices.triangles.len()).map_err(io::Error::other)?;
         out.write_all(&count.to_le_bytes())?;
     }
-    for triangle in &triangles[rows] {
-        let [a, b, c] = triangle.map(|v| particles.place(v as usize));
+    for triangle in &vertices.triangles[rows] {
+        let [a, b, c] = triangle.map(|v| particles.place(vertices.rows[v as usize] as usize));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         // Four vectors, and two bytes that nobody uses.
         let mut record = [0; 50];

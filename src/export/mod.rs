@@ -6,12 +6,14 @@ mod mesh;
 mod placement;
 mod record;
 mod three_mf;
+mod vertices;
 
 pub use mesh::{MeshFile, MeshFormat, write_mesh};
 pub use placement::{Placement, Unit, UpAxis};
 pub use record::RecordText;
+pub use vertices::{MeshBuffers, VERTICES, Vertices, VerticesChoice};
 
-pub(crate) use file::File;
+pub(crate) use file::{File, FileContent};
 
 use crate::particles::Particles;
 use crate::quality;
@@ -20,14 +22,15 @@ use core::ops::Range;
 use glam::DVec3;
 use serde::Serialize;
 use std::io::{self, Write};
+use vertices::Indexed;
 
-/// A file format for particles.
+/// A file format for particles. Their normals follow the gradient: they point to larger f, outward where f is smaller inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
     /// Binary little-endian PLY with all columns.
     Ply,
-    /// Comma-separated values of all columns, with a header line.
+    /// Comma-separated values of all columns: a line with their names, and one for each row.
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
@@ -52,7 +55,7 @@ impl Format {
 pub struct ParticleFile {
     /// Format of the file.
     pub format: Format,
-    /// The record that it carries, but for XYZ and NPY.
+    /// The record, which PLY carries. Of the others, a program has it beside the file: [`RecordText::document`].
     pub record: RecordText,
 }
 
@@ -226,7 +229,7 @@ fn columns(particles: &Particles, measured: &quality::Measurements) -> Vec<&'sta
 
 /// Writes `particles` to `out`, which should be buffered: a record for each of their rows. `measured` is the report on them:
 /// where it is empty, its columns are left out; particles beyond its end get a valence of 0 and NaN for the rest. Floats in
-/// text are the shortest that read back to the same bits. PLY and CSV carry the record, in a comment.
+/// text are the shortest that read back to the same bits. PLY carries the record, in comments.
 ///
 /// # Errors
 ///
@@ -238,14 +241,15 @@ pub fn write(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
-        Format::Ply => ply(particles, measured, None, record, 0..particles.len(), out),
-        Format::Csv => csv(particles, measured, record, out),
+        Format::Ply => ply_columns(particles, measured, None, record, 0..particles.len(), out),
+        Format::Csv => csv(particles, measured, out),
         Format::Xyz => xyz(particles, out),
         Format::Npy => npy(particles, out),
     }
 }
 
-fn ply(
+/// PLY with all columns: rows of particles, and of triangles if there are any.
+fn ply_columns(
     particles: &Particles,
     measured: &quality::Measurements,
     triangles: Option<&[[u32; 3]]>,
@@ -255,15 +259,43 @@ fn ply(
 ) -> io::Result<()> {
     let (n, columns) = (particles.len(), columns(particles, measured));
     if rows.start == 0 {
-        ply_header(particles, &columns, triangles, record, out)?;
+        let properties = columns.iter().map(|column| (column.kind, column.name));
+        ply_header(particles, n, properties, triangles.map(<[_]>::len), record, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         for column in &columns {
             (column.read)(particles, measured, i).write_binary(out)?;
         }
     }
-    let faces = rows.start.max(n) - n..rows.end.max(n) - n;
-    for triangle in &triangles.unwrap_or_default()[faces] {
+    ply_faces(&triangles.unwrap_or_default()[rows.start.max(n) - n..rows.end.max(n) - n], out)
+}
+
+/// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex have one type, since there are readers that take no others.
+fn ply_mesh(
+    particles: &Particles,
+    vertices: &Indexed,
+    record: &RecordText,
+    rows: Range<usize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let (n, is_double) = (vertices.rows.len(), is_double(particles));
+    if rows.start == 0 {
+        let properties = COLUMNS[..6].iter().map(|column| (ColumnKind::Coordinate, column.name));
+        ply_header(particles, n, properties, Some(vertices.triangles.len()), record, out)?;
+    }
+    for i in rows.start.min(n)..rows.end.min(n) {
+        let normal = vertices.normals[i].to_array();
+        let normal =
+            normal.map(|c| if is_double { CellValue::Double(c.into()) } else { CellValue::Float(c) });
+        for value in coordinates(particles, vertices.rows[i] as usize).into_iter().chain(normal) {
+            value.write_binary(out)?;
+        }
+    }
+    ply_faces(&vertices.triangles[rows.start.max(n) - n..rows.end.max(n) - n], out)
+}
+
+fn ply_faces(triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
+    for triangle in triangles {
         let mut record = [3; 13];
         for (bytes, index) in record[1..].chunks_exact_mut(4).zip(triangle) {
             bytes.copy_from_slice(&index.to_le_bytes());
@@ -273,41 +305,38 @@ fn ply(
     Ok(())
 }
 
-fn ply_header(
+fn ply_header<'a>(
     particles: &Particles,
-    columns: &[&Column],
-    triangles: Option<&[[u32; 3]]>,
+    vertices: usize,
+    properties: impl Iterator<Item = (ColumnKind, &'a str)>,
+    triangles: Option<usize>,
     record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     write!(out, "{}", record.comment("comment"))?;
-    writeln!(out, "element vertex {}", particles.len())?;
-    for column in columns {
-        let kind = match column.kind {
+    writeln!(out, "element vertex {vertices}")?;
+    for (kind, name) in properties {
+        let kind = match kind {
             ColumnKind::Coordinate if is_double(particles) => "double",
             ColumnKind::Coordinate | ColumnKind::Float => "float",
             ColumnKind::Int => "int",
             ColumnKind::Uint => "uint",
             ColumnKind::Uchar => "uchar",
         };
-        writeln!(out, "property {kind} {}", column.name)?;
+        writeln!(out, "property {kind} {name}")?;
     }
     if let Some(triangles) = triangles {
-        write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", triangles.len())?;
+        write!(out, "element face {triangles}\nproperty list uchar uint vertex_indices\n")?;
     }
     writeln!(out, "end_header")
 }
 
-fn csv(
-    particles: &Particles,
-    measured: &quality::Measurements,
-    record: &RecordText,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+/// CSV begins with the names of the columns, which is the line that spreadsheets and data frames take for them: a record has no place in it.
+fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, measured);
     let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
-    writeln!(out, "{}{}", record.comment("#"), names.join(","))?;
+    writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
         for (k, column) in columns.iter().enumerate() {
             out.write_all(if k == 0 { b"" } else { b"," })?;

@@ -6,7 +6,7 @@
 
 use super::placement::{Placement, Unit};
 use super::record::RecordText;
-use crate::math::NONE;
+use super::vertices::Indexed;
 use crate::particles::Particles;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -16,16 +16,15 @@ const CONTENT_TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#;
 
-/// Writes the triangles over the particles that are in one; those on a crease are one vertex each. A mesh without triangles is a model
-/// without an object.
+/// Writes the triangles over their vertices. A mesh without triangles is a model without an object.
 pub(super) fn write(
     particles: &Particles,
-    triangles: &[[u32; 3]],
+    vertices: &Indexed,
     placement: &Placement,
     record: &RecordText,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let model = model(particles, triangles, placement.unit.unwrap_or(Unit::Millimetre), record);
+    let model = model(particles, vertices, placement.unit.unwrap_or(Unit::Millimetre), record);
     let mut archive = Archive { out, directory: Vec::new(), entries: 0, length: 0 };
     for (name, content) in [
         ("[Content_Types].xml", CONTENT_TYPES),
@@ -37,9 +36,7 @@ pub(super) fn write(
     archive.end()
 }
 
-fn model(particles: &Particles, triangles: &[[u32; 3]], unit: Unit, record: &RecordText) -> String {
-    let mut number = vec![NONE; particles.len()];
-    let mut vertices = 0;
+fn model(particles: &Particles, vertices: &Indexed, unit: Unit, record: &RecordText) -> String {
     let mut text = format!(
         r#"<?xml version="1.0" encoding="UTF-8"?>
 <model unit="{}" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><metadata name="Application">Marching Particles</metadata>"#,
@@ -48,25 +45,18 @@ fn model(particles: &Particles, triangles: &[[u32; 3]], unit: Unit, record: &Rec
     if let Some(words) = record.words() {
         text += &format!(r#"<metadata name="Description">{words}</metadata>"#);
     }
-    if triangles.is_empty() {
+    if vertices.triangles.is_empty() {
         text += "<resources/><build/></model>";
         return text;
     }
     text += r#"<resources><object id="1" type="model"><mesh><vertices>"#;
-    let first = |v: u32| particles.first_row(v as usize);
     // Writing to memory does not fail.
-    for &v in triangles.as_flattened() {
-        let row = first(v);
-        if number[row] == NONE {
-            number[row] = vertices;
-            vertices += 1;
-            let [x, y, z] = super::coordinates(particles, row);
-            let _ = write!(text, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>");
-        }
+    for &row in &vertices.rows {
+        let [x, y, z] = super::coordinates(particles, row as usize);
+        let _ = write!(text, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>");
     }
     text += "</vertices><triangles>";
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|v| number[first(v)]);
+    for [a, b, c] in &vertices.triangles {
         let _ = write!(text, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>");
     }
     text += "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>";

@@ -5,9 +5,11 @@
 //! from outside.
 //!
 //! * [`build`]: from points with normals to triangles.
+//! * [`facing`]: which side of a closed mesh is its inside.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by a journal; subdivision.
 //!
 //! [`topology`](crate::topology) counts the components, borders and Euler number of such a list.
 
 pub mod build;
+pub mod facing;
 pub mod half_edge;

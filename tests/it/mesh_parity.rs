@@ -95,7 +95,7 @@ fn a_file_written_slice_by_slice_is_the_one_written_at_once() {
         assert!(written(&mut session, extension, 1) == whole, "{extension}");
         let mut direct = Vec::new();
         let (run, file) = (&session.run, format.into());
-        write_mesh(&file, run.particles(), run.measured(), run.triangles(), &mut direct)
+        write_mesh(&file, run.particles(), run.measured(), run.mesh().expect("a mesh"), &mut direct)
             .expect("writing to memory does not fail");
         assert!(direct == whole, "{extension}");
     }

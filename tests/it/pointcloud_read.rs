@@ -24,13 +24,13 @@ fn read_all(name: &str, bytes: &[u8]) -> Result<(InputFormat, FileMesh), ReadErr
     Ok((format, mesh))
 }
 
-fn read(name: &str, bytes: impl AsRef<[u8]>) -> (InputFormat, FileMesh) {
+pub(crate) fn read(name: &str, bytes: impl AsRef<[u8]>) -> (InputFormat, FileMesh) {
     let result = read_all(name, bytes.as_ref());
     result.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Cloud of a file, with the warnings.
-fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
+pub(crate) fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
     let (_, mesh) = read(name, bytes);
     complete(mesh.into_cloud(|_| {})).expect("memory enough")
 }
@@ -43,7 +43,7 @@ fn made((_, mesh): (InputFormat, FileMesh)) {
 }
 
 #[track_caller]
-fn refused(name: &str, bytes: impl AsRef<[u8]>) -> String {
+pub(crate) fn refused(name: &str, bytes: impl AsRef<[u8]>) -> String {
     read_all(name, bytes.as_ref())
         .map(|(format, _)| panic!("{name} was read as {format}"))
         .unwrap_err()
@@ -51,8 +51,9 @@ fn refused(name: &str, bytes: impl AsRef<[u8]>) -> String {
 }
 
 /// Corners of a tetrahedron, and its faces, oriented outward.
-const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 4.0]];
-const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+pub(crate) const CORNERS: [[f64; 3]; 4] =
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 4.0]];
+pub(crate) const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
 fn corners() -> Vec<DVec3> {
     CORNERS.iter().map(|&p| DVec3::from_array(p)).collect()
@@ -72,7 +73,7 @@ fn tetrahedron_normals() -> Vec<DVec3> {
 }
 
 #[track_caller]
-fn assert_is_tetrahedron(cloud: &Cloud) {
+pub(crate) fn assert_is_tetrahedron(cloud: &Cloud) {
     assert_eq!(cloud.source, NormalSource::FromMesh);
     assert_eq!(cloud.len(), 4);
     // An STL file has the corners in the order of the faces.
@@ -83,7 +84,7 @@ fn assert_is_tetrahedron(cloud: &Cloud) {
 }
 
 /// Binary PLY in either byte order: `header` follows the format line, and rows of numbers follow the header.
-fn binary_ply(big: bool, header: &str, rows: &[(&str, f64)]) -> Vec<u8> {
+pub(crate) fn binary_ply(big: bool, header: &str, rows: &[(&str, f64)]) -> Vec<u8> {
     let order = if big { "big" } else { "little" };
     let mut bytes = format!("ply\nformat binary_{order}_endian 1.0\n{header}end_header\n").into_bytes();
     for &(number, value) in rows {
@@ -330,8 +331,6 @@ fn errors_name_their_place_and_give_advice() {
         ("a.xyz", String::new(), "the file is empty; choose one that holds points"),
         ("a.xyz", " \n\n".into(), "there are no points in this XYZ file"),
         ("a", "\n# nothing\n".into(), "a text file without content"),
-        ("a.xyz", "1 2 3\n4 nan 6\n".into(), "line 2: y is not a finite number; remove this point"),
-        ("a.xyz", "1 2 3\n4 5 -inf\n".into(), "line 2: z is not a finite number"),
         ("a.xyz", "1 2 3\n\n4 5 1e31\n".into(), "line 3: z is 1e31; up to 1e30 can be used"),
         (
             "a.xyz",
@@ -368,7 +367,6 @@ fn errors_name_their_place_and_give_advice() {
             "solid a\nfacet\nvertex 1 2 3\nfacet\n".into(),
             "line 4: a facet begins within another one",
         ),
-        ("a.stl", "solid a\nfacet\nvertex 1 NaN 3\n".into(), "line 3: y is not a finite number"),
         ("a.stl", "solid a\ntriangle\n".into(), "line 2: `triangle` is no statement of an STL file"),
         ("a.ply", "ply\n".into(), "line 1: the header has no `end_header`"),
         ("a.ply", "ply\nend_header\n".into(), "line 2: the header does not say in which format the rows are"),
@@ -397,7 +395,6 @@ fn errors_name_their_place_and_give_advice() {
         ),
         ("a.ply", ply("elements 3\n", ""), "line 3: `elements` begins no line of a PLY header"),
         ("a.ply", ply(xyz, "1 2 3\n4 5\n6"), "line 9: this vertex has fewer numbers than the header says"),
-        ("a.ply", ply(xyz, "1 2 3\n\n4 nan 6\n"), "line 10: y is not a finite number"),
         ("a.ply", ply(xyz, "1 2 3000000\n"), "line 8: the file ends before all 2 vertex rows; it is cut off"),
         (
             "a.ply",
@@ -412,12 +409,6 @@ fn errors_name_their_place_and_give_advice() {
         ("a.ply", ply(&face, "1 2 3\n4 5 6\n3 0 1 x\n"), "line 12: `x` is no number of a vertex"),
         ("a.ply", ply(&face, "1 2 3\n4 5 6\n-3 0 1 1\n"), "line 12: `-3` is no length of a list"),
         ("a.ply", ply(&face, "1 2 3\n4 5 6\n4 0 1 1\n"), "line 12: this face has fewer numbers"),
-        (
-            "a.off",
-            "OFF\n1 0 0\n0 0 0\n".into(),
-            "this is an OFF file, and what is read is PLY, OBJ, STL and XYZ; open it in",
-        ),
-        ("a.pcd", "# .PCD v0.7\nVERSION 0.7\n".into(), "this is a PCD point cloud"),
         ("a.html", "<!doctype html>".into(), "this is an XML or HTML document"),
         ("a.gltf", "{\"asset\":{}}".into(), "this is JSON"),
     ];
@@ -429,15 +420,12 @@ fn errors_name_their_place_and_give_advice() {
 
 #[test]
 fn binary_files_that_are_damaged_are_refused_by_row() {
-    let mut nan = tetrahedron_ply(true, "float", "int", "uchar");
-    let end = nan.len();
-    nan[end - 4..].copy_from_slice(&f32::NAN.to_be_bytes());
-    let message = refused("a.ply", &nan);
+    let mut huge = tetrahedron_ply(true, "float", "int", "uchar");
+    let end = huge.len();
+    huge[end - 4..].copy_from_slice(&1e32_f32.to_be_bytes());
+    let message = refused("a.ply", &huge);
     assert!(message.starts_with("vertex 4, "), "{message}");
-    assert!(
-        message.contains(&format!("{} bytes into the file: y is not a finite number", end - 13)),
-        "{message}"
-    );
+    assert!(message.contains(&format!("{} bytes into the file: y is 1", end - 13)), "{message}");
 
     let header = "element vertex 1\nproperty double x\nproperty double y\nproperty double z\n\
                   element face 2\nproperty list int uint vertex_indices\n";
@@ -462,12 +450,9 @@ fn binary_files_that_are_damaged_are_refused_by_row() {
     assert!(message.contains("face 2, 196 bytes into the file: a list of 458759 numbers"), "{message}");
 
     let mut triangles = stl_triangles();
-    triangles[2][1][0] = f32::INFINITY;
+    triangles[2][1][0] = 1e32;
     let message = refused("a.stl", stl_binary(b"", &triangles));
-    assert_eq!(
-        message,
-        "triangle 3, 184 bytes into the file: x is not a finite number; remove this point or export the file again"
-    );
+    assert!(message.starts_with("triangle 3, 184 bytes into the file: x is 1"), "{message}");
 }
 
 #[test]
@@ -511,7 +496,7 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
         (b"PK\x03\x04rest", "this is a ZIP archive"),
         (
             b"\x1f\x8b\x08",
-            "this is a gzip archive, and what is read is PLY, OBJ, STL and XYZ; unpack it first",
+            "this is a gzip archive, and what is read is PLY, OBJ, STL, OFF, PCD and text with a point a line (XYZ, PTS, CSV); unpack it",
         ),
         (b"\x93NUMPY\x01\x00", "save one of points as text, a row a line, as XYZ; a volume cannot be read"),
         (b"glTF\x02\x00", "this is a binary glTF file"),
@@ -535,7 +520,12 @@ fn files_of_other_formats_and_sizes_are_refused_with_advice() {
 }
 
 /// First bytes that select each of the readers.
-const BEGINNINGS: [&str; 8] = [
+const BEGINNINGS: [&str; 13] = [
+    "OFF\n2 1 0\n0 0 0\n1 0 0\n",
+    "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n",
+    "VERSION 0.7\nFIELDS _ x y z normal_x\nSIZE 1 4 4 8 4\nTYPE U F F F F\nCOUNT 3 1 1 1 2\nWIDTH 2\nHEIGHT 1\nDATA binary\n",
+    "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA binary_compressed\n",
+    "2\n1 2 3 4 5 6\n",
     "",
     "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list char int vertex_index\nend_header\n",
     "ply\nformat binary_big_endian 1.0\nelement face 1\nproperty list int uchar vertex_index\nelement vertex 2\nproperty char x\nproperty char y\nproperty char z\nend_header\n",
@@ -553,7 +543,7 @@ proptest! {
     fn no_bytes_make_a_reader_panic(
         beginning in 0..BEGINNINGS.len(),
         rest in proptest::collection::vec(any::<u8>(), 0..200),
-        name in prop_oneof!["a.stl", "a.obj", "a.xyz", "a"],
+        name in prop_oneof!["a.stl", "a.obj", "a.xyz", "a.off", "a.pcd", "a"],
     ) {
         let bytes = [BEGINNINGS[beginning].as_bytes(), &rest].concat();
         let _ = read_all(&name, &bytes).map(made);
@@ -564,7 +554,7 @@ proptest! {
         beginning in 0..BEGINNINGS.len(),
         words in proptest::collection::vec(
             prop_oneof!["-?[0-9]{1,3}", "[-+.,;/#eE0-9]{1,6}", "[a-z]{1,4}", "\n", "vertex|endloop|element|property|list|float|int",
-                "end_header\n", "f|v|vn", "nan|inf|1e400"],
+                "end_header\n", "f|v|vn", "nan|inf|1e400", "OFF|COFF|NOFF", "FIELDS|DATA|SIZE|binary"],
             0..40,
         ),
     ) {

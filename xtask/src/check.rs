@@ -15,6 +15,7 @@ use crate::deny;
 use crate::native;
 use crate::node;
 use crate::project::{Project, cargo};
+use crate::readers;
 use crate::site;
 use crate::step;
 use crate::times;
@@ -45,6 +46,8 @@ pub(crate) enum Part {
     Release,
     /// Mesh files against Khronos' glTF validator.
     Gltf,
+    /// Files of every format in the programs that people read them with; skipped, with the reason, without Python.
+    Readers,
     /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
     Browsers,
     /// Hundreds of resamplings in Chromium, after which the page holds no more memory than before.
@@ -56,7 +59,7 @@ const USUAL: [Part; 7] =
     [Part::Format, Part::Lint, Part::Native, Part::LintWasm, Part::Parity, Part::Page, Part::Chromium];
 
 /// Everything.
-const ALL: [Part; 13] = [
+const ALL: [Part; 14] = [
     Part::Format,
     Part::Deny,
     Part::Lint,
@@ -64,6 +67,7 @@ const ALL: [Part; 13] = [
     Part::Docs,
     Part::LintWasm,
     Part::Gltf,
+    Part::Readers,
     Part::Parity,
     Part::Release,
     Part::Page,
@@ -185,6 +189,7 @@ impl Checks<'_> {
                 Part::Parity => parity(self.project, Purpose::Development),
                 Part::Release => release(self.project),
                 Part::Gltf => gltf(self.project),
+                Part::Readers => readers::test(self.project),
                 Part::Page => self.page(),
                 Part::Chromium => self.chromium(&[]),
                 Part::Browsers => self.site().and_then(|()| browsers::test(self.project, self.purpose)),

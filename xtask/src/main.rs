@@ -12,6 +12,7 @@ mod native;
 mod node;
 mod paper;
 mod project;
+mod readers;
 mod rust_source;
 mod serve;
 mod site;

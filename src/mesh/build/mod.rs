@@ -25,6 +25,7 @@ mod rim;
 mod settle;
 mod stars;
 
+use super::facing::{Facing, Inside, facing};
 use crate::math::{Bounds, sort_pairs};
 use crate::particles::Particles;
 use crate::slices::{self, LIGHT, pause, ranges};
@@ -40,11 +41,12 @@ use stars::Stars;
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
-    /// Triples of the indices of points, counter-clockwise round their normals. They form an oriented manifold: every edge
-    /// has one triangle or two, every vertex one fan. Where the surface has creases, they are triples of rows, each of one patch, and the
-    /// manifold is that of the particles.
+    /// Triples of particles, each by its first row, so that particles on creases are vertices that the patches share; at the tip of a cone
+    /// each sheet has a vertex of its own. They form an oriented manifold: every edge has one triangle or two, every vertex one fan.
+    /// Closed parts face outward, also where f is larger inside; others are counter-clockwise round their normals. [`Self::corners`] has the
+    /// same triangles by rows.
     pub triangles: Vec<[u32; 3]>,
-    /// Components, borders and Euler numbers, counted anew on the triangles: of rows, by the first row of their particle.
+    /// Components, borders and Euler numbers, counted anew on the triangles.
     pub topology: Topology,
     /// Short borders that are not at the box: places where no manifold could be had. Longer ones are where the surface ends.
     /// Each starts at its smallest vertex and has the mesh on its left.
@@ -52,6 +54,12 @@ pub struct Triangulation {
     /// Points in no triangle, in ascending order: those without a finite position or a normal, those at the place of another
     /// one, lone ones, and those that would spoil the manifold.
     pub left_out: Vec<u32>,
+    /// Sign of f inside of the closed parts; none if there is no closed part.
+    pub inside: Option<Inside>,
+    /// The triangles by rows, round the normals; empty where these are `triangles`.
+    pub(crate) corners: Vec<[u32; 3]>,
+    /// For each vertex, whether the triangles around it were turned to face outward; empty where none were.
+    pub(crate) turned: Vec<bool>,
 }
 
 impl Triangulation {
@@ -59,17 +67,46 @@ impl Triangulation {
     /// whose borders are borders of the surface.
     pub(crate) async fn known(mut triangles: Vec<[u32; 3]>, particles: &Particles) -> Self {
         creases::separate(&mut triangles, particles);
-        let joints = particles.joints();
-        Joined { triangles, ..Joined::default() }.counted(particles.len(), &joints).await
+        Joined { triangles, ..Joined::default() }.counted(particles).await
+    }
+
+    /// The same triangles in the same order, by rows: a particle on a crease has a row for each patch, with the normal of that patch. They are
+    /// counter-clockwise round the normals of their rows, which point to larger f: the other way round than [`Self::triangles`] where
+    /// f is larger inside.
+    #[must_use]
+    pub fn corners(&self) -> &[[u32; 3]] {
+        if self.corners.is_empty() { &self.triangles } else { &self.corners }
+    }
+
+    /// The [corners](Self::corners) of all triangles.
+    pub(crate) fn into_corners(self) -> Vec<[u32; 3]> {
+        if self.corners.is_empty() { self.triangles } else { self.corners }
+    }
+
+    /// Whether [`Self::corners`] differ from [`Self::triangles`].
+    pub(crate) fn has_corners(&self) -> bool {
+        !self.corners.is_empty()
+    }
+
+    /// Whether a triangle was turned to face outward.
+    pub(crate) fn is_turned(&self, triangle: usize) -> bool {
+        !self.turned.is_empty() && self.turned[self.triangles[triangle][0] as usize]
+    }
+
+    /// The [corners](Self::corners) of a triangle in the order of the triangle.
+    pub(crate) fn outward_corners(&self, triangle: usize) -> [u32; 3] {
+        let [a, b, c] = self.corners()[triangle];
+        if self.is_turned(triangle) { [a, c, b] } else { [a, b, c] }
     }
 
     /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed units of the coordinates: the sum of
-    /// a · (b × c) / 6 over them, by the divergence theorem. `None` where they are not closed.
+    /// a · (b × c) / 6 over them, by the divergence theorem. Positive whether f is smaller or larger inside. `None` where they are not
+    /// closed.
     #[must_use]
     pub fn volume(&self, particles: &Particles) -> Option<f64> {
         let at = |i: u32| particles.position[i as usize].as_dvec3();
         let of = |&[a, b, c]: &[u32; 3]| at(a).dot(at(b).cross(at(c))) / 6.0;
-        (!self.triangles.is_empty() && self.topology.encloses()).then(|| self.triangles.iter().map(of).sum())
+        self.topology.encloses().then(|| self.triangles.iter().map(of).sum())
     }
 
     /// Smallest angle of the triangles over these particles, in degrees, those at borders among them; 0 for one without an area. `None`
@@ -101,23 +138,23 @@ struct Joined {
 }
 
 impl Joined {
-    /// The triangulation over `point_count` points, of which the first ones may be the same vertex as earlier ones: `twins` has the first
-    /// such point of each.
-    async fn counted(self, point_count: usize, twins: &[u32]) -> Triangulation {
-        let Self { triangles, unfilled } = self;
-        let first = |v: u32| twins.get(v as usize).copied().unwrap_or(v);
-        let mut is_met = vec![false; point_count];
-        triangles.iter().flatten().for_each(|&v| is_met[first(v) as usize] = true);
+    /// The triangulation over the rows of particles.
+    async fn counted(self, particles: &Particles) -> Triangulation {
+        let Self { triangles: corners, unfilled } = self;
+        let (count, joints) = (particles.len(), particles.joints());
+        let first = |v: u32| joints.get(v as usize).copied().unwrap_or(v);
+        let mut is_met = vec![false; count];
+        corners.iter().flatten().for_each(|&v| is_met[first(v) as usize] = true);
         pause().await;
-        let left_out = (0..point_count as u32).filter(|&v| first(v) == v && !is_met[v as usize]).collect();
+        let left_out = (0..count as u32).filter(|&v| first(v) == v && !is_met[v as usize]).collect();
         pause().await;
-        let topology = if twins.is_empty() {
-            Topology::in_slices(&triangles, point_count).await
+        let (mut triangles, mut corners) = if joints.is_empty() {
+            (corners, Vec::new())
         } else {
-            let welded: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.map(first)).collect();
-            pause().await;
-            Topology::in_slices(&welded, point_count).await
+            (corners.iter().map(|triangle| triangle.map(first)).collect(), corners)
         };
+        pause().await;
+        let mut topology = Topology::in_slices(&triangles, count).await;
         pause().await;
         // The loops have the mesh on their left.
         let mut edges: Vec<[u32; 2]> = Vec::new();
@@ -125,12 +162,25 @@ impl Joined {
             edges.extend((0..hole.len()).map(|k| [hole[(k + 1) % hole.len()], hole[k]].map(first)));
         }
         sort_pairs(&mut edges);
-        let is_open = |border: &&Vec<u32>| {
+        let is_open = |border: &Vec<u32>| {
             let mut sides = (0..border.len()).map(|k| [border[k], border[(k + 1) % border.len()]]);
             sides.any(|side| edges.binary_search(&side).is_ok())
         };
-        let unfilled = topology.borders.iter().filter(is_open).cloned().collect();
-        Triangulation { triangles, topology, unfilled, left_out }
+        let is_unfilled: Vec<bool> = topology.borders.iter().map(is_open).collect();
+        let Facing { turned, inside } = facing(&particles.position, &triangles, &topology).await;
+        if !turned.is_empty() {
+            if corners.is_empty() {
+                corners.clone_from(&triangles);
+            }
+            let inward = triangles.iter_mut().filter(|triangle| turned[triangle[0] as usize]);
+            inward.for_each(|triangle| triangle.swap(1, 2));
+            topology.turn(|v| turned[v as usize]);
+            pause().await;
+        }
+        let unfilled = topology.borders.iter().zip(is_unfilled);
+        let unfilled =
+            unfilled.filter(|(_, is_unfilled)| *is_unfilled).map(|(border, _)| border.clone()).collect();
+        Triangulation { triangles, topology, unfilled, left_out, inside, corners, turned }
     }
 }
 
@@ -156,7 +206,7 @@ pub fn triangulate(particles: &Particles, bounds: Option<&Bounds>) -> Triangulat
 pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) -> Triangulation {
     let Particles { position, normal, .. } = particles;
     if particles.patch.is_empty() {
-        return join(position, normal, bounds, &[], &[]).await.counted(position.len(), &[]).await;
+        return join(position, normal, bounds, &[], &[]).await.counted(particles).await;
     }
     let mut whole = Joined::default();
     let tips = particles.tips();
@@ -180,7 +230,7 @@ pub(crate) async fn in_slices(particles: &Particles, bounds: Option<&Bounds>) ->
     }
     pause().await;
     creases::separate(&mut whole.triangles, particles);
-    whole.counted(particles.len(), &particles.joints()).await
+    whole.counted(particles).await
 }
 
 /// Joins points in the box that cuts their surface. The `rim` has the edges along which the surface is known to end, as pairs of indices with

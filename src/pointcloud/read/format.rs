@@ -1,7 +1,7 @@
 //! Detection of a file's format by its content.
 
-use super::input::{number, words};
-use super::{ReadError, xyz};
+use super::input::words;
+use super::{ReadError, off, pcd, xyz};
 use core::fmt;
 
 /// File format that can be read.
@@ -15,6 +15,10 @@ pub enum InputFormat {
     StlText,
     /// Stereolithography, binary.
     StlBinary,
+    /// Object file format of Geomview, as text.
+    Off,
+    /// Point cloud data of the Point Cloud Library, as text, binary or compressed.
+    Pcd,
     /// Text with one point per line.
     Xyz,
 }
@@ -25,6 +29,8 @@ impl fmt::Display for InputFormat {
             Self::Ply => "PLY",
             Self::Obj => "OBJ",
             Self::StlText | Self::StlBinary => "STL",
+            Self::Off => "OFF",
+            Self::Pcd => "PCD",
             Self::Xyz => "XYZ",
         })
     }
@@ -34,7 +40,8 @@ impl InputFormat {
     /// Extension of `name`, if it is that of another format.
     pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
         let extension = extension(name);
-        let known = ["ply", "obj", "stl", "xyz"].into_iter().find(|known| *known == extension)?;
+        let known =
+            ["ply", "obj", "stl", "off", "pcd", "xyz"].into_iter().find(|known| *known == extension)?;
         (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
     }
 }
@@ -97,6 +104,15 @@ pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> 
     if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
         return Err(ReadError::Unknown { found, advice });
     }
+    if pcd::begins_with(bytes) {
+        return Ok(InputFormat::Pcd);
+    }
+    let first = bytes.split(|&byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
+    if let [word, b"BINARY"] = words(first).take(3).collect::<Vec<_>>()[..]
+        && off::prefix(word).is_some()
+    {
+        return Err(ReadError::Unknown { found: "a binary OFF file", advice: CONVERT });
+    }
     // Many programs begin a binary STL file with `solid`, like a text one, so the size decides.
     if stl_size(bytes).is_some_and(|size| size == bytes.len() as u64) {
         return Ok(InputFormat::StlBinary);
@@ -122,7 +138,7 @@ pub(super) fn stl_size(bytes: &[u8]) -> Option<u64> {
 fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
-    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#") && !line.starts_with(b"//"));
+    let first = lines.find(|line| !line.is_empty() && xyz::comment(line).is_none());
     let line = first.unwrap_or_default();
     let word = words(line).next().unwrap_or_default();
     if word.eq_ignore_ascii_case(b"solid") {
@@ -131,16 +147,13 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     if OBJ_WORDS.contains(&word) {
         return Ok(InputFormat::Obj);
     }
-    if xyz::words(line).next().is_some_and(|word| number(word).is_some()) || xyz::named(line).is_some() {
+    if off::prefix(word).is_some() {
+        return Ok(InputFormat::Off);
+    }
+    if xyz::begins_with(line) {
         return Ok(InputFormat::Xyz);
     }
     let unknown = |found, advice| Err(ReadError::Unknown { found, advice });
-    if [&b"OFF"[..], b"NOFF", b"COFF", b"STOFF"].contains(&word) {
-        return unknown("an OFF file", CONVERT);
-    }
-    if words(text).take(3).any(|word| word == b".PCD") {
-        return unknown("a PCD point cloud", CONVERT);
-    }
     if line.starts_with(b"<") {
         return unknown("an XML or HTML document", CHOOSE);
     }
@@ -151,6 +164,7 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<InputFormat, ReadError> {
     match extension(name).as_str() {
         "obj" => Ok(InputFormat::Obj),
         "stl" => Ok(InputFormat::StlText),
+        "off" => Ok(InputFormat::Off),
         "xyz" | "txt" | "csv" | "asc" | "pts" => Ok(InputFormat::Xyz),
         _ if line.is_empty() => unknown("a text file without content", CHOOSE),
         _ => unknown("a text file of no known kind", CHOOSE),

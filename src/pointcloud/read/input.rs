@@ -14,6 +14,18 @@ const SHOWN: usize = 24;
 /// Names of the components of a point and its normal, in headers and messages.
 pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
+/// Index in [`COMPONENTS`] of the component that a column of this name holds, by the names that programs give it.
+pub(super) fn component(name: &[u8]) -> Option<usize> {
+    /// The names in lower case, of x to nz each. ParaView's are the last ones.
+    const NAMES: [[&[u8]; 6]; 4] = [
+        [b"x", b"y", b"z", b"nx", b"ny", b"nz"],
+        [b"px", b"py", b"pz", b"normal_x", b"normal_y", b"normal_z"],
+        [b"pos_x", b"pos_y", b"pos_z", b"normalx", b"normaly", b"normalz"],
+        [b"points:0", b"points:1", b"points:2", b"normals:0", b"normals:1", b"normals:2"],
+    ];
+    NAMES.iter().find_map(|names| names.iter().position(|known| known.eq_ignore_ascii_case(name)))
+}
+
 /// Place in a file that an error names.
 enum FilePlace {
     /// Number of the line, from 1.
@@ -109,21 +121,17 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// `value`, if it can be a coordinate. The error message calls the coordinate `name`.
+    /// `value`, if it can be a coordinate; NaN if it is not finite. The error message calls the coordinate `name`.
     pub(super) fn coordinate(&self, value: f64, name: &str) -> Result<f64, ReadError> {
-        if value.abs() <= LARGEST {
-            Ok(value)
-        } else if value.is_finite() {
-            Err(self.error(format!("{name} is {value:e}; up to {LARGEST:e} can be used")))
-        } else {
-            let how = "remove this point or export the file again";
-            Err(self.error(format!("{name} is not a finite number; {how}")))
+        if value.is_finite() && value.abs() > LARGEST {
+            return Err(self.error(format!("{name} is {value:e}; up to {LARGEST:e} can be used")));
         }
+        Ok(if value.is_finite() { value } else { f64::NAN })
     }
 
-    /// Coordinate that a word spells. The error message calls the coordinate `name`.
+    /// Coordinate that a word spells; NaN if the word says that there is none. The error message calls the coordinate `name`.
     pub(super) fn coordinate_of(&self, word: &[u8], name: &str) -> Result<f64, ReadError> {
-        if let Some(value) = number(word) {
+        if let Some(value) = coordinate_number(word) {
             return self.coordinate(value, name);
         }
         let with_points: Vec<u8> = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect();
@@ -164,6 +172,13 @@ pub(super) fn quoted(word: &[u8]) -> String {
         text.push('…');
     }
     text
+}
+
+/// Number that a word spells, or NaN if it is one of the words that stand where there is none.
+pub(super) fn coordinate_number(word: &[u8]) -> Option<f64> {
+    const NONE: [&[u8]; 9] =
+        [b"", b"na", b"n/a", b"null", b"none", b"nan(ind)", b"-nan(ind)", b"1.#qnan", b"-1.#ind"];
+    number(word).or_else(|| NONE.iter().any(|none| none.eq_ignore_ascii_case(word)).then_some(f64::NAN))
 }
 
 /// Number that a word spells, including `nan` and `inf`.

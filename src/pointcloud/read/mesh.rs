@@ -2,7 +2,7 @@
 
 use super::{ReadError, push};
 use crate::field::model::{DEFAULT_CENTRES, GivenMesh, GivenTopology};
-use crate::math::IndexTable;
+use crate::math::{IndexTable, NONE, counted};
 use crate::pointcloud::thin::find_or_add;
 use crate::pointcloud::{Cloud, NormalSource};
 use crate::slices::{MEDIUM, pause};
@@ -39,6 +39,49 @@ impl FileMesh {
         if has_normal {
             push(&mut self.normal, DVec3::new(nx, ny, nz))?;
         }
+        Ok(())
+    }
+
+    /// Leaves out the points that have a coordinate which is not finite, and the faces at them, and warns of it. A normal that is not finite
+    /// is none.
+    pub(super) fn leave_out_undefined(&mut self) -> Result<(), ReadError> {
+        self.normal.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = DVec3::ZERO);
+        let (total, before) = (self.position.len(), self.faces.len());
+        if self.position.iter().all(|p| p.is_finite()) {
+            return Ok(());
+        }
+        let mut place = Vec::new();
+        place.try_reserve_exact(total).map_err(|_| ReadError::Memory)?;
+        let mut kept = 0;
+        place.extend(self.position.iter().map(|p| {
+            if p.is_finite() {
+                kept += 1;
+                kept - 1
+            } else {
+                NONE
+            }
+        }));
+        let mut places = place.iter();
+        self.normal.retain(|_| places.next() != Some(&NONE));
+        self.position.retain(|p| p.is_finite());
+        let (faces, corners) = (core::mem::take(&mut self.faces), core::mem::take(&mut self.corners));
+        let mut from = 0;
+        for to in faces {
+            let polygon = &corners[core::mem::replace(&mut from, to as usize)..to as usize];
+            if polygon.iter().all(|&corner| place[corner as usize] != NONE) {
+                polygon.iter().try_for_each(|&corner| push(&mut self.corners, place[corner as usize]))?;
+                push(&mut self.faces, self.corners.len() as u32)?;
+            }
+        }
+        let points = total - self.position.len();
+        let with = match before - self.faces.len() {
+            0 => String::new(),
+            count => format!(", and {}", counted(count, "face", "faces")),
+        };
+        self.warnings.push(format!(
+            "Left out for a coordinate that is not a finite number (NaN): {} of {total}{with}.",
+            counted(points, "point", "points")
+        ));
         Ok(())
     }
 

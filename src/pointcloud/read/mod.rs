@@ -1,4 +1,4 @@
-//! Reader of files of points and meshes: PLY, OBJ, STL and XYZ, detected by content.
+//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, PCD, and text with a point a line, detected by content.
 //!
 //! A file is read in slices of work, and the caller can show progress. Its content is not trusted: the
 //! counts in a header are compared with the size of the file before memory is allocated, and an error states its
@@ -8,6 +8,8 @@ mod format;
 mod input;
 mod mesh;
 mod obj;
+mod off;
+mod pcd;
 mod ply;
 mod ply_header;
 mod stl;
@@ -37,7 +39,9 @@ pub enum ReadError {
         bytes: u64,
     },
     /// The file has none of the known formats.
-    #[error("this is {found}, and what is read is PLY, OBJ, STL and XYZ; {advice}")]
+    #[error(
+        "this is {found}, and what is read is PLY, OBJ, STL, OFF, PCD and text with a point a line (XYZ, PTS, CSV); {advice}"
+    )]
     Unknown {
         /// Name of the format that the content seems to have.
         found: &'static str,
@@ -139,8 +143,8 @@ impl Reader {
         self.format
     }
 
-    /// Reads the header and all rows, which are lines or records: the points and faces. `tell` gets the fraction of the file that is
-    /// read.
+    /// Reads the header and all rows, which are lines or records: the points and faces. Points with a coordinate that is not finite are left
+    /// out, with a warning that counts them. `tell` gets the fraction of the file that is read.
     ///
     /// # Errors
     ///
@@ -153,8 +157,11 @@ impl Reader {
             InputFormat::Obj => obj::read(&mut input, &mut mesh).await,
             InputFormat::StlText => stl::read_text(&mut input, &mut mesh).await,
             InputFormat::StlBinary => stl::read_binary(&mut input, &mut mesh).await,
+            InputFormat::Off => off::read(&mut input, &mut mesh).await,
+            InputFormat::Pcd => pcd::read(&mut input, &mut mesh).await,
             InputFormat::Xyz => xyz::read(&mut input, &mut mesh).await,
         }?;
+        mesh.leave_out_undefined()?;
         if mesh.position.is_empty() {
             return Err(ReadError::NoPoints { format });
         }

@@ -1,7 +1,7 @@
 //! Header of a PLY file (G. Turk, "The PLY Polygon File Format", 1994).
 
 use super::ReadError;
-use super::input::{COMPONENTS, Input, quoted, words};
+use super::input::{COMPONENTS, Input, component, quoted, words};
 use core::ops::Range;
 
 /// Encoding of the rows.
@@ -128,8 +128,7 @@ impl Element {
 
     fn role(&self, name: &[u8], is_list: bool) -> Role {
         if self.is_vertex() && !is_list {
-            let component = COMPONENTS.iter().position(|component| component.as_bytes() == name);
-            return component.map_or(Role::Unused, Role::Component);
+            return component(name).map_or(Role::Unused, Role::Component);
         }
         if self.name == "face" && is_list && matches!(name, b"vertex_indices" | b"vertex_index") {
             return Role::Corners;
@@ -220,9 +219,14 @@ fn add(elements: &mut [Element], length: Option<&[u8]>, scalar: &[u8], name: &[u
         return Err("the length of a list must be a whole number".to_owned());
     }
     let element = elements.last_mut().ok_or("a property stands before the first element")?;
-    let role = element.role(name, length.is_some());
+    let mut role = element.role(name, length.is_some());
     if role != Role::Unused && element.has(role) {
-        return Err(format!("the property `{}` is declared twice", quoted(name)));
+        // A component may stand there by two names.
+        let is_usual = role == Role::Corners || COMPONENTS.iter().any(|usual| usual.as_bytes() == name);
+        if is_usual {
+            return Err(format!("the property `{}` is declared twice", quoted(name)));
+        }
+        role = Role::Unused;
     }
     element.properties.push(Property { scalar, length, role });
     Ok(())

@@ -4,6 +4,16 @@ import { formatCount, formatFixed, formatSignificant, plural } from './format.js
 
 /** @import { MeshAnswer } from '../engine/types.js' */
 
+/**
+ * What is said of the sign of f inside of the closed parts.
+ * @type {Record<NonNullable<MeshAnswer['inside']>, string>}
+ */
+const TURNED = {
+  'f < 0': '',
+  'f > 0': 'f is larger inside; files face outward',
+  'f < 0, f > 0': 'f is larger inside some parts; files face outward',
+};
+
 /** Most components whose Euler numbers are told one by one. */
 const MOST_TOLD = 3;
 
@@ -12,7 +22,7 @@ const MOST_TOLD = 3;
  * them, which are those of the file.
  * @param {MeshAnswer} mesh
  */
-export function verdictOf({ components, unfilled, left_out, volume, smallest_angle }) {
+export function verdictOf({ components, unfilled, left_out, volume, inside, smallest_angle }) {
   if (components.length === 0) return 'Nothing to join to a mesh';
   const open = components.reduce((sum, component) => sum + component.open_edges, 0);
   const euler = components.map((component) => formatCount(component.euler));
@@ -24,6 +34,7 @@ export function verdictOf({ components, unfilled, left_out, volume, smallest_ang
       ? `Euler numbers add up to ${formatCount(sum)}`
       : `Euler number${euler.length > 1 ? 's' : ''} ${euler.join(', ')}`,
     volume === null ? '' : `volume ${formatSignificant(volume, 4)}`,
+    inside === null ? '' : TURNED[inside],
     smallest_angle === null ? '' : `smallest angle ${formatFixed(smallest_angle, 1)}°`,
     unfilled > 0 ? `${plural(unfilled, 'hole')} where sheets meet or particles are too sparse` : '',
     left_out > 0 ? `${plural(left_out, 'particle')} left out` : '',

@@ -1,6 +1,6 @@
 /**
- * Writes the particles as PLY (binary, little endian) or CSV, and the picture as PNG. Columns that are not known yet
- * are omitted.
+ * Writes the particles as PLY (binary, little endian) or CSV, what they were made from as JSON, and the picture as PNG.
+ * Columns that are not known yet are omitted.
  *
  * @module
  */
@@ -8,6 +8,10 @@ import { MEASURED } from '../columns.js';
 import { NO_PARENT, SINGULAR } from '../core-numbers.js';
 
 /** @import { Columns, Description, FileRecord } from '../types.js' */
+
+/** The word before a record, and the most characters of a line of a comment, as src/export/record.rs has them. */
+const MARK = 'marching_particles';
+const LONGEST_LINE = 200;
 
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
@@ -74,7 +78,7 @@ export function ply(columns, all, record) {
     'ply',
     'format binary_little_endian 1.0',
     'comment Marching Particles',
-    ...commentOf('comment', record),
+    ...commentsOf('comment', record),
     `element vertex ${count}`,
     ...some.map((column) => `property ${typeOf(columns, column)} ${column.name}`),
     'end_header',
@@ -93,14 +97,14 @@ export function ply(columns, all, record) {
 }
 
 /**
- * Returns the same data as CSV text, one line per particle. Reading a number back gives the same value.
+ * Returns the same data as CSV text, one line per particle after the names of the columns, which spreadsheets and data
+ * frames expect in the first line. Reading a number back gives the same value.
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
- * @param {FileRecord | null} record
  */
-export function csv(columns, all, record) {
+export function csv(columns, all) {
   const some = known(columns, all);
-  const parts = [`${[...commentOf('#', record), some.map(({ name }) => name).join(',')].join('\n')}\n`];
+  const parts = [`${some.map(({ name }) => name).join(',')}\n`];
   const readers = some.map((column) => {
     const read = READ[column.name];
     return typeOf(columns, column) === 'float'
@@ -123,14 +127,34 @@ export function csv(columns, all, record) {
 /** Rounds to nine significant digits, which identify any single-precision number. @param {number} v */
 const single = (v) => Number(v.toPrecision(9));
 
+/** The record as JSON in printable ASCII. @param {FileRecord} record */
+function jsonOf(record) {
+  const escaped = (/** @type {string} */ c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`;
+  return JSON.stringify(record).replace(/[^ -%'-;=?-~]/g, escaped);
+}
+
+/** Returns what the particles were made from as a file of JSON. @param {FileRecord} record */
+export const json = (record) => new Blob([`{"${MARK}":${jsonOf(record)}}\n`], { type: 'application/json' });
+
 /**
- * The comment with what the particles were made from, as src/export/record.rs has it: JSON in printable ASCII.
+ * The comments with what the particles were made from, as src/export/record.rs has them: short lines, each of which
+ * continues the one before.
  * @param {string} begin @param {FileRecord | null} record
  */
-function commentOf(begin, record) {
-  if (!record) return [];
-  const escaped = (/** @type {string} */ c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`;
-  return [`${begin} marching_particles ${JSON.stringify(record).replace(/[^ -%'-;=?-~]/g, escaped)}`];
+function commentsOf(begin, record) {
+  const start = `${begin} ${MARK} `;
+  const lines = [];
+  let rest = record ? jsonOf(record) : '';
+  while (rest) {
+    const most = Math.min(LONGEST_LINE - start.length, rest.length);
+    let at = most;
+    // Programs that write the comments again may drop spaces at the ends of lines.
+    while (at > 0 && (rest[at - 1] === ' ' || rest[at] === ' ')) at -= 1;
+    at ||= most;
+    lines.push(start + rest.slice(0, at));
+    rest = rest.slice(at);
+  }
+  return lines;
 }
 
 /** Encodes a picture as PNG. @param {ImageData} image */

@@ -3,6 +3,7 @@ import { computed } from '@preact/signals-core';
 import { button } from '../button.js';
 import { h, uniqueId } from '../dom.js';
 import { verdictOf } from '../mesh-words.js';
+import { numberBox } from '../number.js';
 import { saveMesh } from '../share.js';
 import { borderOf } from './borders.js';
 
@@ -13,11 +14,11 @@ import { borderOf } from './borders.js';
 
 /** File formats, with what is in them. @type {[MeshFormat, string][]} */
 const FORMATS = [
-  ['glb', 'for viewers: normals, levels as colours, in metres'],
-  ['3mf', 'for printers: triangles with their unit'],
-  ['stl', 'triangles alone, and no record of what they were made from'],
-  ['obj', 'triangles and normals, as text'],
-  ['ply', 'all columns of the particles, and triangles'],
+  ['glb', 'For viewers. Includes normals and level colours; units are metres'],
+  ['3mf', 'For printers. Includes the unit'],
+  ['stl', 'Triangles only, no record of what they were made from'],
+  ['obj', 'Triangles and normals, as text'],
+  ['ply', 'Triangles and normals'],
 ];
 /** Units by their symbols; without one numbers stay what they are. */
 const UNITS = ['', 'mm', 'cm', 'm', 'in'];
@@ -36,25 +37,35 @@ export function createMeshPanel(engine, { toast, close }) {
   const note = h('p', { class: 'quiet' });
   const format = select(
     FORMATS.map(([id]) => [id, id.toUpperCase()]),
-    () => {
-      note.textContent = FORMATS[format.selectedIndex][1];
-    },
+    () => tell(),
   );
-  note.textContent = FORMATS[0][1];
-  const scale = h('input', {
-    type: 'number',
-    class: 'box',
-    min: '0',
-    step: 'any',
-    value: '1',
-    'aria-label': 'Length of a unit of the formula',
-  });
+  const ways = engine.description.value?.vertices ?? [];
+  const vertices = select(
+    ways.map(({ value, label }) => [value, label]),
+    () => tell(),
+  );
+  const verticesNote = h('p', { class: 'quiet' });
+  const verticesLine = line('Vertices', vertices);
+  /** Says what is in the file, and offers the ways to write its vertices. */
+  const tell = () => {
+    const [id, text] = FORMATS[format.selectedIndex];
+    note.textContent = text;
+    const fits = ways.map(({ formats }) => formats.includes(id));
+    [...vertices.options].forEach((option, k) => {
+      option.hidden = option.disabled = !fits[k];
+    });
+    if (!fits[vertices.selectedIndex]) vertices.selectedIndex = Math.max(0, fits.indexOf(true));
+    verticesLine.hidden = verticesNote.hidden = !fits.includes(true);
+    verticesNote.textContent = ways[vertices.selectedIndex]?.help ?? '';
+  };
+  tell();
+  const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
   const unit = select(UNITS.map((id) => [id, id || 'no unit']));
   unit.setAttribute('aria-label', 'Unit');
   const up = select(AXES.map((id) => [id, id]));
-  const save = () => {
-    const factor = scale.valueAsNumber;
-    if (!(factor > 0 && factor < Infinity)) {
+  const save = async () => {
+    const factor = await engine.readNumber(scale.value);
+    if (factor === null || !(factor > 0 && factor < Infinity)) {
       scale.focus();
       toast({ id: 'save', kind: 'warn', text: 'The length of a unit must be a positive number.' });
       return;
@@ -65,7 +76,7 @@ export function createMeshPanel(engine, { toast, close }) {
       unit: /** @type {'mm' | 'cm' | 'm' | 'in' | null} */ (unit.value || null),
       up: /** @type {'x' | 'y' | 'z'} */ (up.value),
     };
-    void saveMesh(engine, toast, chosen, placement);
+    void saveMesh(engine, toast, chosen, { placement, vertices: ways[vertices.selectedIndex]?.value ?? 'joined' });
   };
   const id = uniqueId('mesh');
   return h(
@@ -83,6 +94,8 @@ export function createMeshPanel(engine, { toast, close }) {
     line('Points up', up),
     line('Format', format),
     note,
+    verticesLine,
+    verticesNote,
     button({ class: 'save', off: () => !made.value, press: save }, 'Save mesh'),
   );
 }
