@@ -77,12 +77,12 @@
 //! | formulas | [`Formula`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
 //! | fields of a program | [`Field`], [`FnField`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
-//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
+//! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
 //! | what may be wrong | [`Warning`], [`Doubt`], [`Refusal`], [`Spot`] |
 //! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
-//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
+//! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
 //! The modules behind the root are public for the project's own tests, benchmarks and page and may
 //! change at any time; ARCHITECTURE.md says what each is for and who may use whom.
@@ -131,7 +131,9 @@ pub mod topology;
 #[doc(hidden)]
 pub mod web;
 
-pub use export::{Format, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis};
+pub use export::{
+    Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
+};
 pub use extent::Reach;
 pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
 #[cfg(feature = "points")]
@@ -142,6 +144,7 @@ pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::build::Triangulation;
+pub use mesh::facing::Inside;
 pub use particles::{OppositeFaces, Particles, SlotFate, Slots};
 #[cfg(feature = "points")]
 pub use pointcloud::CloudError;

@@ -91,7 +91,7 @@ const ROOMS: [Room; 4] = [
                 "flow",
                 &["probe", "projection", "neighbours", "sheet", "discovery", "sizing", "front", "relaxation"],
             ),
-            ("message", &["discovery", "phase"]),
+            ("message", &["settings", "discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
             (
                 "attempt",

@@ -10,13 +10,13 @@
 mod sampled;
 mod scan;
 
-pub(crate) use sampled::CELLS;
+pub(crate) use sampled::{CELLS, defined_share};
 
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::slices::{self, pause};
 use glam::DVec3;
-use scan::Scan;
+use scan::{Effort, Scan};
 use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first, each about a fifth of the one before. With half or twice all of them
@@ -115,13 +115,29 @@ pub(crate) async fn find_in_slices(field: &mut dyn Field) -> Extent {
 /// Finds the box of a surface in at most so many cells.
 async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
     let Some(bounded) = field.bounded() else { return sampled::find(field).await };
-    let mut left = cells;
+    // A plain scan that decides nothing may have visited all of its cells.
+    let (mut left, mut more) = (cells, cells);
     let mut bends: Option<Bounds> = None;
     let mut before = None;
     for half in HALVES {
-        let found = scan::scan(bounded, half, &mut left).await;
-        pause().await;
         let is_first = before.is_none();
+        let mut found = scan::scan(bounded, half, Effort::Plain, &mut left).await;
+        pause().await;
+        let plain = found;
+        if matches!(plain, Scan::TooLarge(_)) || is_first && plain == Scan::Undecided {
+            found = scan::scan(bounded, half, Effort::Thorough, &mut more).await;
+            pause().await;
+        }
+        if let Scan::TooLarge(hull) = plain {
+            // The surface is in both boxes. One that a closer look does not confirm is as good as any.
+            found = match found {
+                Scan::Inside(other) => Scan::Inside(Bounds {
+                    min: core::array::from_fn(|axis| hull.min[axis].max(other.min[axis])),
+                    max: core::array::from_fn(|axis| hull.max[axis].min(other.max[axis])),
+                }),
+                _ => Scan::Inside(hull),
+            };
+        }
         match found {
             Scan::Inside(hull) => {
                 let reach = if is_first { Reach::Bounded } else { Reach::Endless };
@@ -137,8 +153,8 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
                 };
             }
             Scan::Crossing(hull) => bends = bends.or(hull),
-            Scan::Undecided if is_first => return sampled::find(field).await,
-            Scan::Undecided => {}
+            Scan::Undecided | Scan::TooLarge(_) if is_first => return sampled::find(field).await,
+            Scan::Undecided | Scan::TooLarge(_) => {}
         }
         before = Some(half);
     }

@@ -1,7 +1,7 @@
 //! The box of a surface whose field has no useful bounds, by the signs of f on grids.
 
 use super::{Extent, FALLBACK, HALVES, Reach, placeable};
-use crate::field::Field;
+use crate::field::{BATCH, Field};
 use crate::math::Bounds;
 use crate::slices::pause;
 use glam::{DVec3, Vec3};
@@ -25,8 +25,8 @@ pub(super) async fn find(field: &mut dyn Field) -> Extent {
             continue;
         }
         let mut over = cube;
-        // It ends: the grids shrink, until f is the same at all nodes.
-        while hull.size().max_element() < FULL * over.size().max_element() {
+        // It ends: the grids shrink, down to a box in which particles have no room.
+        while hull.size().max_element() < FULL * over.size().max_element() && hull.is_valid() {
             // A cell of the grid around what it found is room for what it missed.
             over = hull;
             let Some((finer, _)) = changes(field, &over).await else { break };
@@ -49,17 +49,39 @@ pub(super) async fn find(field: &mut dyn Field) -> Extent {
     }
 }
 
+/// Share of the nodes of all grids at which f has a value.
+pub(crate) fn defined_share(field: &mut dyn Field) -> f64 {
+    let mut values = [0.0; BATCH];
+    let (mut defined, mut nodes) = (0, 0);
+    for (half, k) in HALVES.into_iter().flat_map(|half| (0..NODES).map(move |k| (half, k))) {
+        let points = layer_of(&Bounds::cube(half), k);
+        for points in points.chunks(BATCH) {
+            field.values(points, &mut values);
+            defined += values[..points.len()].iter().filter(|value| value.is_finite()).count();
+        }
+        nodes += points.len();
+    }
+    defined as f64 / nodes as f64
+}
+
+/// Nodes along a side of a grid.
+const NODES: usize = CELLS + 1;
+
+/// The nodes of layer number `k` of the grid over a box.
+fn layer_of(over: &Bounds, k: usize) -> Vec<Vec3> {
+    let (lo, step) = (over.lo(), over.size() / CELLS as f64);
+    let node = |m: usize| lo + step * DVec3::new((m % NODES) as f64, (m / NODES) as f64, k as f64);
+    (0..NODES * NODES).map(|m| node(m).as_vec3()).collect()
+}
+
 /// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one of them lies at the faces.
 async fn changes(field: &mut dyn Field, over: &Bounds) -> Option<(Bounds, bool)> {
-    const NODES: usize = CELLS + 1;
     let (lo, step) = (over.lo(), over.size() / CELLS as f64);
     let mut below = vec![f32::NAN; NODES * NODES];
     let mut layer = below.clone();
     let (mut first, mut last) = ([usize::MAX; 3], [0; 3]);
     for k in 0..NODES {
-        let node = |m: usize| lo + step * DVec3::new((m % NODES) as f64, (m / NODES) as f64, k as f64);
-        let points: Vec<Vec3> = (0..NODES * NODES).map(|m| node(m).as_vec3()).collect();
-        field.values(&points, &mut layer);
+        field.values(&layer_of(over, k), &mut layer);
         for m in 0..NODES * NODES {
             let before = [
                 (m % NODES > 0).then(|| layer[m - 1]),

@@ -4,9 +4,14 @@
 //! surface would go on. So besides the cells at the faces of the cube only those are kept whose bounds allow that for some axis:
 //! of a sphere a few around its six poles. Bounds of the value are those of the expression and of the mean value form, as in
 //! the search for components.
+//!
+//! Bounds are wide where a cell is large against the places at which f bends: over a cell on both sides of x = 0 those of x³(x − 2) reach far
+//! below the least value, and hundreds of cells far from the surface are kept. A thorough scan looks [into](look_into) each such cell
+//! before it keeps it: the cell is halved along the axis that widens its bounds most, and again, as long as few parts are left. It is
+//! made where a plain one leaves a box at one of whose sides no part of the surface is [seen](is_loose), or decides nothing.
 
 use crate::field::{Bounded, Enclosure};
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_few};
 use crate::slices::{HEAVY, pause};
 use glam::DVec3;
 
@@ -32,6 +37,15 @@ const MANY_AT_FACES: usize = 1_500;
 /// surfaces take 1.1 times the cells, and surfaces of short periods eight times.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
+/// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that meet at a point of it, where the bounds
+/// are widest. More are as many as in a cell that the surface passes.
+const MOST_PARTS: usize = 16;
+/// Times that a cell is halved for that: ten along each axis, by which a cell that is a 128th of the largest cube becomes one of 0.15.
+const HALVINGS: u32 = 30;
+/// Share of a box at each of its sides in which a cell with the surface is looked for. A box without one is too large.
+const OUTER: f64 = 0.25;
+/// Cells that are looked into for that at each side, the outermost first.
+const MOST_OUTER: usize = 64;
 /// The box that holds nothing.
 const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
 
@@ -42,10 +56,21 @@ pub(super) enum Scan {
     Empty,
     /// The surface in the cube lies in this box.
     Inside(Bounds),
+    /// As [`Scan::Inside`], but at a side of the box no part of the surface is seen.
+    TooLarge(Bounds),
     /// The surface passes through the faces of the cube: f changes its sign there. The box is that of its bends, if these are few.
     Crossing(Option<Bounds>),
     /// The bounds do not decide it.
     Undecided,
+}
+
+/// How closely a scan looks at cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// A cell is dropped by its bounds.
+    Plain,
+    /// A cell is dropped by the bounds of its parts.
+    Thorough,
 }
 
 /// Place of a cell in the grid of its level.
@@ -82,18 +107,24 @@ impl ScanLevel {
     }
 }
 
-/// Scans the cube of this half-width around the origin, in about `left` cells, of which those visited are taken.
-pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -> Scan {
+/// Scans the cube of this half-width around the origin, in about `left` cells, of which those visited are taken. Only a
+/// plain scan asks whether the box that it finds is too large.
+pub(super) async fn scan(field: &mut dyn Bounded, half: f64, effort: Effort, left: &mut usize) -> Scan {
     let side = 2.0 * half * LARGER;
     let lo = side * (OFF_CENTRE / 2.0 - 0.5);
     let mut places = vec![[0; 3]];
     for depth in 0.. {
         let cells = 1_u32 << depth;
         let level = ScanLevel { lo, size: side / f64::from(cells), cells, depth };
-        let kept = visit(field, &level, &places, left).await;
+        let kept = visit(field, &level, &places, effort, left).await;
         match result(field, &level, &kept, *left).await {
             None => places = eighths(&kept),
-            Some(Scan::Crossing(_)) => return Scan::Crossing(bends(field, level, kept, left).await),
+            Some(Scan::Crossing(_)) => return Scan::Crossing(bends(field, level, kept, effort, left).await),
+            Some(Scan::Inside(hull))
+                if effort == Effort::Plain && is_loose(field, &level, &kept, &hull).await =>
+            {
+                return Scan::TooLarge(hull);
+            }
             Some(found) => return found,
         }
     }
@@ -153,6 +184,7 @@ async fn bends(
     field: &mut dyn Bounded,
     mut level: ScanLevel,
     mut kept: Vec<OpenCell>,
+    effort: Effort,
     left: &mut usize,
 ) -> Option<Bounds> {
     loop {
@@ -166,7 +198,7 @@ async fn bends(
             return Some(hull);
         }
         level = ScanLevel { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
-        kept = visit(field, &level, &eighths(&kept), left).await;
+        kept = visit(field, &level, &eighths(&kept), effort, left).await;
     }
 }
 
@@ -175,6 +207,7 @@ async fn visit(
     field: &mut dyn Bounded,
     level: &ScanLevel,
     cells: &[CellPlace],
+    effort: Effort,
     left: &mut usize,
 ) -> Vec<OpenCell> {
     *left = left.saturating_sub(cells.len());
@@ -184,7 +217,7 @@ async fn visit(
     for chunk in cells.chunks(HEAVY) {
         let mut extremes = [None; HEAVY];
         for factor in 0..factors {
-            batch.enclose(field, factor, level, chunk, &mut extremes);
+            batch.enclose(field, factor, level, chunk, effort, left, &mut extremes);
         }
         for (&at, extremes) in chunk.iter().zip(extremes) {
             if let Some(extremes) = extremes
@@ -198,6 +231,58 @@ async fn visit(
     kept
 }
 
+/// Whether a box is too large: at one of its sides no cell shows that it may hold the extreme there, once its parts are looked into.
+async fn is_loose(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], hull: &Bounds) -> bool {
+    let mut batch = BoundsBatch::default();
+    let room = OUTER * hull.size().max_element();
+    for axis in 0..3 {
+        for is_upper in [false, true] {
+            let mut outer: Vec<(f64, Bounds)> = kept
+                .iter()
+                .filter(|cell| cell.extremes[axis])
+                .map(|cell| level.cell(cell.at))
+                .map(|own| {
+                    let inward = if is_upper {
+                        hull.max[axis] - own.max[axis]
+                    } else {
+                        own.min[axis] - hull.min[axis]
+                    };
+                    (inward, own)
+                })
+                .filter(|&(inward, _)| inward <= room)
+                .collect();
+            sort_few(&mut outer, |a, b| a.0 < b.0);
+            let mut is_seen = false;
+            for (_, own) in outer.into_iter().take(MOST_OUTER) {
+                is_seen = (0..field.factors()).any(|factor| {
+                    let found = batch.look_into(field, factor, own, &mut { usize::MAX });
+                    found.is_some_and(|extremes| extremes[axis])
+                });
+                pause().await;
+                if is_seen {
+                    break;
+                }
+            }
+            if !is_seen {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// Bounds over a box that f may vanish in.
+#[derive(Clone, Copy)]
+struct Part {
+    own: Bounds,
+    /// The axes along which the surface may have an extreme.
+    extremes: [bool; 3],
+    /// The axis along which f changes most by its bounds.
+    widest: usize,
+    /// The sign of f in the middle; 0 where it is not known.
+    sign: i8,
+}
+
 /// Boxes and bounds over them.
 #[derive(Default)]
 struct BoundsBatch {
@@ -207,42 +292,117 @@ struct BoundsBatch {
     open: Vec<usize>,
     middles: Vec<Bounds>,
     at_middle: Vec<Enclosure>,
+    /// The boxes in which f may vanish, each with its index.
+    parts: Vec<(usize, Part)>,
 }
 
 impl BoundsBatch {
     /// Notes the extremes that a factor of the field may have in cells where it may vanish.
+    #[expect(clippy::too_many_arguments, reason = "those of a scan")]
     fn enclose(
         &mut self,
         field: &mut dyn Bounded,
         factor: usize,
         level: &ScanLevel,
         cells: &[CellPlace],
+        effort: Effort,
+        left: &mut usize,
         extremes: &mut [Option<[bool; 3]>; HEAVY],
     ) {
         self.boxes.clear();
         self.boxes.extend(cells.iter().map(|&at| level.cell(at)));
-        self.known.resize(cells.len(), Enclosure::UNKNOWN);
+        self.find_parts(field, factor);
+        for (k, part) in core::mem::take(&mut self.parts) {
+            let of_parts = match effort {
+                Effort::Plain => Some(part.extremes),
+                Effort::Thorough => self.look_into(field, factor, part.own, left),
+            };
+            let Some(new) = of_parts else { continue };
+            let found = extremes[k].get_or_insert([false; 3]);
+            for (found, new) in found.iter_mut().zip(new) {
+                *found |= new;
+            }
+        }
+    }
+
+    /// Finds the boxes in which a factor of the field may vanish, by the bounds of the expression and the mean value form.
+    fn find_parts(&mut self, field: &mut dyn Bounded, factor: usize) {
+        self.known.resize(self.boxes.len(), Enclosure::UNKNOWN);
         field.enclose(factor, &self.boxes, &mut self.known);
         self.open.clear();
-        self.open
-            .extend((0..cells.len()).filter(|&k| self.known[k].value.holds(0.0) && self.known[k].may_vanish));
+        let may_vanish = |known: &Enclosure| known.value.holds(0.0) && known.may_vanish;
+        self.open.extend((0..self.boxes.len()).filter(|&k| may_vanish(&self.known[k])));
         self.middles.clear();
         self.middles.extend(self.open.iter().map(|&k| Bounds::point(self.boxes[k].middle())));
         self.at_middle.resize(self.middles.len(), Enclosure::UNKNOWN);
         field.enclose(factor, &self.middles, &mut self.at_middle);
+        self.parts.clear();
         for (&k, middle) in self.open.iter().zip(&self.at_middle) {
-            let known = &self.known[k];
+            let (known, own) = (&self.known[k], self.boxes[k]);
             let is_regular = known.defined && known.continuous;
-            let swing: f64 = known.gradient.iter().map(|slope| slope.magnitude() * (0.5 * level.size)).sum();
-            if is_regular && middle.value.mean_value(swing).excludes_zero() {
+            let half = 0.5 * own.size();
+            let swings: [f64; 3] = core::array::from_fn(|axis| known.gradient[axis].magnitude() * half[axis]);
+            if is_regular && middle.value.mean_value(swings.iter().sum()).excludes_zero() {
                 continue;
             }
-            let found = extremes[k].get_or_insert([false; 3]);
-            for (axis, found) in found.iter_mut().enumerate() {
+            let extremes = core::array::from_fn(|axis| {
                 let others = [(axis + 1) % 3, (axis + 2) % 3];
-                *found |= !is_regular || others.iter().all(|&other| known.gradient[other].holds(0.0));
+                !is_regular || others.iter().all(|&other| known.gradient[other].holds(0.0))
+            });
+            // Where nothing is known the longest side is.
+            let is_known = swings.iter().all(|swing| swing.is_finite());
+            let weight = |axis: &usize| if is_known { swings[*axis] } else { half[*axis] };
+            let widest = (0..3).max_by(|a, b| weight(a).total_cmp(&weight(b))).unwrap_or(0);
+            let sign = match middle.value {
+                value if is_regular && value.lo > 0.0 => 1,
+                value if is_regular && value.hi < 0.0 => -1,
+                _ => 0,
+            };
+            self.parts.push((k, Part { own, extremes, widest, sign }));
+        }
+    }
+
+    /// The extremes that a factor of the field may have in a cell, by the bounds of its parts; none where it vanishes nowhere. The parts are
+    /// taken from those that are `left`.
+    fn look_into(
+        &mut self,
+        field: &mut dyn Bounded,
+        factor: usize,
+        cell: Bounds,
+        left: &mut usize,
+    ) -> Option<[bool; 3]> {
+        self.boxes.clear();
+        self.boxes.push(cell);
+        for _ in 0..HALVINGS {
+            *left = left.saturating_sub(self.boxes.len());
+            self.find_parts(field, factor);
+            if self.parts.is_empty() {
+                return None;
+            }
+            let is_passed = |sign: i8| self.parts.iter().any(|(_, part)| part.sign == sign);
+            if self.parts.len() > MOST_PARTS || *left == 0 || is_passed(1) && is_passed(-1) {
+                break;
+            }
+            self.boxes.clear();
+            self.boxes.extend(self.parts.iter().flat_map(|(_, part)| part.halves()));
+        }
+        let mut extremes = [false; 3];
+        for (_, part) in &self.parts {
+            for (found, new) in extremes.iter_mut().zip(part.extremes) {
+                *found |= new;
             }
         }
+        Some(extremes)
+    }
+}
+
+impl Part {
+    /// The two halves along the widest axis.
+    fn halves(&self) -> [Bounds; 2] {
+        let middle = self.own.middle()[self.widest];
+        let (mut lower, mut upper) = (self.own, self.own);
+        (lower.max[self.widest], upper.min[self.widest]) = (middle, middle);
+        [lower, upper]
     }
 }
 

@@ -141,7 +141,8 @@ fn a_scan_finds_what_is_within_but_a_fiftieth_of_its_half_width() {
             let text =
                 format!("(x-({x}))^2 + (y-({y}))^2 + (z-({z}))^2 = {}", (0.005 * half) * (0.005 * half));
             let mut field = Formula::as_written(&text, &[]).expect("a formula");
-            let found = crate::slices::complete(scan::scan(&mut field, half, &mut 10_000));
+            let found =
+                crate::slices::complete(scan::scan(&mut field, half, scan::Effort::Plain, &mut 10_000));
             let scan::Scan::Inside(hull) = found else { panic!("{text} within {half}: {found:?}") };
             let reach = if axis < 3 { hull.max[axis] } else { -hull.min[axis - 3] };
             assert!((0.978 * half..0.981 * half).contains(&reach), "{text}: {hull:?}");

@@ -207,6 +207,6 @@ impl CreaseRows {
             place[row] = k as u32;
         }
         let mesh = build::in_slices(&particles, bounds).await;
-        mesh.triangles.into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
+        mesh.into_corners().into_iter().map(|triangle| triangle.map(|row| place[row as usize])).collect()
     }
 }

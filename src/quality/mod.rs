@@ -49,6 +49,7 @@ pub use spacing::Histogram;
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, NONE, SQRT_3};
+use crate::mesh::facing::{Inside, facing};
 use crate::slices::{self, MEDIUM, pause, ranges};
 use crate::topology::Topology;
 use accuracy::{first_order_height, height_along};
@@ -99,6 +100,8 @@ pub struct Measurements {
     pub places: Places,
     /// The opening that the triangles of natural neighbours leave in the surface; none if they close it.
     pub(crate) opening: Option<Opening>,
+    /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close; none if they close no part.
+    pub(crate) inside: Option<Inside>,
 }
 
 impl Measurements {
@@ -151,7 +154,7 @@ pub(crate) async fn in_slices(
     let factor = comfortable_scale(field, position.iter().copied());
     let field: &mut dyn Field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, bounds, options).await;
-    let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening } =
+    let DistinctFigures { mut figures, component, energy, mut pairs, holes, opening, inside } =
         figures_of(&prepared, field, bounds, options, crossings).await;
     let Prepared { points, drop, .. } = &prepared;
     let n = position.len();
@@ -162,6 +165,7 @@ pub(crate) async fn in_slices(
         energy: vec![f32::NAN; n],
         component: vec![Measurements::NO_COMPONENT; n],
         opening,
+        inside,
         ..Measurements::default()
     };
     for (k, &i) in points.tree.origin.iter().enumerate() {
@@ -213,6 +217,7 @@ struct DistinctFigures {
     pairs: Pairs,
     holes: Vec<Hole>,
     opening: Option<Opening>,
+    inside: Option<Inside>,
 }
 
 /// Measures the points; `crowded` is left for the duplicates to be added.
@@ -249,7 +254,7 @@ async fn figures_of(
     pause().await;
     measured.pairs = measure_neighbourhoods(points, &inner, wanted.as_ref(), &mut figures).await;
     measured.energy = energy::of_points(points, wanted.as_ref(), figures.d_hex).await;
-    (measured.component, measured.opening) = measure_triangles(prepared, [&inner, &once], &mut figures).await;
+    measure_triangles(prepared, [&inner, &once], &mut figures, &mut measured).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let lattice = (figures.d_hex / SQRT_3) as f32;
@@ -325,13 +330,14 @@ async fn measure_neighbourhoods(
 }
 
 /// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of those that are also counted
-/// `once`, as the first rows of their particles. Returns the connected component of each point, and the
-/// opening of the triangles.
+/// `once`, as the first rows of their particles; and the connected component of each point, the opening of the triangles, and what is
+/// inside of them.
 async fn measure_triangles(
     prepared: &Prepared,
     [inner, once]: [&[bool]; 2],
     figures: &mut Figures,
-) -> (Vec<u32>, Option<Opening>) {
+    measured: &mut DistinctFigures,
+) {
     let Prepared { points, spacing, triangles, mesh, .. } = prepared;
     let n = points.tree.len();
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
@@ -350,10 +356,10 @@ async fn measure_triangles(
     let welded: Vec<[u32; 3]> = mesh.iter().map(|triangle| triangle.map(first)).collect();
     let topology = Topology::in_slices(&welded, n).await;
     figures.connectivity.euler = topology.euler();
-    let opening = opening(&topology, &welded, once, &points.tree.position);
+    measured.opening = opening(&topology, &welded, once, &points.tree.position);
     pause().await;
-    let (component, count) = components::label(points, spacing, mesh).await;
-    figures.connectivity.components = count;
+    measured.inside = facing(&points.tree.position, &welded, &topology).await.inside;
+    (measured.component, figures.connectivity.components) = components::label(points, spacing, mesh).await;
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.connectivity.agree =
         share(unanimous, angles.count + triangles.single.iter().filter(away).count());
@@ -363,7 +369,6 @@ async fn measure_triangles(
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
         share(corners, (0..n).filter(|&i| is_whole(i)).map(|i| points.rings.valence(i)).sum())
     };
-    (component, opening)
 }
 
 /// The opening that the triangles leave between points that are `inner`, if there is one.

@@ -1,12 +1,12 @@
 //! The mesh over the particles of a run: joined when it is asked for, in slices, and dropped when they change.
 
 use super::Run;
-use crate::export::{File, MeshFile};
+use crate::export::{File, FileContent, MeshFile};
 use crate::field::Field;
 use crate::math::{Bounds, sort_few};
 use crate::mesh::build::{self, Triangulation};
+use crate::mesh::facing::Inside;
 use crate::particles::Particles;
-use crate::quality::Measurements;
 use crate::slices::{self, MEDIUM, Work};
 use crate::topology::Component;
 use serde::Serialize;
@@ -26,6 +26,8 @@ pub struct MeshAnswer {
     pub left_out: usize,
     /// [Volume](Triangulation::volume) that the mesh encloses; none where it is open.
     pub volume: Option<f64>,
+    /// Sign of f inside of the closed parts; none if there is no closed part. All face outward in files.
+    pub inside: Option<Inside>,
     /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles.
     pub smallest_angle: Option<f64>,
     /// Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest.
@@ -59,14 +61,14 @@ enum MeshState {
     /// The particles are being joined.
     Joining(Work<'static, Triangulation>),
     /// The mesh is complete.
-    Joined(Triangulation),
+    Joined(Box<Triangulation>),
 }
 
 impl Meshing {
     /// The mesh, if it is there.
     pub(super) fn joined(&self) -> Option<&Triangulation> {
         match &self.state {
-            MeshState::Joined(mesh) => Some(mesh),
+            MeshState::Joined(mesh) => Some(&**mesh),
             _ => None,
         }
     }
@@ -74,7 +76,7 @@ impl Meshing {
     /// The mesh, if it is there, which is taken out.
     pub(super) fn into_joined(self) -> Option<Triangulation> {
         match self.state {
-            MeshState::Joined(mesh) => Some(mesh),
+            MeshState::Joined(mesh) => Some(*mesh),
             _ => None,
         }
     }
@@ -92,8 +94,7 @@ pub(super) async fn joined(particles: &Particles, known: &[[u32; 3]], bounds: &B
 /// A mesh file that is being written.
 struct Begun {
     wish: MeshFile,
-    /// The particles as they are in the file, where that is not as they are in the run.
-    placed: Option<(Particles, Measurements)>,
+    content: FileContent,
     /// Number of rows that are written.
     next: usize,
     bytes: Vec<u8>,
@@ -118,6 +119,7 @@ impl MeshAnswer {
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
             volume: mesh.volume(particles),
+            inside: mesh.inside,
             smallest_angle: mesh.smallest_angle(particles),
             loops: loops.into_iter().map(|(_, border)| border.clone()).collect(),
         }
@@ -137,34 +139,40 @@ impl<F: Field> Run<F> {
             self.meshing.state = MeshState::Joining(Box::pin(work));
         }
         if let MeshState::Joining(work) = &mut self.meshing.state {
-            self.meshing.state = MeshState::Joined(slices::advance(work.as_mut(), budget)?);
+            self.meshing.state = MeshState::Joined(Box::new(slices::advance(work.as_mut(), budget)?));
         }
         self.meshing.joined().map(|mesh| MeshAnswer::new(mesh, self.particles()))
     }
 
-    /// The triangles: triples of particles, counter-clockwise seen from outside. There are none before [`Run::join`] is done.
+    /// The mesh; none before [`Run::join`] is done.
+    #[must_use]
+    pub fn mesh(&self) -> Option<&Triangulation> {
+        self.meshing.joined()
+    }
+
+    /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from outside. There are none before
+    /// [`Run::join`] is done.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        self.meshing.joined().map_or(&[], |mesh| &mesh.triangles)
+        self.mesh().map_or(&[], |mesh| &mesh.triangles)
     }
 
     /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of [`MEDIUM`] rows each; the
-    /// file, once it is complete. Another wish, or a change of the particles, begins a file anew.
+    /// file, once it is complete. Another wish, or a change of the particles, begins a file anew. Before [`Run::join`] is done it has no
+    /// triangles.
     ///
     /// # Errors
     ///
     /// An error if the 32-bit counters of the format are too small.
     pub fn mesh_file(&mut self, wish: &MeshFile, budget: u32) -> io::Result<Option<Vec<u8>>> {
         let begun = self.meshing.file.take().filter(|begun| begun.wish == *wish);
-        let mut begun = begun.unwrap_or_else(|| Begun {
-            wish: wish.clone(),
-            placed: wish.placement.placed(wish.format, self.particles(), self.measured()),
-            next: 0,
-            bytes: Vec::new(),
+        let (particles, measured) = (self.particles(), self.measured());
+        let mut begun = begun.unwrap_or_else(|| {
+            let none = Triangulation::default();
+            let content = FileContent::new(wish, particles, measured, self.mesh().unwrap_or(&none));
+            Begun { wish: wish.clone(), content, next: 0, bytes: Vec::new() }
         });
-        let own = (self.particles(), self.measured());
-        let (particles, measured) = begun.placed.as_ref().map_or(own, |(p, m)| (p, m));
-        let file = File { wish, particles, measured, triangles: self.triangles() };
+        let file = File::new(wish, particles, measured, &begun.content);
         let all = file.rows();
         let end = all.min(begun.next.saturating_add(MEDIUM.saturating_mul(budget as usize)));
         file.write_rows(begun.next..end, &mut begun.bytes)?;

@@ -48,16 +48,14 @@ pub enum Error {
     Settings(#[from] SettingsError),
     /// No box was given, and none was found: f changes its sign nowhere on the grids that were laid over cubes around the origin. A surface
     /// that is smaller than their cells, or farther away, needs its box: [`Settings::in_box`].
-    #[error(
-        "no box was given, and on grids of {cells} cells a side over cubes around the origin, from \u{b1}{} to \u{b1}{}, f changes its sign \
-         nowhere: a surface that is smaller than the cells or farther away needs its box (`Settings::in_box`)",
-        halves[halves.len() - 1], halves[0]
-    )]
+    #[error("{} (`Settings::in_box`)", no_box(halves, *cells, *defined))]
     NoBox {
         /// Half-widths of the cubes, the largest first.
         halves: &'static [f64],
         /// Cells along each side of a cube.
         cells: usize,
+        /// Share of the nodes of the grids at which f has a value.
+        defined: f64,
     },
     /// No particle could be placed.
     #[error("{message}")]
@@ -67,6 +65,28 @@ pub enum Error {
         /// The reason and the remedy, in a sentence.
         message: String,
     },
+}
+
+/// Why no box was found, up to how to give one.
+fn no_box(halves: &[f64], cells: usize, defined: f64) -> String {
+    let (smallest, largest) = (halves[halves.len() - 1], halves[0]);
+    let grids = format!(
+        "grids of {cells} cells a side over cubes around the origin, from \u{b1}{smallest} to \u{b1}{largest}"
+    );
+    if defined == 0.0 {
+        return format!(
+            "no box was given, and f has no value at any node of {grids}: a surface in a small region where f has one needs its box"
+        );
+    }
+    let where_defined = if defined < 1.0 {
+        format!(" between the {:.2} % of the nodes at which it has a value", 100.0 * defined)
+    } else {
+        String::new()
+    };
+    format!(
+        "no box was given, and on {grids}, f changes its sign nowhere{where_defined}: a surface that is smaller than the cells or farther \
+         away needs its box"
+    )
 }
 
 /// Report on the start of a run: the radius, estimates and warnings.
@@ -184,6 +204,7 @@ impl<F: Field> Run<F> {
         self.bounds.check()?;
         self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
         self.field.set_origin(self.bounds.local_origin());
+        self.sampler.set_box_given(self.reach.is_none());
         let bounds = self.bounds.relative_to(self.field.origin());
         let creases = (self.known != Known::Survey).then(|| {
             let known = self.creases.take();
@@ -291,8 +312,13 @@ impl<F: Field> Run<F> {
         self.remember(progress)
     }
 
-    fn remember(&mut self, progress: Progress) -> Progress {
+    fn remember(&mut self, mut progress: Progress) -> Progress {
         self.forget_results();
+        if progress.stop_reason == Some(StopReason::Constant)
+            && let (Some(message), Some(cause)) = (&mut progress.message, self.field.why_constant())
+        {
+            *message = format!("{message} {cause}");
+        }
         self.last = Some(progress.clone());
         progress
     }
@@ -328,13 +354,16 @@ impl<F: Field> Run<F> {
     }
 
     /// Returns the reason if there is no particle.
-    pub(crate) fn check_not_empty(&self) -> Result<(), Error> {
+    pub(crate) fn check_not_empty(&mut self) -> Result<(), Error> {
         if self.count() > 0 {
             return Ok(());
         }
         let progress = self.last.clone().unwrap_or_else(|| self.sampler.progress());
-        if self.reach == Some(Reach::Unknown) && progress.stop_reason != Some(StopReason::Cancelled) {
-            return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS });
+        let is_cancelled = progress.stop_reason == Some(StopReason::Cancelled);
+        if self.reach == Some(Reach::Unknown) && !is_cancelled && self.sampler.shows_nothing() {
+            self.field.set_origin(DVec3::ZERO);
+            let defined = extent::defined_share(&mut self.field);
+            return Err(Error::NoBox { halves: &extent::HALVES, cells: extent::CELLS, defined });
         }
         let mut message = progress.message.unwrap_or_else(|| "no particle could be placed".to_owned());
         if let Some(cause) =

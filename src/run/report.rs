@@ -5,6 +5,7 @@ use super::{Run, Warning};
 use crate::extent::Reach;
 use crate::field::Field;
 use crate::math::Forest;
+use crate::mesh::facing::Inside;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{Figures, Histogram, Places};
 use crate::sampler::{Blur, FateCounts, Sampled, Sampling, Search, StopReason};
@@ -33,6 +34,9 @@ pub struct Report {
     /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined.
     #[serde(rename = "volume")]
     pub joined_volume: Option<f64>,
+    /// Sign of f inside of the closed parts of the surface, by that mesh if the particles were joined, else by the triangles of natural
+    /// neighbours; none where no part is closed, or nothing was measured.
+    pub inside: Option<Inside>,
     /// Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined.
     pub smallest_angle: Option<f64>,
     /// Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same.
@@ -286,6 +290,8 @@ impl<F: Field> Run<F> {
             spacing: 2.0 * f64::from(particles.radius[particle]),
         }));
         warnings.extend(self.meshing.joined().into_iter().flat_map(|mesh| Warning::of_mesh(measured, mesh)));
+        let inside = self.meshing.joined().map_or(measured.inside, |mesh| mesh.inside);
+        warnings.extend(inside.filter(|&inside| inside != Inside::Negative).map(Warning::LargerInside));
         let is_beyond = self.reach == Some(Reach::Endless) && border == 0 && count > 0;
         warnings.extend(is_beyond.then_some(Warning::Beyond { bounds: self.bounds }));
         warnings.extend(is_overflowing.then_some(Warning::Overflow));
@@ -297,6 +303,7 @@ impl<F: Field> Run<F> {
             proof,
             measures: self.measures(),
             joined_volume: self.meshing.joined().and_then(|mesh| mesh.volume(particles)),
+            inside,
             smallest_angle: self.meshing.joined().and_then(|mesh| mesh.smallest_angle(particles)),
             pairs: particles.pairs(),
             border,

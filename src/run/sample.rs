@@ -2,7 +2,7 @@
 
 use super::mesh::joined;
 use super::{Error, Report, Run, Warning};
-use crate::export::{self, MeshFile, ParticleFile};
+use crate::export::{self, MeshBuffers, MeshFile, ParticleFile, Vertices};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
@@ -90,8 +90,8 @@ impl Sample {
         self.bounds
     }
 
-    /// The triangles over the particles: an oriented manifold, closed where the surface is, counter-clockwise seen from outside. The
-    /// first call joins the particles, in below a microsecond each.
+    /// The triangles over the particles: an oriented manifold, closed where the surface is. Closed parts are counter-clockwise seen from
+    /// outside, also where f is larger inside. The first call joins the particles, in below a microsecond each.
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         let bounds = || self.bounds.relative_to(self.particles.origin);
@@ -112,7 +112,7 @@ impl Sample {
     }
 
     /// Writes the particles with what was measured of them to `out`, which should be buffered: in a [`Format`](crate::Format), or as
-    /// a [`ParticleFile`] with a record.
+    /// a [`ParticleFile`] with a record. Their normals follow the gradient: they point inward where f is larger inside.
     ///
     /// # Errors
     ///
@@ -121,16 +121,34 @@ impl Sample {
         export::write(&file.into(), &self.particles, &self.measured, out)
     }
 
+    /// The [mesh](Sample::mesh) as lists of vertices and triangles, as its files have it.
+    ///
+    /// ```
+    /// use marching_particles::{Formula, Settings, Topology, Vertices, sample};
+    ///
+    /// let cube = Formula::parse("max(|x|, |y|, |z|) = 1")?;
+    /// let sample = sample(cube, &Settings::with_count(1_000))?;
+    /// let joined = sample.buffers(Vertices::Joined);
+    /// assert!(Topology::new(&joined.triangles, joined.positions.len()).is_closed());
+    /// // With the normals of each face the six faces are apart.
+    /// let split = sample.buffers(Vertices::Split);
+    /// assert_eq!(Topology::new(&split.triangles, split.positions.len()).components.len(), 6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn buffers(&self, vertices: Vertices) -> MeshBuffers {
+        MeshBuffers::new(self.mesh(), &self.particles, vertices)
+    }
+
     /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a [`MeshFormat`](crate::MeshFormat), or as a
     /// [`MeshFile`] with a size, an upward axis and a record. A mesh that is open is written as it is: see [`Sample::mesh_warnings`].
     ///
-    /// A particle on a crease is a vertex for each patch that meets there, with the normal of that patch, in the formats that have
-    /// normals. Who needs one vertex joins those of equal positions.
+    /// Closed parts face outward, also where f is larger inside. A particle on a crease is one vertex, unless [`Vertices`] asks for more.
     ///
     /// # Errors
     ///
     /// The errors of `out`, and an error if the 32-bit counters of the format are too small.
     pub fn write_mesh(&self, file: impl Into<MeshFile>, out: &mut dyn Write) -> io::Result<()> {
-        export::write_mesh(&file.into(), &self.particles, &self.measured, &self.mesh().triangles, out)
+        export::write_mesh(&file.into(), &self.particles, &self.measured, self.mesh(), out)
     }
 }

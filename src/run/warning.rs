@@ -6,6 +6,7 @@ use crate::field::Field;
 use crate::field::model::{GivenMesh, GivenTopology, ModelInfo};
 use crate::math::{Bounds, counted, place_text, shortest_text, text_within};
 use crate::mesh::build::Triangulation;
+use crate::mesh::facing::Inside;
 use crate::particles::Particles;
 use crate::quality::Measurements;
 use crate::quality::figures::Connectivity;
@@ -47,6 +48,13 @@ pub enum Warning {
     },
     /// f touches zero without changing its sign.
     Touches,
+    /// f also comes to zero on a curve or at a point, where it has no surface.
+    Bare {
+        /// A place where it does.
+        position: [f64; 3],
+        /// Radius of the run.
+        length: f64,
+    },
     /// Parts of the surface are outside of the fitted box, which cuts none of it.
     Beyond {
         /// The fitted box.
@@ -161,6 +169,8 @@ pub enum Warning {
         /// Number of particles.
         count: usize,
     },
+    /// f is larger inside of closed parts of the surface than outside.
+    LargerInside(Inside),
     /// The surface that was fitted to a mesh has another topology or area than the mesh.
     FileDiffers {
         /// The mesh of the file.
@@ -287,6 +297,8 @@ impl<F: Field> Run<F> {
         {
             warnings.push(Warning::Count { count: total, wanted: settings.count });
         }
+        let bare = self.sampler.bare_place().map(|place| self.place(place.to_array()));
+        warnings.extend(bare.map(|position| Warning::Bare { position, length }));
         let doubts = self.sampler.doubts();
         let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
         let origin = self.particles().origin;
@@ -367,6 +379,12 @@ impl fmt::Display for Warning {
                 "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
                  If f is a square, enter what is squared instead.",
             ),
+            Self::Bare { position, length } => write!(
+                f,
+                "f also comes to zero near {} on a curve or at a point, beside which it keeps one sign: it has no surface there, and \
+                 nothing is sampled.",
+                place_text(*position, *length)
+            ),
             Self::Beyond { bounds } => {
                 let [min, max] = [bounds.min, bounds.max].map(|corner| place_text(corner, bounds.diagonal()));
                 write!(
@@ -388,8 +406,8 @@ impl fmt::Display for Warning {
             ),
             Self::Count { count, wanted } => write!(
                 f,
-                "There are {count} particles, not the {wanted} wanted: where they are large against the surface or its box, their \
-                 number changes by leaps."
+                "There are {count} particles, not the {wanted} wanted: where they are large against the surface, its parts or its box, or \
+                 lie in rows along edges, their number changes by leaps."
             ),
             Self::NotRefined(refusal) => refusal.fmt(f),
             Self::Unpaired { axis, repeats } => {
@@ -484,6 +502,14 @@ impl fmt::Display for Warning {
             ),
             Self::MeshLeavesOut { count } => {
                 write!(f, "{} in no triangle of the mesh.", counted(*count, "particle is", "particles are"))
+            }
+            Self::LargerInside(inside) => {
+                let place = if *inside == Inside::Both { " some closed parts of" } else { "" };
+                write!(
+                    f,
+                    "f is larger inside{place} the surface than outside. Files of the mesh face outward all the same; the normals of the \
+                     particles follow the gradient of f, and point inward there."
+                )
             }
             Self::FileDiffers { mesh, components, euler, area, position, length } => {
                 let told = |components: usize, euler: i64, area: f64| {

@@ -4,6 +4,7 @@ use super::{Sampler, StopReason};
 use crate::math::place_text;
 use crate::sampler::discovery::completeness::Doubt;
 use crate::sampler::discovery::survey::Absence;
+use crate::sampler::settings::SizeMode;
 use glam::DVec3;
 
 impl Sampler {
@@ -11,6 +12,10 @@ impl Sampler {
     pub(crate) fn message(&self) -> Option<String> {
         Some(match self.phase.stop_reason()? {
             StopReason::Complete | StopReason::Cancelled => return None,
+            StopReason::Cap if self.settings.size_mode == SizeMode::Count => format!(
+                "Stopped at the limit of {} particles, which do not cover the surface as {} would: raise the limit, or ask for fewer.",
+                self.settings.max_particles, self.settings.count
+            ),
             StopReason::Cap => format!(
                 "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
                 self.settings.max_particles
@@ -18,6 +23,11 @@ impl Sampler {
             StopReason::NoSurface if self.survey.absence == Absence::Proven => {
                 "f has no zero in this box (proven by interval arithmetic).".into()
             }
+            StopReason::NoSurface if self.survey.absence == Absence::Bare => format!(
+                "No surface: f comes to zero, for example near {}, but only on a curve or at a point, beside which it keeps one sign. For a \
+                 surface around it enter a small number on the right, such as x^2 + y^2 = 0.01.",
+                self.place(self.bare_place().unwrap_or_default())
+            ),
             StopReason::NoSurface | StopReason::OneParticle
                 if !self.components.singular().is_empty() && (self.output.particles.is_empty() || self.survey.touches) =>
             {
@@ -33,10 +43,21 @@ impl Sampler {
                      a power, enter its base."
                 )
             }
-            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => format!(
-                "f keeps one sign at every grid point of this box. Enlarge or move the box.{}",
-                self.undecided_place()
-            ),
+            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
+                let (of_box, remedy) = if self.is_box_given {
+                    ("this box", "Enlarge or move the box.")
+                } else {
+                    (
+                        "the box that was found for it",
+                        "A surface that is small against that box, or beyond it, needs a box of its own.",
+                    )
+                };
+                let nodes = match self.survey.defined {
+                    1.0.. => "at every grid point".to_owned(),
+                    share => format!("at every grid point at which it has a value, {} of all,", percent(share)),
+                };
+                format!("f keeps one sign {nodes} of {of_box}. {remedy}{}", self.undecided_place())
+            }
             StopReason::NoSurface => format!(
                 "f changes its sign in this box, but only where it jumps, has a pole or loses its gradient, or on a surface that is \
                  far smaller than the box.{}",
@@ -57,6 +78,11 @@ impl Sampler {
             }
         })
     }
+}
+
+/// A share in words.
+fn percent(share: f64) -> String {
+    if share < 0.001 { "less than 0.1 %".to_owned() } else { format!("{:.1} %", 100.0 * share) }
 }
 
 impl Sampler {

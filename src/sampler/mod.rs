@@ -47,11 +47,11 @@ use constraint::tips::Tip;
 use core::hint::black_box;
 use discovery::search::ComponentSearch;
 use discovery::singular::{Bend, NearSurvey, Singular};
-use discovery::survey::{Absence, Survey, spacing, survey};
+use discovery::survey::{Absence, Survey, bare_among, bare_size, spacing, survey};
 use discovery::{precision, singular};
 use flow::Flow;
 use front::Front;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use probe::{Probe, ProbeMemory};
@@ -88,6 +88,8 @@ pub struct Sampler {
     tools: Tools,
     output: Output,
     counts: Counts,
+    /// Whether a person gave the box.
+    is_box_given: bool,
     /// Limit on the memory of a run, in bytes; none if the memory is not limited.
     memory_limit: Option<usize>,
 }
@@ -204,7 +206,8 @@ impl Sampler {
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
         let mut doubts = self.components.doubts(self.survey.nearness, self.least_gap());
-        doubts.extend(self.creases.are_there().then_some(Doubt::Creases));
+        let has_creases = self.creases.are_there() || self.creases.bare.is_some();
+        doubts.extend(has_creases.then_some(Doubt::Creases));
         doubts
     }
 
@@ -340,11 +343,14 @@ impl Sampler {
             if !is_dense && !self.survey.touches {
                 let scaled = &mut Scaled::new(field, scale);
                 self.find_singular_points(&mut Probe::new(scaled, &mut ProbeMemory::default()));
+                let singular = self.singular.clone();
+                self.find_bare_place(scaled, &singular);
             }
         } else {
             field.use_double(self.survey.double);
         }
         self.components.begin(field, &self.bounds, &self.singular);
+        self.components.leave_out_bare(self.bare_place().map(|_| bare_size(spacing(&self.bounds))));
         self.components.expect(0.0);
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);
@@ -352,7 +358,25 @@ impl Sampler {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             while self.components.search(probe, &self.bounds, tolerance, least_gap, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
-            self.survey.adopt(probe.field, found, &self.bounds, self.components.witnessed());
+            // Where branches meet, f may be zero on a curve or at a point that has no highest point of either.
+            let search = if self.creases.is_open { Search::Searched } else { self.components.witnessed() };
+            self.survey.adopt(probe.field, found, &self.bounds, search);
+            if self.survey.position.is_empty() {
+                let singular = self.components.singular().to_vec();
+                self.find_bare_place(field, &singular);
+                let is_bare = self.bare_place().is_some();
+                self.survey.absence = if is_bare { Absence::Bare } else { self.survey.absence };
+            }
+        }
+    }
+
+    /// Looks for a zero of f on a curve, or a point by itself, among singular points, if none is known.
+    fn find_bare_place(&mut self, field: &mut dyn Field, singular: &[Singular]) {
+        if self.bare_place().is_none() {
+            let probe = &mut Probe::new(field, &mut self.tools.memory);
+            let extrema = singular.iter().filter(|point| !point.has_two_signs);
+            let places = extrema.map(|point| point.position);
+            self.survey.bare = bare_among(probe, places, spacing(&self.bounds));
         }
     }
 
@@ -419,6 +443,23 @@ impl Sampler {
     /// Whether f touches zero without changing its sign, so that both sides of the surface are sampled.
     pub(crate) fn touches(&self) -> bool {
         self.survey.touches
+    }
+
+    /// A place where f comes to zero on a curve or at a point alone, if one was seen.
+    pub(crate) fn bare_place(&self) -> Option<DVec3> {
+        self.survey.bare.or(self.creases.bare)
+    }
+
+    /// Whether nothing was seen of a surface, and nothing was proven: f may have one that is small against the box, or beyond it.
+    pub(crate) fn shows_nothing(&self) -> bool {
+        let absence = self.survey.absence;
+        let is_unseen = matches!(absence, Absence::NotSeen | Absence::Undefined | Absence::Constant);
+        is_unseen && self.components.singular().is_empty()
+    }
+
+    /// Says whether the box of the next run is one that a person gave, as messages do.
+    pub(crate) fn set_box_given(&mut self, is_given: bool) {
+        self.is_box_given = is_given;
     }
 
     /// Whether the search for components was left open in a box where f is beyond double precision in places.

@@ -5,7 +5,7 @@ pub(crate) use crate::field::BATCH;
 use crate::field::Field;
 use crate::field::descent::Descent;
 use crate::math::{Bounds, Sym3};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// State that outlasts a [`Probe`]: the buffers of a batch, and the count of all evaluations.
 #[derive(Clone, Debug, Default)]
@@ -66,6 +66,129 @@ impl<'a> Probe<'a> {
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 
+    /// Whether a zero of f is one of a curve, or a point by itself, on no surface: f keeps one sign around it, and most planes through it have no
+    /// other zero of f around it. A plane cuts a surface, and holds a curve that is tangent to it, as the edge of a solid may be. `size` is
+    /// the largest distance at which f is looked at; the surface is not to bend within it.
+    ///
+    /// The evaluations, which are in double precision, are not counted.
+    pub(crate) fn is_bare_zero(&mut self, point: DVec3, size: f64) -> bool {
+        /// Distances as shares of the size: a surface that bends within one need not within the other, and what the point may be off by counts
+        /// least at the larger one.
+        const SIZES: [f64; 2] = [1.0, 0.25];
+        /// Normals of the planes. Any three are independent, so that at most two of the planes hold one direction.
+        const NORMALS: [DVec3; 5] = [
+            DVec3::new(0.8, 0.5, 0.3),
+            DVec3::new(-0.3, 0.8, 0.5),
+            DVec3::new(0.5, -0.3, 0.8),
+            DVec3::new(0.6, 0.6, -0.6),
+            DVec3::new(-0.7, 0.2, 0.7),
+        ];
+        const MOST_CUT: usize = 2;
+        /// |f| over its largest value at that distance below which it is zero: Newton's method ends nearer than that to the zero.
+        const ZERO: f64 = 0.01;
+        let (at_point, _) = self.field.value_and_gradient(point);
+        let distances = SIZES.map(|share| share * size);
+        let most = distances.map(|d| self.most_around(point, d));
+        // False for NaN.
+        if !(at_point.abs() <= ZERO * most[0] && most.iter().all(|&most| most > 0.0)) {
+            return false;
+        }
+        let mut is_cut = |normal: &&DVec3| distances.iter().any(|&d| self.is_zero_around(point, **normal, d));
+        NORMALS.iter().filter(|normal| is_cut(normal)).take(MOST_CUT + 1).count() <= MOST_CUT
+            && !self.changes_sign_near(point, size)
+    }
+
+    /// Whether f changes its sign near the zero to which Newton's method leads from a point: a surface that is small beside `size` looks like a
+    /// point or a curve.
+    fn changes_sign_near(&mut self, mut point: DVec3, size: f64) -> bool {
+        /// Of the size: Newton's method halves the distance to a double zero at each step, and the distances looked at double.
+        const STEPS: usize = 40;
+        for _ in 0..STEPS {
+            let (value, gradient) = self.field.value_and_gradient(point);
+            let step = gradient * (value / gradient.length_squared());
+            if !step.is_finite() {
+                break;
+            }
+            point -= step.clamp_length_max(size);
+        }
+        let (value, gradient) = self.field.value_and_gradient(point);
+        let way = gradient.normalize_or(DVec3::X);
+        let distances = core::iter::successors(Some(size), |distance| Some(0.5 * distance)).take(STEPS);
+        let sides = distances.flat_map(|distance| [distance, -distance].map(|along| point + way * along));
+        let mut sign = value;
+        for place in sides {
+            let (value, _) = self.field.value_and_gradient(place);
+            if value * sign < 0.0 {
+                return true;
+            }
+            sign = if value == 0.0 { sign } else { value.signum() };
+        }
+        false
+    }
+
+    /// The largest |f| all around a point at a distance; 0 where f has both signs there, NaN where it has no value.
+    fn most_around(&mut self, point: DVec3, distance: f64) -> f64 {
+        /// Steps from the place with the least |f|, each twice as long as one to a simple zero: they end on a curve through the point, and lead
+        /// into a narrow cone in which f has the other sign.
+        const STEPS: u32 = 8;
+        let (mut least, mut most) = ((f64::INFINITY, DVec3::ZERO), 0.0_f64);
+        let mut sign = 0.0;
+        for k in (0..27).filter(|&k| k != 13) {
+            let way = DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) - DVec3::ONE;
+            let way = way.normalize_or_zero();
+            let (value, _) = self.field.value_and_gradient(point + way * distance);
+            if value.is_nan() {
+                return value;
+            }
+            if value * sign < 0.0 {
+                return 0.0;
+            }
+            sign = if value == 0.0 { sign } else { value.signum() };
+            least = if value.abs() < least.0 { (value.abs(), way) } else { least };
+            most = most.max(value.abs());
+        }
+        let mut way = least.1;
+        for _ in 0..STEPS {
+            let (value, gradient) = self.field.value_and_gradient(point + way * distance);
+            if value * sign < 0.0 {
+                return 0.0;
+            }
+            let along = gradient - way * gradient.dot(way);
+            let step = along * (2.0 * value / (along.length_squared() * distance));
+            if step.is_finite() {
+                way = (way - step.clamp_length_max(0.5)).normalize_or_zero();
+            }
+        }
+        most
+    }
+
+    /// Whether f is zero somewhere on the circle around a point across `normal`, or changes its sign or has no value there.
+    fn is_zero_around(&mut self, point: DVec3, normal: DVec3, radius: f64) -> bool {
+        /// |f| over its largest value on the circle below which it is zero: far above rounding, and above what the steps leave of |f| where
+        /// it is the distance to a sheet. Beside the curve of |u| + v² it is about the radius.
+        const ZERO: f64 = 1e-9;
+        /// Arcs of the circle, and the tangent of half of one.
+        const ARCS: usize = 8;
+        const TANGENT: f64 = 0.4142;
+        let u = normal.any_orthogonal_vector().normalize_or_zero();
+        let v = normal.cross(u).normalize_or_zero();
+        let ways: [DVec3; ARCS] = [u, u + v, v, v - u, -u, -u - v, -v, u - v].map(DVec3::normalize_or_zero);
+        let (mut most, mut sign) = (0.0_f64, 0.0);
+        !ways.iter().all(|&way| {
+            let aside = normal.cross(way).normalize_or_zero();
+            let mut size_at = |offset: f64| {
+                let place = point + (way + aside * offset).normalize_or_zero() * radius;
+                let (value, _) = self.field.value_and_gradient(place);
+                // Once it is NaN it stays.
+                sign = if sign * value >= 0.0 { value } else { f64::NAN };
+                value.abs()
+            };
+            most = most.max(size_at(TANGENT));
+            let least = least_within(TANGENT, size_at);
+            sign.abs() > 0.0 && least > ZERO * most
+        })
+    }
+
     /// Counts evaluations that were made of the field directly.
     pub(crate) fn count(&mut self, evaluations: u64) {
         self.memory.evaluations += evaluations;
@@ -114,4 +237,28 @@ impl<'a> Probe<'a> {
         self.count(points.len() as u64);
         self.field.hessians(points, value, gradient, hessian);
     }
+}
+
+/// The least of some values of a function between −`most` and `most`, near its minimum if it has one: by the golden section (J. Kiefer,
+/// "Sequential minimax search for a maximum", 1953).
+fn least_within(most: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
+    /// The share of an interval that is left after a step.
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    /// After so many steps 3·10⁻¹¹ of the interval is left.
+    const STEPS: u32 = 50;
+    let (mut lo, mut hi) = (-most, most);
+    let (mut a, mut b) = (hi - GOLDEN * (hi - lo), lo + GOLDEN * (hi - lo));
+    let (mut at_a, mut at_b) = (value(a), value(b));
+    for _ in 0..STEPS {
+        if at_a <= at_b {
+            (hi, b, at_b) = (b, a, at_a);
+            a = hi - GOLDEN * (hi - lo);
+            at_a = value(a);
+        } else {
+            (lo, a, at_a) = (a, b, at_b);
+            b = lo + GOLDEN * (hi - lo);
+            at_b = value(b);
+        }
+    }
+    at_a.min(at_b)
 }

@@ -405,10 +405,12 @@ impl Sampler {
         if let Some(next) = self.begin_refinement(probe) {
             return next;
         }
-        if !self.tools.front.level().capped && self.attempt.is_corrected(&self.settings, count) {
+        let is_capped = self.tools.front.level().capped;
+        if !is_capped && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
         }
-        if self.tools.front.level().fates.added == 0 && !self.tools.front.level().capped {
+        let is_alone = self.tools.front.level().fates.added == 0 && self.output.particles.twins.is_empty();
+        if is_alone && !is_capped {
             self.begin_audit(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
             self.begin_audit(self.reason_for_end())
@@ -739,6 +741,8 @@ impl Sampler {
         if !self.components.singular().is_empty() {
             singular::mark(field, self.components.singular(), &mut self.output.particles);
             self.output.moved = true;
+            let singular = self.components.singular().to_vec();
+            self.find_bare_place(field, &singular);
         }
         PhaseState::Done(reason)
     }

@@ -2,7 +2,7 @@
 //! or figure needs no new code anywhere else.
 
 use super::setting::{self, Setting};
-use crate::export::{COLUMNS, Column, Presence};
+use crate::export::{COLUMNS, Column, Presence, VERTICES, VerticesChoice};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
 use crate::field::gallery::{self, Surface, SurfaceGroup};
 use crate::field::model::{self, MODELS, Model};
@@ -32,6 +32,8 @@ pub struct Description {
     pub colours: &'static [Colour],
     /// Columns of PLY and CSV files.
     pub columns: Vec<&'static Column>,
+    /// Ways to write the vertices of mesh files, the default first.
+    pub vertices: &'static [VerticesChoice],
     /// Template of a new parameter, without its name.
     pub new_parameter: Parameter,
     /// Largest and smallest values that the core accepts.
@@ -175,6 +177,7 @@ pub fn describe() -> Description {
         colours: COLOURS,
         // What the page saves is the result of a run.
         columns: COLUMNS.iter().filter(|column| column.presence != Presence::Moved).collect(),
+        vertices: VERTICES,
         new_parameter: Parameter::automatic(""),
         limits: Limits {
             formula_bytes: MAX_FORMULA_BYTES,
@@ -304,6 +307,8 @@ const REPORT: &[ReportRow] = &[
         .help("Area of the triangles of natural neighbours."),
     row("volume", "Volume", "Surface").unit("units³").digits(3)
         .help("Volume that the mesh encloses, exact to its triangles, where the particles are joined to a closed one."),
+    row("inside", "Inside", "Surface")
+        .help("Sign of f inside of the closed parts of the surface. Files of the mesh face outward whether f is smaller or larger there; the normals of particles follow the gradient of f."),
     row("quality.euler", "Sample Euler number", "At this radius")
         .help("Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components. It is that of the sample: where the surface is as thin as a particle, a smaller radius may show another one."),
     row("components", "Sample components", "At this radius")

@@ -41,12 +41,14 @@ pub struct Fault {
     pub end: u32,
     /// Text that would mend the span, if there is a good guess.
     pub suggestion: Option<String>,
+    /// Texts for the span, each with another meaning, where the formula has several readings.
+    pub choices: Box<[String]>,
     /// The formula with every mistake of this kind mended, if there are several.
     pub mended: Option<Box<Mended>>,
     /// The unknown name, which could become a slider.
     pub name: Option<String>,
     /// The excess of particles, if the error is [`FaultKind::TooMany`].
-    pub excess: Option<Excess>,
+    pub excess: Option<Box<Excess>>,
 }
 
 /// Excess of the expected particles of a run over the limit.
@@ -66,7 +68,17 @@ impl Fault {
     #[must_use]
     pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self { kind, message, start: 0, end: 0, suggestion: None, mended: None, name: None, excess: None }
+        Self {
+            kind,
+            message,
+            start: 0,
+            end: 0,
+            suggestion: None,
+            choices: Box::default(),
+            mended: None,
+            name: None,
+            excess: None,
+        }
     }
 
     /// An error in the formula `text`.
@@ -77,6 +89,7 @@ impl Fault {
             start: span.start as u32,
             end: span.end as u32,
             suggestion: error.suggestion,
+            choices: error.choices,
             mended: error.mended,
             name: error.name,
             ..Self::new(FaultKind::Formula(error.kind), &error.message)

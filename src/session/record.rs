@@ -1,7 +1,7 @@
 //! The record that a file carries, from which it can be made again, and the request for a mesh file.
 
 use super::{BoxFaces, Session, SolidSettings, Source};
-use crate::export::{self, MeshFile, MeshFormat, Placement};
+use crate::export::{self, MeshFile, MeshFormat, Placement, Vertices};
 use crate::field::rbf::Pull;
 use crate::math::Bounds;
 use crate::sampler::{Method, Settings};
@@ -56,6 +56,8 @@ pub struct FileRequest {
     pub format: String,
     /// Size and orientation of the mesh.
     pub placement: Placement,
+    /// The vertices of the particles on sharp edges, in GLB, OBJ and PLY, and the columns of PLY.
+    pub vertices: Vertices,
     /// Link for the record.
     pub link: Option<String>,
     /// Whether the file is written without a record.
@@ -114,7 +116,8 @@ impl Session {
         let record = if request.plain { None } else { self.record(request.link.clone()) };
         let record =
             record.map_or_else(export::RecordText::default, |made| export::RecordText::new(&json(&made)));
-        let wish = MeshFile { format, placement: request.placement, record };
+        let FileRequest { placement, vertices, .. } = *request;
+        let wish = MeshFile { format, placement, vertices, record };
         self.run.mesh_file(&wish, budget).map_or(Some(None), |bytes| bytes.map(Some))
     }
 }

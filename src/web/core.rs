@@ -1,6 +1,7 @@
 //! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
 use super::values::{answer, read, to_js};
+use crate::field::formula::number;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::particles::Particles;
@@ -60,6 +61,12 @@ impl Core {
     ) -> JsValue {
         let request = read::<FieldRequest>(request, FaultKind::Request);
         answer(request.and_then(|request| self.session.set_field(&request)))
+    }
+
+    /// The number that a text without names stands for in the language of formulas; nothing for any
+    /// other text.
+    pub fn number(&self, text: &str) -> Option<f64> {
+        number(text).ok()
     }
 
     /// Refuses runs that need more than about `megabytes` with their report.
@@ -278,9 +285,9 @@ impl Core {
         self.session.run.join(budget).map(|answer| to_js(&answer))
     }
 
-    /// The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
+    /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none before it is complete.
     pub fn triangles(&self) -> Vec<u32> {
-        self.session.run.triangles().as_flattened().to_vec()
+        self.session.run.mesh().map_or_else(Vec::new, |mesh| mesh.corners().as_flattened().to_vec())
     }
 
     /// The mesh as a file, with the record of what it was made from: `FileRequest`, up to `budget` slices of the work; its bytes once it is

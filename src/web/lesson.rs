@@ -235,7 +235,7 @@ impl Lesson {
 fn refusal(error: &LessonError) -> Fault {
     match *error {
         LessonError::TooMany { expected, limit, factor } => Fault {
-            excess: Some(Excess { expected, limit, factor }),
+            excess: Some(Box::new(Excess { expected, limit, factor })),
             ..Fault::new(FaultKind::TooMany, error)
         },
         _ => Fault::new(FaultKind::Settings, error),

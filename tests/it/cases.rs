@@ -23,6 +23,7 @@ pub(crate) fn tenths() -> u64 {
 }
 
 /// The seed of the first case.
+#[expect(clippy::disallowed_methods, reason = "the day chooses the cases, never what is made of them")]
 pub(crate) fn first() -> u64 {
     let today = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs() / 86_400);
     number("MARCHING_PARTICLES_SEED").unwrap_or_else(today) * DAY

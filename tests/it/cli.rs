@@ -128,8 +128,15 @@ fn files_hold_every_particle() {
     assert!((share - run["quality"]["six"].as_f64().expect("a share")).abs() < 1e-9);
 
     let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
-    // The record, the names of the columns, and a line for each particle.
-    assert_eq!((lines(&csv), lines(&xyz)), (count + 2, count));
+    // The names of the columns, and a line for each particle.
+    assert_eq!((lines(&csv), lines(&xyz)), (count + 1, count));
+    assert!(csv.starts_with(b"x,y,z,nx,ny,nz,radius,level,parent,"));
+    let beside = std::fs::read(file("a.csv.json")).expect("the record was written");
+    let record: Value = serde_json::from_slice(&beside).expect("JSON");
+    assert_eq!(record["marching_particles"]["surface"], "sphere");
+    assert_eq!(run["files"].as_array().map(Vec::len), Some(5));
+    let comments = ply[..header].split(|&byte| byte == b'\n').map(<[u8]>::len).max();
+    assert!(comments <= Some(200), "MeshLab reads lines of up to 512 characters");
     assert_eq!((npy.len() - 24 * count) % 64, 0);
 }
 
@@ -180,7 +187,8 @@ fn a_file_says_how_to_make_it_again() {
     files.iter().for_each(|path| arguments.extend(["--mesh", path]));
     points.iter().for_each(|path| arguments.extend(["--out", path]));
     let made = sample(&arguments);
-    for path in files.iter().chain(&points) {
+    let beside = format!("{}.json", points[0]);
+    for path in files.iter().chain(&points).chain([&beside]) {
         let again = sample(&["--like", path]);
         for key in ["digest", "formula", "parameters", "bounds", "settings"] {
             assert_eq!(again[key], made[key], "{key} of {path}");
@@ -209,9 +217,11 @@ fn a_file_says_how_to_make_it_again() {
     let [own, changed, pulled] = ["own.csv", "changed.csv", "pulled.csv"].map(path);
     let made = bunny(&["--out", &own]);
     let pull = r#""pulls":[{"at":[0.0,0.0,1.0],"by":[0.0,0.1,0.2],"reach":0.6}]"#;
-    let text = std::fs::read_to_string(&own).expect("a text");
+    let [own_record, changed_record] = [&own, &changed].map(|path| format!("{path}.json"));
+    let text = std::fs::read_to_string(&own_record).expect("a text");
     assert!(text.contains(r#""pulls":[]"#), "{text}");
-    std::fs::write(&changed, text.replace(r#""pulls":[]"#, pull)).expect("a file");
+    std::fs::write(&changed_record, text.replace(r#""pulls":[]"#, pull)).expect("a file");
+    std::fs::copy(&own, &changed).expect("a file");
     assert_eq!(bunny(&["--like", &own])["digest"], made["digest"]);
     let other = bunny(&["--like", &changed, "--out", &pulled]);
     assert_ne!(other["digest"], made["digest"]);
@@ -226,13 +236,69 @@ fn a_file_says_how_to_make_it_again() {
 }
 
 #[test]
+fn a_record_of_one_line_is_read_as_before() {
+    // As files of earlier versions have it.
+    let path = file("old.csv").to_str().expect("a plain path").to_owned();
+    let new = file("old.ply").to_str().expect("a plain path").to_owned();
+    let made = sample(&["--formula", "x^2 + y^2 + z^2 = 1", "--radius", "4%", "--out", &new]);
+    let ply = String::from_utf8_lossy(&std::fs::read(&new).expect("a file")).into_owned();
+    let json: String =
+        ply.lines().filter_map(|line| line.strip_prefix("comment marching_particles ")).collect();
+    std::fs::write(&path, format!("# marching_particles {json}\nx,y,z\n0,0,1\n")).expect("a file");
+    assert_eq!(sample(&["--like", &path])["digest"], made["digest"]);
+}
+
+#[test]
+fn a_solid_in_which_f_is_larger_is_turned_and_told() {
+    let text = run_text(&["--formula", "1 - x^2 - y^2 - z^2", "--count", "1500", "--mesh"], "turned.stl");
+    assert!(
+        text.contains("volume 4.1") && text.contains("turned to face outward: f is larger inside"),
+        "{text}"
+    );
+    assert!(text.contains("f > 0") && text.contains("warning: f is larger inside"), "{text}");
+    let text = run_text(&["--formula", "x^2 + y^2 + z^2 - 1", "--count", "1500", "--mesh"], "as-it-is.stl");
+    assert!(!text.contains("larger inside") && text.contains("f < 0"), "{text}");
+}
+
+#[test]
+fn ways_to_write_vertices_are_for_formats_that_know_them() {
+    let path = |name: &str| file(name).to_str().expect("a plain path").to_owned();
+    let cube = ["--formula", "max(|x|, |y|, |z|) = 1", "--count", "500", "--vertices"];
+    let header = |way: &str| {
+        let path = path(&format!("{way}-cube.ply"));
+        let run = sample(&[&cube[..], &[way, "--mesh", &path]].concat());
+        let bytes = std::fs::read(&path).expect("a file");
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let count =
+            text.split("element vertex ").nth(1).and_then(|rest| rest.lines().next()?.parse::<u64>().ok());
+        (
+            count.expect("a number"),
+            run["count"].as_u64().expect("a number"),
+            text.contains("property uint level"),
+        )
+    };
+    let (joined, count, _) = header("joined");
+    assert_eq!(joined, count);
+    let (split, count, has_levels) = header("split");
+    assert!(split > count && !has_levels);
+    let (all, _, has_levels) = header("columns");
+    assert!(all == split && has_levels);
+    for (way, name) in [("split", "cube.stl"), ("columns", "cube.glb")] {
+        let message = fails(2, &[&["sample"], &cube[..], &[way, "--mesh", &path(name)]].concat());
+        assert!(message.contains(&format!("--vertices {way} is for files of --mesh")), "{message}");
+    }
+    let help = stdout(&run(&["sample", "--help"]));
+    assert!(help.contains("Split") || help.contains("a vertex for each side"), "{help}");
+}
+
+#[test]
 fn a_unit_cell_says_which_particles_repeat() {
     let path = file("cell.csv");
     let text =
         run_text(&["--formula", "cos x + cos y + cos z", "--closed", "--periodic", "--out"], "cell.csv");
     assert!(text.contains("Periodic pairs") && !text.contains("warning"), "{text}");
     let csv = std::fs::read_to_string(path).expect("the file was written");
-    assert_eq!(csv.lines().nth(1).and_then(|names| names.split(',').next_back()), Some("periodic"));
+    assert_eq!(csv.lines().next().and_then(|names| names.split(',').next_back()), Some("periodic"));
     let closed = run_text(&["--formula", "x^2 + y^2 + z^2 = 1", "--closed", "--out"], "ball.csv");
     assert!(!closed.contains("Periodic pairs"), "{closed}");
 
@@ -283,7 +349,7 @@ fn existing_file_is_replaced() {
     std::fs::write(&path, "old ".repeat(1_000_000)).expect("the directory can be written");
     sample(&["--surface", "sphere", "--radius", "5%", "--out", path.to_str().expect("a plain path")]);
     let text = std::fs::read_to_string(&path).expect("the file is there");
-    assert!(text.contains("\nx,y,z,") && !text.contains("old"));
+    assert!(text.starts_with("x,y,z,") && !text.contains("old"));
 }
 
 #[test]
@@ -325,8 +391,6 @@ fn a_run_without_a_report_has_the_same_particles_and_says_what_is_missing() {
         (&measured["search"], &measured["level_counts"])
     );
     let text = std::fs::read_to_string(&path).expect("the file was written");
-    let (record, text) = text.split_once('\n').expect("lines");
-    assert!(record.starts_with("# marching_particles {"));
     assert_eq!(text.lines().next(), Some("x,y,z,nx,ny,nz,radius,level,parent,singular"));
     assert!(text.lines().all(|line| line.split(',').count() == 10));
     let summary = stdout(&run(&[&["sample", "--no-report"], &arguments[..]].concat()));

@@ -4,7 +4,7 @@ use crate::creased::{Creased, cuboid, drilled_cube, prism, two_spheres};
 use glam::DVec3;
 use marching_particles::mesh::build::{Triangulation, triangulate};
 use marching_particles::particles::Particles;
-use marching_particles::{Bounds, Formula, Settings, sample};
+use marching_particles::{Bounds, Formula, Settings, Topology, sample};
 
 /// The mesh of a closed surface, held to what is promised: one closed manifold of this Euler number and about this area, with every
 /// segment of a crease as an edge between two patches.
@@ -15,10 +15,15 @@ fn assert_closed(name: &str, solid: &Creased, euler: i64, flatness: f64) {
     let told = format!("{name}, {} particles", particles.count());
     assert!(mesh.left_out.is_empty() && mesh.unfilled.is_empty(), "{told}: {mesh:?}");
     assert!(mesh.topology.is_closed(), "{told}: {:?}", mesh.topology.borders);
+    assert_eq!(
+        Topology::new(&mesh.triangles, particles.len()),
+        mesh.topology,
+        "{told}: the buffers are joined"
+    );
     assert_eq!((mesh.topology.components.len(), mesh.topology.euler()), (1, euler), "{told}");
     let area = area(&particles, &mesh);
     assert!((area / solid.area - 1.0).abs() <= flatness, "{told}: area {area} instead of {}", solid.area);
-    for triangle in &mesh.triangles {
+    for triangle in mesh.corners() {
         let [p, q, r] = triangle.map(|row| particles.place(row as usize));
         let normal = (q - p).cross(r - p);
         for row in triangle.map(|row| row as usize) {
@@ -27,7 +32,7 @@ fn assert_closed(name: &str, solid: &Creased, euler: i64, flatness: f64) {
         }
     }
     for &[a, b] in &particles.segments {
-        let sides = mesh.triangles.iter().filter(|triangle| {
+        let sides = mesh.corners().iter().filter(|triangle| {
             let first = triangle.map(|row| particles.first_row(row as usize) as u32);
             first.contains(&a) && first.contains(&b)
         });

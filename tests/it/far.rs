@@ -179,7 +179,8 @@ fn files_hold_far_places_in_double_precision() {
     let mesh = |format: MeshFormat| {
         let mut bytes = Vec::new();
         let unmeasured = quality::Measurements::default();
-        export::write_mesh(&format.into(), particles, &unmeasured, session.run.triangles(), &mut bytes)
+        let joined = session.run.mesh().expect("a mesh");
+        export::write_mesh(&format.into(), particles, &unmeasured, joined, &mut bytes)
             .expect("memory does not run out");
         bytes
     };

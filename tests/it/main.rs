@@ -23,6 +23,7 @@ mod far;
 mod faults;
 mod flow;
 mod formula;
+mod formula_forms;
 mod formula_functions;
 mod formula_properties;
 mod front;
@@ -42,9 +43,12 @@ mod near_sheets;
 #[cfg(feature = "points")]
 mod paper;
 mod parity;
+mod pasted;
 mod periodic;
 #[cfg(feature = "points")]
 mod pointcloud;
+#[cfg(feature = "points")]
+mod pointcloud_formats;
 #[cfg(feature = "points")]
 mod pointcloud_job;
 #[cfg(feature = "points")]

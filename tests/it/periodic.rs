@@ -35,7 +35,7 @@ fn glued(sample: &Sample) -> Topology {
         let patch = particles.patch[row as usize];
         particles.opposite.iter().any(|faces| faces.patches.contains(&patch))
     };
-    let mesh = &sample.mesh().triangles;
+    let mesh = sample.mesh().corners();
     let triangles: Vec<[u32; 3]> = (mesh.iter().filter(|triangle| !is_face(triangle[0])))
         .map(|triangle| triangle.map(|row| particles.periodic[row as usize]))
         .collect();
@@ -81,7 +81,7 @@ fn check_faces(sample: &Sample, bounds: &Bounds, axes: &[u8], what: &str) -> usi
         };
         let [lower, upper] = faces.patches.map(|patch| {
             let is_on = |triangle: &&[u32; 3]| particles.patch[triangle[0] as usize] == patch;
-            sample.mesh().triangles.iter().filter(is_on).map(key).collect::<BTreeSet<_>>()
+            sample.mesh().corners().iter().filter(is_on).map(key).collect::<BTreeSet<_>>()
         });
         assert!(!lower.is_empty() && lower == upper, "{what}: the triangles of both faces are the same");
         pairs += faces.rows.len();

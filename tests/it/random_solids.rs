@@ -104,11 +104,10 @@ fn check(seed: u64) -> bool {
         assert!(!value.is_finite() || residual.is_finite(), "{residual} at {place}, where f is {value}");
     }
     // The mesh of each patch is a manifold, also where patches cross or touch.
-    let crowded = Topology::new(run.triangles(), particles.len()).crowded_edges;
+    let mesh = run.mesh().expect("a mesh");
+    let crowded = Topology::new(mesh.corners(), particles.len()).crowded_edges;
     assert_eq!(crowded, [[0; 2]; 0], "two triangles on a side of an edge: {warnings:?}");
-    let first = |row: u32| particles.first_row(row as usize) as u32;
-    let joined: Vec<[u32; 3]> = run.triangles().iter().map(|rows| rows.map(first)).collect();
-    Topology::new(&joined, particles.len()).crowded_edges.is_empty()
+    Topology::new(&mesh.triangles, particles.len()).crowded_edges.is_empty()
         && !warnings.iter().any(|warning| matches!(warning, Warning::Open { .. }))
 }
 

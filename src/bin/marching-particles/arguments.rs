@@ -1,13 +1,14 @@
 //! The command line's arguments, as clap reads and explains them.
 
-use crate::options::{SamplingOptions, number};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use crate::options::{SamplingOptions, list, number, whole};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use marching_particles::export::VERTICES;
 use marching_particles::field::{model, rbf::Pull};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::CENTRES;
 use marching_particles::session::{BoxCell, BoxFaces, BoxMode, FileRecord, SolidSettings};
-use marching_particles::{Format, Placement, Unit, UpAxis, gallery};
+use marching_particles::{Format, Placement, Unit, UpAxis, Vertices, gallery};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -66,7 +67,7 @@ pub(crate) struct SweepArguments {
     pub(crate) sweep: Sweep,
 
     /// Steps from the first to the last value: there is one more file
-    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Surface")]
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = frames, help_heading = "Surface")]
     pub(crate) frames: u32,
 
     #[command(flatten)]
@@ -101,10 +102,14 @@ their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
 Formulas:
-  x y z, numbers, + - * / ^, brackets, and f = g. A product may leave out its sign where it is clear: 2x, x y, 3(x+1).
-  Also read: |x|, x**2, sin 2x, f(x,y,z) = ..., and LaTeX such as \\frac{x^{2}}{4}.
-  pi e tau phi; sqrt cbrt abs sign min max floor exp ln log10 sin cos tan asin acos atan atan2 sinh cosh tanh hypot;
-  smin(a,b,k) and smax(a,b,k) join smoothly. Negative is inside. Other names are parameters: --param a=2.
+  x y z, numbers, + - * / ^ %, brackets, and f = g. A product needs no sign where it is clear: 2x, x y, 3(x+1); 1/2x is (1/2)x.
+  pi e tau phi; sqrt cbrt abs sign min max floor ceil round fract mod exp ln log10 log2 sin cos tan sec csc cot asin acos atan
+  atan2 sinh cosh tanh sech csch coth asinh acosh atanh erf hypot clamp mix step smoothstep; smin(a,b,k) and smax(a,b,k) join
+  smoothly by a cubic polynomial, smin2 and smax2 by a quadratic one. Negative is inside. Other names are parameters: --param a=2.
+  Choices: if(x < 1 and not y > 0, a, b), or c ? a : b. Definitions come first: \"r = hypot(x,y); (r - 1)^2 + z^2 = 0.1\", and
+  functions: \"f(a,b) = a^2 + b^2; f(x,y) = z\". Comments: // # /* */.
+  Also read: |x|, x**2, sin 2x, f(x,y,z) = ..., LaTeX such as \\frac{x^{2}}{4}, and what MATLAB, Python, GLSL and Mathematica write.
+  Every number of an option may be written so: --box pi, --radius sqrt(2)/50, --count 2*10^4.
 
 Examples:
   marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
@@ -127,8 +132,9 @@ Exit codes:
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArguments {
-    /// Make again what a PLY, OBJ, CSV, GLB or 3MF file holds that this program or its page has written: its surface, box and settings. What
-    /// else is given takes the place of the file's; with another surface, its settings alone are taken
+    /// Make again what a PLY, OBJ, GLB or 3MF file holds that this program or its page has written: its surface, box and settings. A CSV
+    /// file has its record beside it, in a file whose name goes on with .json. What else is given takes the place of the file's; with
+    /// another surface, its settings alone are taken
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(crate) like: Option<PathBuf>,
 
@@ -139,16 +145,22 @@ pub(crate) struct SampleArguments {
     pub(crate) sampling: SamplingOptions,
 
     /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, distance to the nearest
-    /// particle, residual, and whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given
-    /// again; replaces what is there
+    /// particle, residual, and whether a singular point is near), csv (the same, and what it was made from in a file of JSON beside it), xyz or
+    /// npy (position, normal). Normals follow the gradient of f: they point inward where f is larger inside. May be given again;
+    /// replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 
     /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
-    /// colours), 3mf (with its unit), stl, obj or ply (with what --out writes). May be given again; replaces what is there.
-    /// Unless --method or --relax is given, the method is refined, whose triangles are better
+    /// colours), 3mf (with its unit), stl, obj or ply (with normals). Closed surfaces face outward. May be given again; replaces what
+    /// is there. Unless --method or --relax is given, the method is refined, whose triangles are better
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
+
+    /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own: in glb, obj and ply. stl and 3mf have no
+    /// normals
+    #[arg(long, value_name = "WORD", value_parser = vertices(), default_value = "joined", help_heading = "Output")]
+    pub(crate) vertices: Vertices,
 
     /// Length of a unit of the formula in the files of --mesh, in the unit of --unit
     #[arg(long, value_name = "NUMBER", value_parser = scale, default_value_t = 1.0, help_heading = "Output")]
@@ -189,17 +201,14 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL or XYZ, up to 50 MB. A smooth surface is fitted to all of
-    /// them. Normals come from the file, else from its faces, else they are estimated
+    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS, CSV), up to 50 MB. A smooth surface
+    /// is fitted to all of them. Normals come from the file, else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
     /// Centres of the surface among the points of --points or of a model, 100 to 800: more follow finer details and take longer
     /// [default: 200]
-    #[arg(
-        long, value_name = "N", help_heading = "Surface",
-        value_parser = clap::value_parser!(u32).range(i64::from(*CENTRES.start())..=i64::from(*CENTRES.end()))
-    )]
+    #[arg(long, value_name = "N", help_heading = "Surface", value_parser = centres)]
     pub(crate) centres: Option<u32>,
 
     /// Value of a parameter; once for each
@@ -284,6 +293,15 @@ fn one_of<T: Copy + Send + Sync>(
     })
 }
 
+/// One of the ways to write vertices, with what it does.
+fn vertices() -> impl TypedValueParser<Value = Vertices> {
+    let words = VERTICES.iter().map(|choice| PossibleValue::new(choice.value.name()).help(choice.help));
+    PossibleValuesParser::new(words).try_map(|given| {
+        let found = VERTICES.iter().find(|choice| choice.value.name() == given);
+        found.map(|choice| choice.value).ok_or("there is no such way")
+    })
+}
+
 impl SurfaceArguments {
     /// The solid that is to be made of the surface.
     pub(crate) fn solid(&self) -> SolidSettings {
@@ -337,6 +355,14 @@ fn scale(text: &str) -> Result<f64, String> {
     }
 }
 
+fn frames(text: &str) -> Result<u32, String> {
+    Ok(whole(text, &(1..=100_000))? as u32)
+}
+
+fn centres(text: &str) -> Result<u32, String> {
+    Ok(whole(text, &(u64::from(*CENTRES.start())..=u64::from(*CENTRES.end())))? as u32)
+}
+
 fn parameter(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("a parameter is given as NAME=VALUE, like a=2")?;
     Ok((name.trim().to_owned(), number(value)?))
@@ -358,7 +384,7 @@ fn choice_of_box(text: &str) -> Result<BoxChoice, String> {
 }
 
 fn bounds(text: &str) -> Result<Bounds, String> {
-    let numbers = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+    let numbers = list(text).into_iter().map(number).collect::<Result<Vec<f64>, String>>()?;
     let bounds = match numbers[..] {
         [half] => Bounds::cube(half),
         [x, y, z] => Bounds::symmetric([x, y, z]),
@@ -385,6 +411,7 @@ mod tests {
         let range = |from, to| Ok(Sweep { name: "a".to_owned(), from, to });
         assert_eq!(sweep("a=0.2..1.5"), range(0.2, 1.5));
         assert_eq!(sweep("a = -1 .. -2e-1"), range(-1.0, -0.2));
+        assert_eq!(sweep("a=0..2pi"), range(0.0, std::f64::consts::TAU));
         for bad in ["a", "a=1", "a=1..", "1..2", "a=..2", "a=1..b", "a=nan..1"] {
             assert!(sweep(bad).is_err(), "{bad}");
         }
@@ -401,6 +428,11 @@ mod tests {
     #[test]
     fn box_takes_one_three_or_six_numbers() {
         assert_eq!(bounds("1.5"), Ok(Bounds::cube(1.5)));
+        assert_eq!(bounds("pi"), Ok(Bounds::cube(std::f64::consts::PI)));
+        assert_eq!(
+            bounds("-pi,-1,-sqrt(4),max(1, 3),1,2e0"),
+            Ok(Bounds { min: [-std::f64::consts::PI, -1.0, -2.0], max: [3.0, 1.0, 2.0] })
+        );
         assert_eq!(bounds("1, 2,3"), Ok(Bounds::symmetric([1.0, 2.0, 3.0])));
         assert_eq!(bounds("-1,0,0,1,2,3"), Ok(Bounds { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 3.0] }));
         for bad in [

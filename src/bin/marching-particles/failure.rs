@@ -85,17 +85,32 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, fault: &Fault) -> fmt::Result
     const LONGEST: usize = 240;
     let has_span = fault.kind != FaultKind::Formula(FormulaErrorKind::BadParameter);
     if has_span && !text.is_empty() && text.len() <= LONGEST {
-        // Line breaks and tabs would shift the carets, so each takes one column.
-        let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         // The span counts in UTF-16 code units, columns are characters.
         let units: Vec<u16> = text.encode_utf16().collect();
-        let column = |unit: u32| String::from_utf16_lossy(&units[..unit as usize]).chars().count();
-        let (before, end) = (column(fault.start), column(fault.end));
-        let marked = end.saturating_sub(before).max(1);
-        write!(f, "\n\n  {line}\n  {:before$}{}", "", "^".repeat(marked))?;
+        let [before, end] =
+            [fault.start, fault.end].map(|unit| String::from_utf16_lossy(&units[..unit as usize]));
+        let first = before.rfind('\n').map_or(0, |at| at + 1);
+        let last = text[before.len()..].find('\n').map_or(text.len(), |at| before.len() + at);
+        // Tabs would shift the carets, so each takes one column.
+        let line: String = text[first..last].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let column = before[first..].chars().count();
+        let marked = end.len().min(last).saturating_sub(before.len());
+        let marked = text[before.len()..before.len() + marked].chars().count().max(1);
+        write!(f, "\n\n  {line}\n  {:column$}{}", "", "^".repeat(marked))?;
     }
     if let Some(suggestion) = &fault.suggestion {
-        write!(f, "\n\nhelp: try `{suggestion}` there")?;
+        match suggestion.as_str() {
+            "" => write!(f, "\n\nhelp: leave that out")?,
+            _ => write!(f, "\n\nhelp: try `{suggestion}` there")?,
+        }
+    }
+    if !fault.choices.is_empty() {
+        let choices: Vec<String> = fault
+            .choices
+            .iter()
+            .map(|choice| if choice.is_empty() { "nothing".to_owned() } else { format!("`{choice}`") })
+            .collect();
+        write!(f, "\n\nhelp: try {} there", choices.join(" or "))?;
     }
     if let Some(Mended { text, places }) = fault.mended.as_deref() {
         write!(f, "\n\nhelp: mended in all {places} places: {text}")?;

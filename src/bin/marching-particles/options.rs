@@ -3,12 +3,14 @@
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
+use marching_particles::field::formula;
 use marching_particles::math::{Bounds, grouped, shortest_text, significant};
 use marching_particles::sampler::COUNT_ROOM;
 use marching_particles::session::{Setting, SettingGroup, SettingKind, SettingValue, settings};
-use marching_particles::{Settings, SettingsError};
+use marching_particles::{FormulaErrorKind, Settings, SettingsError};
 use serde_json::{Map, Value as Json};
+use std::ops::RangeInclusive;
 
 /// The option that asks for sizes that follow the curvature, and the setting that it chooses a value of.
 const ADAPTIVE: &str = "adaptive";
@@ -43,12 +45,43 @@ impl Length {
     }
 }
 
-/// A finite number from an argument.
+/// A number from an argument, in the language of formulas: `0.5`, `pi/2`, `2*10^5`.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{text}` is not a number")),
+    formula::number(text).map_err(|error| match error.kind {
+        FormulaErrorKind::Empty => format!("`{text}` is not a number"),
+        _ => error.message,
+    })
+}
+
+/// A whole number from an argument.
+pub(crate) fn whole(text: &str, range: &RangeInclusive<u64>) -> Result<u64, String> {
+    let number = number(text)?;
+    let (least, most) = (*range.start(), *range.end());
+    if number.fract() != 0.0 {
+        return Err(format!("{} is not a whole number", shortest_text(number)));
     }
+    if number < least as f64 || number > most as f64 {
+        return Err(format!("{} is not in {least}..={most}", shortest_text(number)));
+    }
+    Ok(number as u64)
+}
+
+/// The parts of a text between commas outside brackets.
+pub(crate) fn list(text: &str) -> Vec<&str> {
+    let (mut depth, mut start, mut parts) = (0_i32, 0, Vec::new());
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&text[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[start..]);
+    parts
 }
 
 /// A length from an argument.
@@ -193,7 +226,8 @@ fn option(setting: &Setting) -> Arg {
             let (min, max) = setting.accepted().into_inner();
             // Counts that are too large are refused with what they are counts of, by the settings themselves.
             let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
-            arg.value_name("N").value_parser(value_parser!(u64).range(min as u64..=largest))
+            let range = min as u64..=largest;
+            arg.value_name("N").value_parser(move |text: &str| whole(text, &range))
         }
         SettingKind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
         SettingKind::Number => arg.value_name("NUMBER").value_parser(number),
@@ -247,8 +281,20 @@ mod tests {
         assert_eq!(length("0.6%"), Ok(Length::Share(0.006)));
         assert_eq!(length("2 %"), Ok(Length::Share(0.02)));
         assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
+        assert_eq!(length("sqrt(2)/4"), Ok(Length::Units(2_f64.sqrt() / 4.0)));
+        assert_eq!(length("1/2%"), Ok(Length::Share(0.005)));
         for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
             assert!(length(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn counts_and_lists_are_numbers_of_the_formula_language() {
+        assert_eq!(whole("2*10^5", &(1..=1_000_000)), Ok(200_000));
+        assert_eq!(whole("1e3", &(1..=1_000)), Ok(1_000));
+        for bad in ["0", "1001", "1/3", "x", "", "-1"] {
+            assert!(whole(bad, &(1..=1_000)).is_err(), "{bad}");
+        }
+        assert_eq!(list("max(1, 2),-pi"), ["max(1, 2)", "-pi"]);
     }
 }

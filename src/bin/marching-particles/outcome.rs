@@ -3,7 +3,7 @@
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
-use marching_particles::{Report, Sample, Triangulation};
+use marching_particles::{Inside, Report, Sample, Triangulation};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -62,13 +62,15 @@ pub(crate) struct MeshCounts {
     pub(crate) left_out: usize,
     /// Volume that it encloses; none where it is open.
     pub(crate) volume: Option<f64>,
+    /// Sign of f inside of the closed parts, which face outward whatever it is.
+    pub(crate) inside: Option<Inside>,
     /// Smallest angle of any triangle in degrees, those at borders among them.
     pub(crate) smallest_angle: Option<f64>,
 }
 
 impl MeshCounts {
     pub(crate) fn new(sample: &Sample) -> Self {
-        let (Triangulation { triangles, topology, unfilled, left_out, .. }, report) =
+        let (Triangulation { triangles, topology, unfilled, left_out, inside, .. }, report) =
             (sample.mesh(), sample.report());
         Self {
             triangles: triangles.len(),
@@ -78,6 +80,7 @@ impl MeshCounts {
             holes: unfilled.len(),
             left_out: left_out.len(),
             volume: report.joined_volume,
+            inside: *inside,
             smallest_angle: report.smallest_angle,
         }
     }

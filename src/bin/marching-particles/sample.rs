@@ -3,18 +3,19 @@
 use crate::arguments::{BoxChoice, SampleArguments, SurfaceArguments};
 use crate::failure::{Failure, LIMIT};
 use crate::outcome::{MeshCounts, Outcome, Seconds};
-use crate::output::OutputFile;
+use crate::output::{OutputFile, record_path};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
+use marching_particles::export::VERTICES;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::shortest_text;
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::DEFAULT_CENTRES;
-use marching_particles::sampler::COUNT_ROOM;
+use marching_particles::sampler::{COUNT_ROOM, SizeMode};
 use marching_particles::session::{BoxFaces, Fault, FaultKind, FieldRequest, FileRecord, Session, Source};
 use marching_particles::{
     Bounds, Error, Field, Format, MeshFile, MeshFormat, Method, Parameter, ParticleFile, Phase, Reach,
-    RecordText, Run, Settings, StopReason, gallery,
+    RecordText, Run, Settings, StopReason, Vertices, gallery,
 };
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -24,18 +25,19 @@ use std::time::{Duration, Instant};
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
 const BUDGET: u32 = 256;
 
-/// The record of what a file was made from.
+/// The record of what a file was made from: in it, or in the file beside it.
 fn read_record(path: &Path, surface: &SurfaceArguments) -> Result<FileRecord, Failure> {
     let unreadable = |error| Failure::Unreadable { path: path.to_owned(), error };
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let no_record = || {
         let name = path.display();
         Failure::Usage(format!(
-            "{name} does not say what it was made from: it holds no record of this program"
+            "{name} does not say what it was made from: it holds no record of this program, and there is no {name}.json beside it"
         ))
     };
-    let json = RecordText::find(&bytes).ok_or_else(no_record)?;
-    let record: FileRecord = serde_json::from_str(json).map_err(|error| {
+    let beside = || RecordText::find(&std::fs::read(record_path(path)).ok()?);
+    let json = RecordText::find(&bytes).or_else(beside).ok_or_else(no_record)?;
+    let record: FileRecord = serde_json::from_str(&json).map_err(|error| {
         Failure::Usage(format!("the record in {} could not be read: {error}", path.display()))
     })?;
     match &record.model {
@@ -55,7 +57,12 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     let arguments = &arguments;
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
-    let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).collect();
+    check_vertices(arguments)?;
+    let records: Vec<PathBuf> = (arguments.out.iter().zip(&formats))
+        .filter(|(_, format)| **format == Format::Csv)
+        .map(|(path, _)| record_path(path))
+        .collect();
+    let paths: Vec<&PathBuf> = arguments.out.iter().chain(&arguments.mesh).chain(&records).collect();
     let mut outputs = OutputFile::beside(&paths)?.into_iter();
     let mut seconds = Seconds::default();
     let mut session = Session::without_surface();
@@ -96,7 +103,7 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
         Error::Nothing { reason: StopReason::NoSurface, .. } if reach == Some(Reach::Nowhere) => {
             Failure::Nothing("there is no surface within ±10,000".to_owned())
         }
-        error => Failure::Nothing(error.to_string()),
+        error => Failure::Nothing(refusal_of_run(&error)),
     })?;
     let mesh = is_joined.then(|| MeshCounts::new(&sample));
     let record = RecordText::new(&serde_json::to_string(&made).map_err(std::io::Error::other)?);
@@ -105,9 +112,14 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
             let file = ParticleFile { format, record: record.clone() };
             output.write(|out| sample.write(file, out))?;
         }
-        for (format, output) in mesh_formats.into_iter().zip(outputs) {
-            let file = MeshFile { format, placement: arguments.placement(), record: record.clone() };
+        for (format, output) in mesh_formats.into_iter().zip(outputs.by_ref()) {
+            let (placement, vertices) = (arguments.placement(), arguments.vertices);
+            let file = MeshFile { format, placement, vertices, record: record.clone() };
             output.write(|out| sample.write_mesh(file, out))?;
+        }
+        let document = record.document().unwrap_or_default();
+        for output in outputs {
+            output.write(|out| out.write_all(document.as_bytes()))?;
         }
         Ok::<_, Failure>(())
     })?;
@@ -143,16 +155,50 @@ pub(crate) fn run(mut arguments: SampleArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Why there is no sample, by the names of the options.
+fn refusal_of_run(error: &Error) -> String {
+    let message = error.to_string();
+    match error {
+        Error::NoBox { .. } => message.replace("`Settings::in_box`", "--box"),
+        _ => message,
+    }
+}
+
 /// Warning about a run that meets the limit on particles.
 fn over_limit(predicted_count: u64, settings: &Settings) -> String {
+    let limit = settings.max_particles;
+    if settings.size_mode == SizeMode::Count {
+        let (wanted, room) = (settings.count, (f64::from(settings.count) * COUNT_ROOM).ceil());
+        return format!(
+            "the {wanted} particles that are wanted are more than the limit of {limit}; ask for a smaller --count, or allow them with \
+             --max-particles {room}"
+        );
+    }
     // The prediction may be a little too low.
-    let count = predicted_count.max(u64::from(settings.max_particles) + 1);
+    let count = predicted_count.max(u64::from(limit) + 1);
     format!(
-        "about {count} particles of this radius would fit on the surface, more than the limit of {}; \
+        "about {count} particles of this radius would fit on the surface, more than the limit of {limit}; \
          choose a larger --radius, or allow them with --max-particles {}",
-        settings.max_particles,
         (count as f64 * COUNT_ROOM).ceil()
     )
+}
+
+/// Refuses a way to write vertices that makes no difference in any of the files.
+fn check_vertices(arguments: &SampleArguments) -> Result<(), Failure> {
+    let choice = VERTICES.iter().find(|choice| choice.value == arguments.vertices);
+    let known = choice.map_or(&[][..], |choice| choice.formats);
+    let is_of = |path: &PathBuf| {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        known.iter().any(|known| extension.eq_ignore_ascii_case(known))
+    };
+    if arguments.vertices == Vertices::default() || arguments.mesh.iter().any(is_of) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "--vertices {} is for files of --mesh with the extension {}",
+        arguments.vertices.name(),
+        known.join(" or ")
+    )))
 }
 
 /// Format of each file. It is checked before any work is done.

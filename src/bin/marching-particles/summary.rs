@@ -1,10 +1,10 @@
 //! Report of a run as text.
 
 use crate::outcome::{MeshCounts, Outcome};
-use marching_particles::Cut;
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::math::{counted, grouped, significant};
 use marching_particles::session::{ReportRow, describe};
+use marching_particles::{Cut, Inside};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -161,9 +161,14 @@ fn mesh_line(mesh: &MeshCounts) -> String {
     let triangles = counted(mesh.triangles, "triangle", "triangles");
     let components = counted(mesh.components, "component", "components");
     let volume = mesh.volume.map_or("–".to_owned(), significant);
+    let turned = match mesh.inside {
+        Some(Inside::Positive) => ", turned to face outward: f is larger inside",
+        Some(Inside::Both) => ", turned in part to face outward: f is larger inside some parts",
+        _ => "",
+    };
     let angle = mesh.smallest_angle.map_or("–".to_owned(), |angle| format!("{angle:.1}°"));
     format!(
-        "{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}",
+        "{triangles}, {components}, Euler number {}, {borders}, volume {volume}, smallest angle {angle}{turned}",
         mesh.euler
     )
 }

@@ -93,7 +93,8 @@ impl Creases {
         let [lower, upper] = pair.patches;
         let mut faces = self.faces.clone();
         faces.push(pair);
-        let mut next = Self { faces, passed: self.passed, evaluations: self.evaluations, ..Self::default() };
+        let Self { passed, bare, evaluations, .. } = *self;
+        let mut next = Self { faces, passed, bare, evaluations, ..Self::default() };
         let number = next.faces.len() - 1;
 
         // What an image repeats is on the upper face where the image is, so that both go or stay.

@@ -114,6 +114,12 @@ impl Meeting {
         self.branches.into_iter().all(|b| self.gives(probe, b, reach) == Some([true; 2]))
     }
 
+    /// Whether f is zero at the point, and on no surface there.
+    pub(super) fn is_bare(&self, probe: &mut Probe, reach: f64) -> bool {
+        probe.select(None);
+        probe.is_bare_zero(self.position, reach)
+    }
+
     /// The patches that meet along the crease, in ascending order: those of its branches, and of the `others` that are zero on it.
     pub(super) fn patches(&self, probe: &mut Probe, others: &[u32], reach: f64) -> Vec<u32> {
         let mut patches = self.branches.to_vec();

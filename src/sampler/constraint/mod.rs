@@ -104,6 +104,10 @@ pub struct Creases {
     faces: Vec<FacePair>,
     /// A place where sheets cross along a curve and no patch ends, which is not followed: three planes through one line, say.
     pub(super) passed: Option<DVec3>,
+    /// A place where branches are zero together and f is on a curve or at a point alone, as |x| + |y| is.
+    pub(super) bare: Option<DVec3>,
+    /// Whether there may be a crease where none was found.
+    pub(super) is_open: bool,
     /// Number of evaluations that the search took.
     pub(super) evaluations: u64,
 }
@@ -135,6 +139,8 @@ impl Creases {
                         trace::follow(probe, bounds, &mut creases, meeting, step).await;
                     } else if creases.passed.is_none() && meeting.is_passed(probe, step) {
                         creases.passed = Some(meeting.position);
+                    } else if creases.bare.is_none() && meeting.is_bare(probe, step) {
+                        creases.bare = Some(meeting.position);
                     }
                 }
             }
@@ -145,6 +151,7 @@ impl Creases {
             creases.repeat(probe, &cell, step);
         }
         probe.select(None);
+        creases.is_open = !cells.is_empty() && !creases.are_there();
         creases.evaluations = probe.evaluations() - start;
         creases
     }
@@ -190,22 +197,23 @@ impl Creases {
         self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
     }
 
-    /// Returns the number of the first corner that lies on a crease of these branches after one of its points and up to the next, and is
-    /// none of the `others`.
+    /// The first corner that lies on a crease of these branches, on the way from one of its points to the next and farther along than `after`,
+    /// and is none of the `others`: how far along it lies, and its number.
     fn corner_on(
         &self,
         probe: &mut Probe,
         branches: [u32; 2],
         [here, next]: [DVec3; 2],
+        after: f64,
         step: f64,
         others: [Option<usize>; 2],
-    ) -> Option<usize> {
+    ) -> Option<(f64, usize)> {
         let length = here.distance(next);
         let way = (next - here) / length;
         let mut first = None;
         for (index, &Corner { position, .. }) in self.corners.iter().enumerate() {
             let along = (position - here).dot(way);
-            let is_first = along > 0.0 && along <= first.map_or(length, |(least, _)| least);
+            let is_first = along > after && along <= first.map_or(length, |(least, _)| least);
             if is_first
                 && (here + way * along).distance(position) <= NEAR * step
                 && !others.contains(&Some(index))
@@ -214,19 +222,21 @@ impl Creases {
                 first = Some((along, index));
             }
         }
-        first.map(|(_, index)| index)
+        first
     }
 
     /// Divides creases at the corners of other ones that lie on them. A corner keeps the patches that meet along its creases.
     fn divide(&mut self, probe: &mut Probe, step: f64) {
         for curve in core::mem::take(&mut self.curves) {
             let mut cuts = Vec::new();
-            for (k, [mut here, next]) in curve.chords().enumerate() {
-                while let Some(corner) =
-                    self.corner_on(probe, curve.branches, [here, next], step, curve.corners)
+            for (k, chord) in curve.chords().enumerate() {
+                // Each corner is farther along the chord than the one before, so that none comes twice.
+                let mut after = 0.0;
+                while let Some((along, corner)) =
+                    self.corner_on(probe, curve.branches, chord, after, step, curve.corners)
                 {
-                    here = self.corners[corner].position;
-                    self.corner_at(here, &curve.patches, 0.0);
+                    after = along;
+                    self.corner_at(self.corners[corner].position, &curve.patches, 0.0);
                     cuts.push((k, corner));
                 }
             }

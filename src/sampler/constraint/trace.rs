@@ -113,10 +113,11 @@ impl Walk<'_, '_> {
             if !self.bounds.holds(next.position) {
                 return self.end_at_box(here, next.position, points);
             }
-            if let Some(corner) = creases.corner_on(
+            if let Some((_, corner)) = creases.corner_on(
                 self.probe,
                 self.start.branches,
                 [here, next.position],
+                0.0,
                 self.step,
                 [None; 2],
             ) {

@@ -4,7 +4,7 @@
 use super::grid::CELLS;
 use super::survey::{FEW, SAMPLES, ulps};
 use crate::field::{Enclosure, Field};
-use crate::math::{Bounds, median};
+use crate::math::{Bounds, Interval, Sym3, median};
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 
@@ -49,7 +49,12 @@ pub(crate) fn blur(field: &mut dyn Field, particles: &Particles) -> Option<Blur>
             field.enclose(factor, &at, &mut known);
             let (value, gradient) = known[0].middle();
             let half_width = 0.5 * (known[0].value.hi - known[0].value.lo);
-            [value.abs(), half_width].map(|difference| difference / gradient.length())
+            let mut second = [Sym3::splat(Interval::EVERYTHING)];
+            field.enclose_second(factor, &at, &mut second);
+            let bend = second[0].entries().into_iter().map(Interval::magnitude).fold(0.0, f64::max);
+            // At the tip of a cone f has no slope: it changes with the square of the distance.
+            [value.abs(), half_width]
+                .map(|difference| (difference / gradient.length()).min((2.0 * difference / bend).sqrt()))
         });
         let [_, distance] = of_factors.min_by(|a, b| a[0].total_cmp(&b[0]))?;
         let share = distance / (2.0 * f64::from(particles.radius[particle]));

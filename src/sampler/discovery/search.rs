@@ -31,6 +31,8 @@ pub(crate) struct ComponentSearch {
     first_lost: DVec3,
     /// The nearest sheet beside a witness, if it is nearer than particles tell apart.
     unresolved: Option<Nearness>,
+    /// Distance at which f is looked at around a witness, where it may be a zero on no surface.
+    bare_size: Option<f64>,
 }
 
 impl ComponentSearch {
@@ -42,6 +44,11 @@ impl ComponentSearch {
         (self.lost, self.unresolved) = (0, None);
         self.is_projected = false;
         self.restart();
+    }
+
+    /// Leaves witnesses out at which f has no surface, to be looked at to such a distance; or none.
+    pub(crate) fn leave_out_bare(&mut self, size: Option<f64>) {
+        self.bare_size = size;
     }
 
     /// Sets the expected number of particles.
@@ -120,6 +127,9 @@ impl ComponentSearch {
                 normal = probe.land_all(&mut place, tolerance.min_gradient, limits, newton::STEPS)[0];
                 probe.select(None);
                 [position] = place;
+            }
+            if self.bare_size.is_some_and(|size| probe.is_bare_zero(exact, size)) {
+                continue;
             }
             match normal.filter(|_| bounds.contains(position)) {
                 Some(normal) => self.points.push(Seed { position, normal, exact, factor }),

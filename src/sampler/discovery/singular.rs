@@ -75,7 +75,7 @@ pub(crate) struct Singular {
     /// Whether the point is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
     pub(crate) is_alone: bool,
     /// Whether f has both signs on lines through the point, to second order.
-    has_two_signs: bool,
+    pub(crate) has_two_signs: bool,
     /// Whether f changes along one direction alone, to second order.
     is_flat: bool,
 }

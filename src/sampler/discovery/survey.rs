@@ -49,6 +49,10 @@ pub(crate) struct Survey {
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
     pub(crate) touches: bool,
+    /// A place where f comes to zero on a curve or at a point alone, if one was seen.
+    pub(crate) bare: Option<DVec3>,
+    /// Share of the nodes of the grid at which f has a value.
+    pub(crate) defined: f64,
     /// Why the survey has no points, where it has none.
     pub(crate) absence: Absence,
     /// Whether the points come from another search.
@@ -73,6 +77,8 @@ pub(crate) enum Absence {
     NoZero,
     /// The grid shows no change of sign. A feature finer than the grid may have been missed.
     NotSeen,
+    /// f comes to zero on curves and at points alone.
+    Bare,
 }
 
 /// Candidates for points of the surface, and the range of the values on the grid.
@@ -80,6 +86,8 @@ struct Candidates {
     place: Vec<Vec3>,
     /// Area that each candidate stands for; none where f keeps its sign.
     areas: Vec<Option<f32>>,
+    /// Whether f need not change its sign beside a candidate: it is zero at a node, or keeps its sign.
+    is_unsure: Vec<bool>,
     /// Sum of the areas.
     area: f64,
     least: f32,
@@ -96,6 +104,7 @@ impl Candidates {
         Self {
             place: Vec::new(),
             areas: Vec::new(),
+            is_unsure: Vec::new(),
             area: 0.0,
             least,
             greatest,
@@ -151,6 +160,7 @@ impl Candidates {
                 if crossings == 0 && slope > 0.0 && here.value.abs() <= slope * grid.spacing as f32 {
                     self.place.push(here.place - here.gradient * (here.value / (slope * slope)));
                     self.areas.push(None);
+                    self.is_unsure.push(true);
                 }
             }
         }
@@ -160,12 +170,14 @@ impl Candidates {
     fn cross_between(&mut self, grid: &Grid, axis: usize, here: End, end: End) {
         let t = here.value / (here.value - end.value);
         let gradient = here.gradient + (end.gradient - here.gradient) * t;
-        self.cross(grid, axis, here.place + (end.place - here.place) * t, gradient);
+        let is_unsure = here.value == 0.0 || end.value == 0.0;
+        self.cross(grid, axis, here.place + (end.place - here.place) * t, gradient, is_unsure);
     }
 
     /// Adds a place where an edge along an axis meets the surface.
-    fn cross(&mut self, grid: &Grid, axis: usize, place: Vec3, gradient: Vec3) {
+    fn cross(&mut self, grid: &Grid, axis: usize, place: Vec3, gradient: Vec3, is_unsure: bool) {
         self.place.push(place);
+        self.is_unsure.push(is_unsure);
         let n = gradient.normalize_or_zero().abs().as_dvec3();
         let weight = n.x + n.y + n.z;
         // Projected cell face perpendicular to the axis.
@@ -186,7 +198,7 @@ impl Candidates {
                     match dip.look(value, gradient) {
                         Bottom::Crossed(places) => {
                             for Crossing { place, gradient } in places {
-                                self.cross(grid, dip.axis, place, gradient);
+                                self.cross(grid, dip.axis, place, gradient, true);
                             }
                         }
                         Bottom::SameSign(part) => self.dips.extend(part),
@@ -203,7 +215,9 @@ impl Candidates {
             Absence::Undefined
         } else if self.least == self.greatest {
             Absence::Constant
-        } else if self.areas.iter().any(Option::is_some) {
+        } else if (self.least < 0.0 && self.greatest > 0.0)
+            || self.areas.iter().zip(&self.is_unsure).any(|(area, is_unsure)| area.is_some() && !is_unsure)
+        {
             Absence::NoZero
         } else {
             Absence::NotSeen
@@ -246,31 +260,59 @@ pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Surv
     let mut out = Survey { area: found.area, ..Survey::default() };
     let spacing = grid.spacing as f32;
     out.gradient_scale = gradient_scale(probe, &found.place, &found.areas);
-    project(probe, bounds, &mut found.place, &found.areas, spacing, &mut out);
-    if out.position.is_empty() {
+    out.defined = found.defined as f64 / (grid.nodes[0] * grid.nodes[1] * layers) as f64;
+    let Candidates { place, areas, is_unsure, .. } = &mut found;
+    project(probe, bounds, Starts { place, areas, is_unsure, branch: None }, spacing, &mut out);
+    if out.position.is_empty() && out.bare.is_none() {
         project_on_branches(probe, bounds, &found, spacing, &mut out);
+    }
+    if out.position.is_empty() && out.bare.is_none() {
+        out.bare = bare_among(probe, found.place.iter().map(|place| place.as_dvec3()), spacing.into());
     }
     measure_precision(probe, bounds, spacing, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
-        out.absence = found.absence();
+        out.absence = if out.bare.is_some() { Absence::Bare } else { found.absence() };
     }
     out
 }
 
-/// Moves the candidates in `start` onto the surface and keeps those that converge inside the box. `areas` holds the area that
-/// each stands for, if it is at a crossing.
-fn project(
-    probe: &mut Probe,
-    bounds: &Bounds,
-    start: &mut [Vec3],
-    areas: &[Option<f32>],
-    spacing: f32,
-    out: &mut Survey,
-) {
+/// Candidates that are moved onto the surface.
+struct Starts<'a> {
+    place: &'a mut [Vec3],
+    /// Area that each stands for, if it is at a crossing.
+    areas: &'a [Option<f32>],
+    is_unsure: &'a [bool],
+    /// The branch to whose surface they are moved, as far as it gives f; none for f itself.
+    branch: Option<u32>,
+}
+
+/// Moves the candidates onto the surface and keeps those that converge inside the box, but for zeros on a curve or at a point alone.
+fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out: &mut Survey) {
+    let Starts { place: start, areas, is_unsure, branch } = starts;
+    probe.select(branch);
     out.residual = ResidualLimits::UNLIMITED.residual(spacing).max(ulps(bounds));
     let limits = Descent { residual: out.residual, reach: 2.0 * spacing, trust: 0.0 };
-    let landed = probe.land_all(start, out.tolerance().min_gradient, limits, newton::STEPS);
+    let mut landed = probe.land_all(start, out.tolerance().min_gradient, limits, newton::STEPS);
+    if branch.is_some() {
+        for (landed, &place) in landed.iter_mut().zip(&*start) {
+            *landed = landed.filter(|&normal| probe.is_on_patch(place, normal, spacing, branch));
+        }
+        probe.select(None);
+    }
+    let touching = touching(probe, start, &landed, is_unsure, LARGEST * spacing);
+    let mut is_bare = |k: usize| probe.is_bare_zero(start[k].as_dvec3(), bare_size(spacing.into()));
+    if selection(&touching, SAMPLES).any(|&k| is_bare(k)) {
+        let bare: Vec<Vec3> = touching.iter().filter(|&&k| is_bare(k)).map(|&k| start[k]).collect();
+        out.bare = out.bare.or(bare.first().map(|place| place.as_dvec3()));
+        // Newton's method comes less near to the zero from some places.
+        let is_near =
+            |place: Vec3| bare.iter().any(|other| other.distance_squared(place) <= spacing * spacing);
+        for k in touching.into_iter().filter(|&k| is_near(start[k])) {
+            out.area -= f64::from(areas[k].unwrap_or(0.0));
+            landed[k] = None;
+        }
+    }
     for ((&position, area), normal) in start.iter().zip(areas).zip(landed) {
         if let Some(normal) = normal
             && bounds.contains(position)
@@ -289,21 +331,72 @@ fn project_on_branches(
     spacing: f32,
     out: &mut Survey,
 ) {
-    let places = found.place.iter().zip(&found.areas);
-    let mut candidates: Vec<_> =
-        places.map(|(&place, &area)| (probe.field.branch_at(place.as_dvec3()), place, area)).collect();
+    let places = found.place.iter().zip(&found.areas).zip(&found.is_unsure);
+    let mut candidates: Vec<_> = places
+        .map(|((&place, &area), &is_unsure)| {
+            (probe.field.branch_at(place.as_dvec3()), place, area, is_unsure)
+        })
+        .collect();
     sort_by_key(&mut candidates, |&(branch, ..)| branch.into());
     if candidates.first().map(|first| first.0) == candidates.last().map(|last| last.0) {
         return;
     }
     for own in candidates.chunk_by(|a, b| a.0 == b.0) {
         probe.select(Some(own[0].0));
-        let (mut start, areas): (Vec<Vec3>, Vec<_>) =
-            own.iter().map(|&(_, place, area)| (place, area)).unzip();
-        out.gradient_scale = out.gradient_scale.max(gradient_scale(probe, &start, &areas));
-        project(probe, bounds, &mut start, &areas, spacing, out);
+        let mut place: Vec<Vec3> = own.iter().map(|&(_, place, ..)| place).collect();
+        let areas: Vec<Option<f32>> = own.iter().map(|&(_, _, area, _)| area).collect();
+        let is_unsure: Vec<bool> = own.iter().map(|&(.., is_unsure)| is_unsure).collect();
+        out.gradient_scale = out.gradient_scale.max(gradient_scale(probe, &place, &areas));
+        let starts =
+            Starts { place: &mut place, areas: &areas, is_unsure: &is_unsure, branch: Some(own[0].0) };
+        project(probe, bounds, starts, spacing, out);
     }
     probe.select(None);
+}
+
+/// The unsure ones of the points that have landed, with these normals, on both sides of which f has the same sign.
+fn touching(
+    probe: &mut Probe,
+    points: &[Vec3],
+    landed: &[Option<Vec3>],
+    is_unsure: &[bool],
+    distance: f32,
+) -> Vec<usize> {
+    let mut touching = Vec::new();
+    let mut sides = [0.0; BATCH];
+    let unsure: Vec<(usize, Vec3)> = (landed.iter().zip(is_unsure).enumerate())
+        .filter_map(|(k, (normal, is_unsure))| normal.filter(|_| *is_unsure).map(|normal| (k, normal)))
+        .collect();
+    for chunk in unsure.chunks(BATCH / 2) {
+        let beside: Vec<Vec3> = (chunk.iter())
+            .flat_map(|&(k, normal)| [normal, -normal].map(|normal| points[k] + normal * distance))
+            .collect();
+        probe.field.values(&beside, &mut sides);
+        let sides = sides.as_chunks::<2>().0;
+        touching.extend(
+            chunk
+                .iter()
+                .zip(sides)
+                .filter(|(_, [ahead, behind])| ahead * behind >= 0.0)
+                .map(|((k, _), _)| *k),
+        );
+    }
+    touching
+}
+
+/// The first of a selection of points that is a zero of f on a curve, or a point by itself.
+pub(crate) fn bare_among(
+    probe: &mut Probe,
+    points: impl Iterator<Item = DVec3>,
+    spacing: f64,
+) -> Option<DVec3> {
+    let points: Vec<DVec3> = points.collect();
+    selection(&points, SAMPLES).find(|&&p| probe.is_bare_zero(p, bare_size(spacing))).copied()
+}
+
+/// Distance at which f is looked at around a zero that may be on no surface, for a grid of this spacing.
+pub(crate) fn bare_size(spacing: f64) -> f64 {
+    f64::from(LARGEST) * spacing
 }
 
 /// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient

@@ -62,13 +62,13 @@ pub(crate) fn halvings(bend: f64, count: f64) -> Option<u32> {
     coarsest.or_else(|| [1, 0].into_iter().filter(|_| is_large(&1)).find(bends_up_to(MAX_BEND_LEAST)))
 }
 
-/// The triangles between the particles of a front, if they can be had beyond doubt.
+/// The triangles between the particles of a front, by rows, if they can be had beyond doubt.
 pub(super) fn triangles(particles: &Particles, bounds: &Bounds) -> Result<Vec<[u32; 3]>, Refusal> {
     let radius = particles.radius.iter().copied().fold(0.0, f32::max);
     let grown = border::grown(bounds, f64::from(radius));
     let joined = triangulate(particles, Some(&grown));
     judge_triangles(&joined, particles, bounds)?;
-    Ok(joined.triangles)
+    Ok(joined.into_corners())
 }
 
 /// A part of a front that is refined by itself: a component of the surface, or a patch of it.

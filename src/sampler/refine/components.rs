@@ -254,7 +254,7 @@ fn split(particles: &Particles) -> Vec<Particles> {
     let links = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i));
     let mut components = Forest::with_links(links.collect());
     let joined = triangulate(particles, None);
-    for [a, b, c] in joined.triangles {
+    for [a, b, c] in joined.into_corners() {
         for other in [b, c] {
             components.join(a, other);
         }

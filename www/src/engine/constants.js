@@ -20,4 +20,4 @@ export const MOST_PARAMETERS = 64;
 /** Largest number of pulls on a surface. */
 export const MOST_PULLS = 32;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
-export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.csv,.txt';
+export const FILE_TYPES = '.ply,.obj,.stl,.off,.pcd,.xyz,.pts,.csv,.txt,.asc';

@@ -79,6 +79,8 @@ export type Description = {
   colours: Array<Colour>,
   /** Columns of PLY and CSV files. */
   columns: Array<Column>,
+  /** Ways to write the vertices of mesh files, the default first. */
+  vertices: Array<VerticesChoice>,
   /** Template of a new parameter, without its name. */
   new_parameter: Parameter,
   /** Largest and smallest values that the core accepts. */
@@ -133,6 +135,8 @@ export type Fault = {
   end: number,
   /** Text that would mend the span, if there is a good guess. */
   suggestion: string | null,
+  /** Texts for the span, each with another meaning, where the formula has several readings. */
+  choices: Array<string>,
   /** The formula with every mistake of this kind mended, if there are several. */
   mended: Mended | null,
   /** The unknown name, which could become a slider. */
@@ -312,6 +316,8 @@ export type FileRequest = {
   format: string,
   /** Size and orientation of the mesh. */
   placement: Placement,
+  /** The vertices of the particles on sharp edges, in GLB, OBJ and PLY, and the columns of PLY. */
+  vertices: Vertices,
   /** Link for the record. */
   link: string | null,
   /** Whether the file is written without a record. */
@@ -319,7 +325,7 @@ export type FileRequest = {
 };
 
 /** The class of a [`FormulaError`]; its name in JSON is the snake-case form. */
-export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "not_finite" | "bad_parameter";
+export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "bad_definition" | "not_finite" | "bad_parameter";
 
 /** Entry of the function reference. */
 export type FunctionInfo = {
@@ -382,6 +388,9 @@ export type Hole = {
   /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice with those around it. */
   ratio: number,
 };
+
+/** The sign of f inside of the closed parts of a surface. */
+export type Inside = "f < 0" | "f > 0" | "f < 0, f > 0";
 
 /** A part of a run, before which a snapshot is taken. */
 export type LessonChapter = {
@@ -806,7 +815,7 @@ export type Limits = {
 };
 
 /** Element of MathML Core with child elements. */
-export type MathGroup = "mrow" | "mfrac" | "msup" | "msub" | "msqrt" | "mroot";
+export type MathGroup = "mrow" | "mfrac" | "msup" | "msub" | "msqrt" | "mroot" | "mtable" | "mtr" | "mtd";
 
 /** MathML element with its content. */
 export type MathNode = {
@@ -855,6 +864,8 @@ export type MeshAnswer = {
   left_out: number,
   /** [Volume](Triangulation::volume) that the mesh encloses; none where it is open. */
   volume: number | null,
+  /** Sign of f inside of the closed parts; none if there is no closed part. All face outward in files. */
+  inside: Inside | null,
   /** [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles. */
   smallest_angle: number | null,
   /** Border loops: rows of particles in order. Those where no manifold could be had come first, then the longest. */
@@ -1028,6 +1039,9 @@ export type Report = {
   count: number,
   /** Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined. */
   volume: number | null,
+  /** Sign of f inside of the closed parts of the surface, by that mesh if the particles were joined, else by the triangles of natural
+  * neighbours; none where no part is closed, or nothing was measured. */
+  inside: Inside | null,
   /** Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined. */
   smallest_angle: number | null,
   /** Pairs of particles on opposite faces of a cell, see [`Particles::pairs`]; none where no faces are the same. */
@@ -1245,3 +1259,18 @@ export type Unsampled = {
 
 /** Axis of the formula's coordinates. */
 export type UpAxis = "x" | "y" | "z";
+
+/** How particles become vertices of a mesh file. It makes a difference on sharp edges, where a particle has a normal for each side. */
+export type Vertices = "joined" | "split" | "columns";
+
+/** A way to write vertices, as an interface shows it. */
+export type VerticesChoice = {
+  /** The way. */
+  value: Vertices,
+  /** Name for a person. */
+  label: string,
+  /** Explanation in one line. */
+  help: string,
+  /** Extensions of the formats for which it makes a difference. */
+  formats: Array<string>,
+};

@@ -326,6 +326,8 @@ export interface EngineCommands {
   takeWith: (take: Take) => void;
   /** declares an unknown name of the formula as a parameter */
   declareParameter: (name: string) => void;
+  /** the number that a text stands for in the language of formulas, such as `pi/2`; null for any other text */
+  readNumber: (text: string) => Promise<number | null>;
   setBounds: (bounds: Bounds | null, options?: { live?: boolean }) => void;
   /** the normal may have any length but 0 */
   setPlane: (plane: CuttingPlane | null, options?: { live?: boolean }) => void;
@@ -371,8 +373,8 @@ export interface EngineCommands {
   /** without panels; the surface fills its shorter side as it fills that of the window */
   picture: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<ImageData>;
   savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
-  /** the particles, with the record of what they were made from */
-  exportFile: (format: 'ply' | 'csv', options?: { link?: string }) => Promise<Blob>;
+  /** the particles; `ply` has the record of what they were made from, `json` is the record alone */
+  exportFile: (format: ParticleFormat, options?: { link?: string }) => Promise<Blob>;
   /** draws the mesh of the refined method, which is sampled if the surface is not */
   makeMesh: () => void;
   /** once no run is left; with the record of what it was made from, unless `plain` */
@@ -391,6 +393,8 @@ export interface EngineCommands {
   /** frees all that the engine holds: its workers, its device and its canvas */
   destroy: () => void;
 }
+/** File formats for particles, and for the record of what they were made from. */
+export type ParticleFormat = 'ply' | 'csv' | 'json';
 /** File formats for a mesh. */
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 /** Commands and counts of an engine for tests. */

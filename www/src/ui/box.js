@@ -36,15 +36,6 @@ export function withFace(bounds, axis, end, value) {
 }
 
 /**
- * Reads a thickness as it is typed; null for what is none.
- * @param {string} text
- */
-export function readThickness(text) {
-  const value = text.trim() === '' ? 0 : Number(text.trim().replace(',', '.'));
-  return Number.isFinite(value) && value >= 0 ? value : null;
-}
-
-/**
  * Returns what is said of a surface that the box cuts, and whether a fitted box would hold it.
  * @param {Pick<Report, 'cut' | 'border'> | null} report
  */

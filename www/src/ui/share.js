@@ -2,7 +2,7 @@
 import { FILE_SURFACE } from '../engine/constants.js';
 
 /**
- * @import { Engine, FileRequest, MeshFormat } from '../engine/types.js'
+ * @import { Engine, FileRequest, MeshFormat, ParticleFormat } from '../engine/types.js'
  * @import { Toast } from './types.js'
  */
 
@@ -30,18 +30,20 @@ export async function copyLink(engine, toast) {
 /** Returns the page's address with the whole state in it. @param {Engine} engine */
 const linkTo = async (engine) => location.origin + location.pathname + (await engine.link());
 
-/** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
+/** @param {Engine} engine @param {Toast} toast @param {ParticleFormat} format */
 export function exportFile(engine, toast, format) {
   const make = async () => engine.exportFile(format, { link: await linkTo(engine) });
-  return exported(engine, toast, 'particles', make, `${stem(engine)}.${format}`);
+  // The record has the name by which the command line finds it beside the file of the particles.
+  const ending = format === 'json' ? 'csv.json' : format;
+  return exported(engine, toast, 'particles', make, `${stem(engine)}.${ending}`);
 }
 
 /**
  * @param {Engine} engine @param {Toast} toast
- * @param {MeshFormat} format @param {FileRequest['placement']} placement
+ * @param {MeshFormat} format @param {Pick<FileRequest, 'placement' | 'vertices'>} how
  */
-export function saveMesh(engine, toast, format, placement) {
-  const make = async () => engine.exportMesh(format, { placement, link: await linkTo(engine) });
+export function saveMesh(engine, toast, format, how) {
+  const make = async () => engine.exportMesh(format, { ...how, link: await linkTo(engine) });
   return exported(engine, toast, 'mesh', make, `${stem(engine)}-mesh.${format}`);
 }
 

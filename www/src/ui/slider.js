@@ -7,6 +7,7 @@ import { untracked } from '@preact/signals-core';
 import { clamp } from '../engine/vector.js';
 import { h, live, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
+import { numberBox, showNumber } from './number.js';
 import { afterKey, KEYS, nudge, toPlace, toValue } from './scale.js';
 
 /** @import { Scale, Slider, SliderOptions } from './types.js' */
@@ -56,16 +57,7 @@ class Model {
     this.dragging = false;
     const name = options.name;
     this.range = h('input', { type: 'range', class: 'slider', min: 0, max: PLACES, step: 1, 'aria-label': name });
-    this.box =
-      options.number === false
-        ? null
-        : h('input', {
-            type: 'number',
-            class: 'box',
-            id: uniqueId('number'),
-            'aria-label': `${name}, number`,
-            inputmode: 'decimal',
-          });
+    this.box = options.number === false ? null : numberBox({ name: `${name}, number`, id: uniqueId('number') });
   }
 
   /** Adopts and reports a value. @param {number} next @param {boolean} live */
@@ -83,16 +75,15 @@ class Model {
     range.valueAsNumber = Math.round(place * PLACES);
     range.style.setProperty('--place', place.toFixed(4));
     range.setAttribute('aria-valuetext', this.options.describe(value));
-    if (box && except !== box) box.value = this.#numberOf(exact(scale, value));
+    if (box && except !== box) showNumber(box, this.#numberOf(exact(scale, value)));
   }
 
   writeScale() {
     const { range, box, scale } = this;
     setAttribute(range, 'aria-label', this.options.name);
     if (!box) return;
-    box.min = this.#numberOf(scale.min);
-    box.max = this.#numberOf(scale.max);
-    box.step = 'any';
+    box.setAttribute('aria-valuemin', this.#numberOf(scale.min));
+    box.setAttribute('aria-valuemax', this.#numberOf(scale.max));
   }
 
   /** Returns a value as the box shows it. @param {number} value */
@@ -115,16 +106,21 @@ function exact(scale, value) {
 /** @param {Model} model @param {HTMLInputElement} input */
 function listenToBox(model, input) {
   // A typed number is read once it is complete, because its beginning is another number.
-  const read = () => {
-    const { scale } = model;
-    const typed = input.valueAsNumber / model.factor;
+  const read = async () => {
+    const { scale, options } = model;
+    const text = input.value;
+    const number = await (options.read ?? plainNumber)(text);
+    // What was typed meanwhile is read in its turn.
+    if (input.value !== text) return;
+    const typed = number === null ? NaN : number / model.factor;
     // The box accepts any number within the range, not only values on the slider's grid.
-    if (!Number.isNaN(typed)) model.take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), false);
+    if (Number.isFinite(typed))
+      model.take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), false);
     model.write();
   };
   input.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') {
-      read();
+      void read();
       // The focus moves to the slider, where the page's shortcuts, such as `,` and `.`, work again.
       model.range.focus({ preventScroll: true });
       return;
@@ -133,8 +129,11 @@ function listenToBox(model, input) {
     event.preventDefault();
     model.take(nudge(model.scale, model.value, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey), false);
   });
-  input.addEventListener('change', read);
+  input.addEventListener('change', () => void read());
 }
+
+/** Reads a plain number; null for any other text. @param {string} text */
+const plainNumber = async (text) => (text.trim() === '' || Number.isNaN(Number(text)) ? null : Number(text));
 
 /** Handles dragging, since the native drag has no finer steps. @param {Model} model */
 function listenToPointer(model) {

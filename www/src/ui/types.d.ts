@@ -196,6 +196,8 @@ export interface SliderOptions {
   number?: boolean;
   /** factor from the value to the number in the box, 100 for per cent */
   factor?: number;
+  /** reads what is typed in the box; null for what is no number. By default it reads plain numbers */
+  read?: (text: string) => Promise<number | null>;
 }
 export interface Slider {
   range: HTMLInputElement;

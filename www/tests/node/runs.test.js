@@ -165,9 +165,9 @@ test('PLY and CSV hold every particle', async () => {
   const header = ply.slice(0, ply.indexOf('end_header'));
   expect(header).toContain(`element vertex ${count}\n`);
   expect(header).toContain('property uchar valence');
-  const [made, names, first, ...rows] = (await (await p.engine.exportFile('csv')).text()).trimEnd().split('\n');
+  const [names, first, ...rows] = (await (await p.engine.exportFile('csv')).text()).trimEnd().split('\n');
   // What they were made from, and the digest by which they are known when they are made again.
-  const record = JSON.parse(made.replace('# marching_particles ', ''));
+  const { marching_particles: record } = JSON.parse(await (await p.engine.exportFile('json')).text());
   expect(record).toMatchObject({ surface: p.engine.field.value?.surface, digest: p.report()?.digest });
   expect(record.formula).toBe(p.engine.field.value?.formula);
   expect(names.split(',')).toEqual(columns);
@@ -175,7 +175,7 @@ test('PLY and CSV hold every particle', async () => {
   expect(rows.length + 1).toBe(count);
   // A surface with creases has two more, and a unit cell another one.
   p.engine.setFormula('max(abs(x), abs(y), abs(z)) = 1');
-  const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[1].split(',');
+  const creased = async () => (await (await p.engine.exportFile('csv')).text()).split('\n')[0].split(',');
   await eventually(creased).toEqual(all.filter((name) => name !== 'periodic'));
   p.engine.setFormula('cos(x) + cos(y) + cos(z) = 0');
   p.engine.setSetting('box_faces', 'closed');
@@ -224,8 +224,11 @@ test('the mesh that is exported is byte for byte that of the command line', asyn
   // With what it was made from, and in another size.
   const placement = { scale: 20, unit: /** @type {const} */ ('mm'), up: /** @type {const} */ ('y') };
   const file = await p.engine.exportMesh('obj', { placement, link: 'https://a.example/#b' });
-  const [, made, first] = (await file.text()).split('\n');
-  const record = JSON.parse(made.replace('# marching_particles ', ''));
+  const lines = (await file.text()).split('\n').slice(1);
+  const start = '# marching_particles ';
+  const made = lines.filter((line) => line.startsWith(start));
+  const record = JSON.parse(made.map((line) => line.slice(start.length)).join(''));
+  const first = lines[made.length];
   expect(record).toMatchObject({ link: 'https://a.example/#b', digest: p.report()?.digest, surface: field.surface });
   const plain = await (await p.engine.exportMesh('obj', { plain: true })).text();
   const [x, y, z] = (plain.split('\n')[1] ?? '').split(' ').slice(1).map(Number);

@@ -64,9 +64,14 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     },
     async exportFile(format, { link } = {}) {
       if (columns.stale || columns.count === 0) throw new Error('There is no surface.');
-      const { csv, ply } = await fetchExports();
+      const { csv, json, ply } = await fetchExports();
       const record = columns.record && { ...columns.record, link: link ?? null };
-      return (format === 'csv' ? csv : ply)(columns, description(store).columns, record);
+      if (format === 'json') {
+        if (!record) throw new Error('There is no record of these particles.');
+        return json(record);
+      }
+      const all = description(store).columns;
+      return format === 'csv' ? csv(columns, all) : ply(columns, all, record);
     },
     async exportMesh(format, options) {
       const bytes = await runs.sampling.client.meshFile({ ...options, format });

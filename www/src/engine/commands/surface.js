@@ -29,7 +29,7 @@ import { change, changeView, description, showAll } from '../store.js';
  */
 /**
  * @typedef {Pick<EngineCommands, 'setParameter' | 'resetParameter' | 'pull' | 'setPulls' | 'declareParameter' |
- *   'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
+ *   'readNumber' | 'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands
  */
 
 /** Returns what of a state is sampled, as a text to compare. @param {Shape} shape */
@@ -129,6 +129,11 @@ export function inputCommands({ store, runs }) {
       if (declared.some((p) => p.name === name)) return;
       change(store, { declared: [...declared, newParameter(description(store), name)] });
       runs.resample();
+    },
+    async readNumber(text) {
+      const plain = Number(text.trim().replace(/^([-+]?\d+),(\d+)$/, '$1.$2'));
+      if (text.trim() !== '' && Number.isFinite(plain)) return plain;
+      return runs.sampling.client.number(text);
     },
     setBounds(bounds, { live = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);

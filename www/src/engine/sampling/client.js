@@ -23,6 +23,11 @@ export class SamplingClient {
    */
   #files = new Map();
   #lastFile = 0;
+  /**
+   * The texts that are being read as numbers, by the numbers of their requests.
+   * @type {Map<number, (value: number | null) => void>}
+   */
+  #texts = new Map();
   #isBusy = false;
 
   /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
@@ -97,8 +102,26 @@ export class SamplingClient {
     return bytes;
   }
 
-  /** Gives up all files, because the worker is gone. */
+  /**
+   * Returns the number that a text without names stands for in the language of formulas, such as `pi/2`; null for any
+   * other text, and without a worker.
+   * @param {string} text
+   * @returns {Promise<number | null>}
+   */
+  number(text) {
+    if (!this.isThere) return Promise.resolve(null);
+    this.#lastFile += 1;
+    const request = this.#lastFile;
+    return new Promise((resolve) => {
+      this.#texts.set(request, resolve);
+      this.post({ type: 'number', request, text });
+    });
+  }
+
+  /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
+    for (const resolve of this.#texts.values()) resolve(null);
+    this.#texts.clear();
     for (const request of [...this.#files.keys()]) this.#handOver(request, null);
   }
 
@@ -132,6 +155,10 @@ export class SamplingClient {
         return this.#onLoadFailed(message.message);
       case 'beat':
       case 'crashed':
+        return;
+      case 'number':
+        this.#texts.get(message.request)?.(message.value);
+        this.#texts.delete(message.request);
         return;
       case 'file':
         return this.#handOver(message.request, message.bytes);

@@ -52,8 +52,9 @@ export type Job = SampleJob | RelaxJob;
  * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it
  * is sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page
  * draws a mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the
- * mesh as a file, once no job is left. `measure` measures particles that the sampler has not placed: a worker that is
- * asked has no jobs. The first message is `core`, or `no_core` if the core could not be loaded.
+ * mesh as a file, once no job is left. `number` asks for the number that a text without names stands for. `measure`
+ * measures particles that the sampler has not placed: a worker that is asked has no jobs. The first message is `core`,
+ * or `no_core` if the core could not be loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
@@ -62,6 +63,7 @@ export type ToWorker =
   | { type: 'curvature'; on: boolean }
   | { type: 'mesh'; on: boolean }
   | { type: 'export'; request: number; file: Partial<FileRequest> }
+  | { type: 'number'; request: number; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
   | { type: 'drawn'; id: number }
@@ -114,6 +116,7 @@ export type FromWorker =
   | { type: 'ready'; description: Description }
   | { type: 'failed'; fault: LoadFault; message: string }
   | { type: 'beat' }
+  | { type: 'number'; request: number; value: number | null }
   | { type: 'field'; id: number; answer: FieldAnswer }
   | { type: 'box'; id: number; answer: FieldOk }
   | { type: 'started'; id: number; radius: number; predicted: number; warnings: string[] }

@@ -186,6 +186,9 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       files.push(data);
       void pump();
       break;
+    case 'number':
+      post({ type: 'number', request: data.request, value: core?.number(data.text) ?? null });
+      break;
     case 'measure':
       placed.push(data);
       void pump();

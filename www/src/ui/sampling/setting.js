@@ -77,6 +77,7 @@ function createNumber(engine, info, value) {
       `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
+    read: engine.readNumber,
   });
   return h('div', { class: 'setting-line' }, wantsSlider(info) && slider.range, slider.box);
 }

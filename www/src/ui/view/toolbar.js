@@ -69,6 +69,11 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
       heading('Particles'),
       choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
       choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
+      choice(
+        'Export record',
+        () => exportFile(engine, toast, 'json'),
+        'formula, box and settings, as JSON; PLY includes it',
+      ),
       heading('Mesh'),
       choice('Make a mesh', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
     ],

@@ -105,6 +105,11 @@ export class Core {
      */
     normals(from: number): Float32Array<ArrayBuffer>;
     /**
+     * The number that a text without names stands for in the language of formulas; nothing for any
+     * other text.
+     */
+    number(text: string): number | undefined;
+    /**
      * Parents from particle `from` on; 0xffffffff for a seed.
      */
     parents(from: number): Uint32Array<ArrayBuffer>;
@@ -168,7 +173,7 @@ export class Core {
      */
     step(budget: number): Progress;
     /**
-     * The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
+     * The triangles of the mesh, three rows each, counter-clockwise round their normals; none before it is complete.
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**

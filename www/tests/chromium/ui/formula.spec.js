@@ -45,10 +45,10 @@ test('a formula is typed, and mended', async ({ page }) => {
   await test.step('an error names its place, the last surface stays, and a press on the suggestion mends it', async () => {
     await afresh(page);
     const before = await report(page);
-    await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+    await typeFormula(page, 'x^2 + y^2 + sqt(z) = 1');
     const editor = page.getByRole('textbox', { name: 'Formula' });
     await expect(editor).toHaveAttribute('aria-invalid', 'true');
-    await expect(page.locator('.cm-fault')).toHaveText('sqr');
+    await expect(page.locator('.cm-fault')).toHaveText('sqt');
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(
       before.count,
     );
@@ -59,8 +59,8 @@ test('a formula is typed, and mended', async ({ page }) => {
 
   await test.step('a mistake that is typed over leaves no style behind, which the content security policy forbids', async () => {
     await afresh(page);
-    await typeFormula(page, 'sqr(z) + x');
-    await expect(page.locator('.cm-fault')).toHaveText('sqr');
+    await typeFormula(page, 'sqt(z) + x');
+    await expect(page.locator('.cm-fault')).toHaveText('sqt');
     await page.keyboard.press('ControlOrMeta+a');
     await page.keyboard.type('y = x');
     await expect.poll(async () => (await state(page)).formula).toBe('y = x');
@@ -155,7 +155,7 @@ test('a formula is typed, and mended', async ({ page }) => {
 
   await test.step('on a phone a mistake is read and mended without scrolling for it', async () => {
     await afresh(page, { width: 390, height: 844 });
-    await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+    await typeFormula(page, 'x^2 + y^2 + sqt(z) = 1');
     const repair = page.getByRole('button', { name: 'Change to sqrt' });
     await expect(repair).toBeInViewport({ ratio: 1 });
     await repair.click();

@@ -276,10 +276,8 @@ test('the report, what can be taken away, and what is said where there is no sur
     ]);
     expect(csv.suggestedFilename()).toMatch(/^ellipsoid-\d+\.csv$/);
     const { readFile } = await import('node:fs/promises');
-    const lines = (await readFile(await csv.path(), 'utf8'))
-      .trim()
-      .split('\n')
-      .filter((line) => !line.startsWith('#'));
+    const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n');
+    expect(lines[0]).toMatch(/^x,y,z,nx,ny,nz,/);
     expect(lines.length).toBe(count + 1);
     await page.getByRole('button', { name: 'Save picture' }).click();
     const [png] = await Promise.all([

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { Columns } from '../../../src/engine/columns.js';
 import { SINGULAR } from '../../../src/engine/core-numbers.js';
-import { csv, ply } from '../../../src/engine/share/exports.js';
+import { csv, json, ply } from '../../../src/engine/share/exports.js';
 import { Glide } from '../../../src/engine/view/glide.js';
 import { pick } from '../../../src/engine/view/picking.js';
 import { Reveal } from '../../../src/engine/view/reveal.js';
@@ -261,7 +261,7 @@ describe('exports', () => {
       const rest = { radii: part(radii), levels: part(levels), parents: part(parents) };
       columns.write({ first, total, positions, normals, exact: places, ...rest });
     }
-    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n').slice(1);
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n').slice(1);
     expect(lines.flatMap((line) => line.split(',').slice(0, 3).map(Number))).toEqual([...exact]);
     const file = Buffer.from(await ply(columns, description.columns, null).arrayBuffer());
     const header = file.subarray(0, file.indexOf('end_header\n') + 'end_header\n'.length);
@@ -275,7 +275,7 @@ describe('exports', () => {
   });
 
   test('PLY: header and body agree, to the byte', async () => {
-    const evil = /** @type {any} */ ({ formula: 'x^2\nend_header\n<π> & ü', link: null });
+    const evil = /** @type {any} */ ({ formula: `x^2\nend_header\n<π> & ü ${'ab cde  '.repeat(200)}`, link: null });
     const columns = sphere(50);
     columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));
     columns.nearest = new Float32Array(50).fill(0.25);
@@ -283,8 +283,14 @@ describe('exports', () => {
     columns.slots[17] |= SINGULAR;
     const bytes = await ply(columns, description.columns, evil).arrayBuffer();
     const text = Buffer.from(bytes).toString('latin1');
-    const record = text.match(/^comment marching_particles (.*)$/m)?.[1] ?? '';
+    const comments = text.slice(0, text.indexOf('element')).split('\n').slice(3, -1);
+    const start = 'comment marching_particles ';
+    // MeshLab reads lines of up to 512 characters.
+    expect(comments.every((line) => line.startsWith(start) && line.length <= 200 && !line.endsWith(' '))).toBe(true);
+    expect(comments.length).toBeGreaterThan(5);
+    const record = comments.map((line) => line.slice(start.length)).join('');
     expect(JSON.parse(record)).toEqual(evil);
+    expect(JSON.parse(await json(evil).text())).toEqual({ marching_particles: evil });
     expect(record).toMatch(/^[ -%'-;=?-~]*$/);
     const end = text.indexOf('end_header\n', text.indexOf('element vertex')) + 'end_header\n'.length;
     const header = text.slice(0, end).trimEnd().split('\n');
@@ -329,7 +335,7 @@ describe('exports', () => {
     const columns = sphere(3);
     columns.patch = Uint32Array.of(4, 9, 9);
     columns.particle = Uint32Array.of(0, 0, 2);
-    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n');
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
     expect(lines[0]).toMatch(/,singular,patch,particle$/);
     expect(lines.slice(1).map((line) => line.split(',').slice(-2).map(Number))).toEqual([
       [4, 0],
@@ -346,7 +352,7 @@ describe('exports', () => {
   test('CSV: reading it gives the same single-precision values, on both sides of a block', async () => {
     const columns = sphere(9000);
     columns.slots[8191] |= SINGULAR;
-    const lines = (await csv(columns, description.columns, null).text()).trimEnd().split('\n');
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
     expect(lines).toHaveLength(9001);
     expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent,singular');
     for (const i of [0, 8191, 8192, 8999]) {

@@ -88,6 +88,7 @@ export const description = {
     column('particle', 'uint'),
     column('periodic', 'uint'),
   ],
+  vertices: [{ value: 'joined', label: 'Joined', help: '', formats: ['glb', 'obj', 'ply'] }],
   new_parameter: { name: '', label: '', value: 1, min: 0, max: 3, step: 0.01 },
   limits: {
     formula_bytes: 4096,

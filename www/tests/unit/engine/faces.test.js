@@ -34,6 +34,7 @@ const meshOf = (triangles) => ({
     unfilled: 0,
     left_out: 0,
     volume: null,
+    inside: null,
     smallest_angle: null,
     loops: [],
   },

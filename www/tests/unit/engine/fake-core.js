@@ -99,6 +99,7 @@ export function fakeCore({
             start: 4,
             end: 4,
             suggestion: null,
+            choices: [],
             mended: null,
             name: null,
             excess: null,
@@ -106,6 +107,8 @@ export function fakeCore({
         };
       return field(formula ?? '', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
+    /** @param {string} text @returns {number | undefined} */
+    number: (text) => (Number.isFinite(Number(text)) ? Number(text) : undefined),
     /** @param {Uint8Array} bytes @param {SolvedModel} about @param {Partial<FieldRequest>} request @returns {FieldAnswer} */
     set_points(bytes, { info, bounds: own }, { bounds }) {
       calls.push(`set_points ${bytes.length}`);
@@ -233,6 +236,7 @@ export function fakeCore({
         unfilled: 0,
         left_out: count - 3,
         volume: null,
+        inside: null,
         smallest_angle: null,
         loops: [],
       };

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { cutOf, doubled, readThickness } from '../../../src/ui/box.js';
+import { cutOf, doubled } from '../../../src/ui/box.js';
 
 describe('a surface that the box cuts', () => {
   it('is not spoken of where the box was chosen for the surface', () => {
@@ -25,9 +25,4 @@ describe('a surface that the box cuts', () => {
   it('has twice the room in a doubled box, around the same middle', () => {
     expect(doubled({ min: [-1, 0, 2], max: [1, 2, 3] })).toEqual({ min: [-2, -1, 1.5], max: [2, 3, 3.5] });
   });
-});
-
-it('a thickness is a number from 0 on; an empty field is none', () => {
-  expect(['', ' ', '0', '0.25', ' 1e-2 ', '0,5'].map(readThickness)).toEqual([0, 0, 0, 0.25, 0.01, 0.5]);
-  expect(['-1', 'thick', '1 2', 'Infinity', 'NaN', '0.1.2'].map(readThickness)).toEqual(Array(6).fill(null));
 });

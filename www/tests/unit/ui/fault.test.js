@@ -10,6 +10,7 @@ const fault = {
   start: 4,
   end: 7,
   suggestion: null,
+  choices: [],
   mended: null,
   name: 'foo',
   excess: null,
@@ -29,6 +30,14 @@ describe('a fault in a formula', () => {
     const view = describeFault('x + foo = 1', fault);
     expect(view?.excerpt).toEqual({ before: 'x + ', marked: 'foo', after: ' = 1' });
     expect(view?.repairs).toEqual([{ label: 'Add slider foo', declare: 'foo' }]);
+  });
+
+  it('offers each reading of a formula that has several', () => {
+    const view = describeFault('x/2y = z', { ...fault, start: 2, end: 4, name: null, choices: ['(2 y)', '2*y'] });
+    expect(view?.repairs.map(({ label, replace }) => [label, replace?.text])).toEqual([
+      ['Change to (2 y)', '(2 y)'],
+      ['Change to 2*y', '2*y'],
+    ]);
   });
 
   it('offers a suggestion first, as a change of the marked place', () => {

@@ -3,27 +3,37 @@ import { setLocale } from '../../../src/ui/format.js';
 import { borderOf } from '../../../src/ui/mesh/borders.js';
 import { verdictOf } from '../../../src/ui/mesh-words.js';
 
+/** @import { MeshAnswer } from '../../../src/engine/types.js' */
+
 beforeAll(() => setLocale('en'));
 
 /**
  * @param {[number, number][]} components  Euler number and open edges
- * @param {{unfilled?: number, left_out?: number, volume?: number | null, smallest_angle?: number}} [more]
+ * @param {Partial<MeshAnswer>} [more]
  */
-const mesh = (components, more) => ({
-  triangles: 0,
-  components: components.map(([euler, open]) => ({ triangles: 0, euler, open_edges: open })),
-  unfilled: 0,
-  left_out: 0,
-  volume: null,
-  smallest_angle: null,
-  loops: [],
-  ...more,
-});
+const mesh = (components, more) =>
+  /** @type {MeshAnswer} */ ({
+    triangles: 0,
+    components: components.map(([euler, open]) => ({ triangles: 0, euler, open_edges: open })),
+    unfilled: 0,
+    left_out: 0,
+    volume: null,
+    inside: null,
+    smallest_angle: null,
+    loops: [],
+    ...more,
+  });
 
 it('a mesh is told in a line: closed or where it is open, and its topology', () => {
   expect(verdictOf(mesh([[4, 0]]))).toBe('No open edge, but not a manifold · Euler number 4');
   expect(verdictOf(mesh([[2, 0]], { volume: 4.18879, smallest_angle: 38.04 }))).toBe(
     'Watertight · Euler number 2 · volume 4.189 · smallest angle 38.0°',
+  );
+  expect(verdictOf(mesh([[2, 0]], { volume: 4.18879, inside: 'f < 0' }))).toBe(
+    'Watertight · Euler number 2 · volume 4.189',
+  );
+  expect(verdictOf(mesh([[2, 0]], { volume: 4.18879, inside: 'f > 0' }))).toBe(
+    'Watertight · Euler number 2 · volume 4.189 · f is larger inside; files face outward',
   );
   expect(verdictOf(mesh([[-8, 1204]]))).toBe('1,204 open edges · Euler number −8');
   expect(

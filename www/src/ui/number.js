@@ -1,0 +1,27 @@
+/**
+ * Number boxes: text that is read as a number of the language of formulas, such as `pi/2`. To assistive technology
+ * they are native number boxes.
+ */
+import { h } from './dom.js';
+
+/**
+ * Creates a number box.
+ * @param {{ name: string, class?: string, id?: string, value?: string }} options
+ */
+export const numberBox = ({ name, ...options }) =>
+  h('input', {
+    type: 'text',
+    role: 'spinbutton',
+    class: 'box',
+    inputmode: 'decimal',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-label': name,
+    ...options,
+  });
+
+/** Shows a number in its box. @param {HTMLInputElement} box @param {string} text */
+export function showNumber(box, text) {
+  box.value = text;
+  box.setAttribute('aria-valuenow', text);
+}
