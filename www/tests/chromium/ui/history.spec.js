@@ -47,7 +47,7 @@ test('the history', async ({ page }) => {
     await afresh(page);
     await page.locator('.tile[data-surface="sphere"]').click();
     await settled(page);
-    const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
+    const box = page.locator('.setting[data-setting="radius_share"] input[role=spinbutton]');
     await box.focus();
     await page.keyboard.press('Control+z');
     expect((await state(page)).surface).toBe('sphere');

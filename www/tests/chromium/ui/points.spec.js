@@ -129,7 +129,7 @@ test('files: dropped, chosen, refused, given up', async ({ page }) => {
   await test.step('a fault in a file is told with its line, in the open and to a screen reader', async () => {
     await afresh(page, { width: 390, height: 844 });
     const lines = spherePly(300).split('\n');
-    lines[20] = '0.1 nan 0.3 0 0 1';
+    lines[20] = '0.1 seven 0.3 0 0 1';
     await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
     const box = page.locator('.refused');
     await expect(box).toContainText(/line 21/i);
@@ -239,7 +239,7 @@ test('a file and the number of its points', async ({ page }) => {
     await page.locator('.tile[data-surface="bunny"]').click();
     await expect(fitted).toContainText('f interpolates all 200 points');
     await settled(page);
-    expect(await number.getAttribute('max')).toBe('200');
+    expect(await number.getAttribute('aria-valuemax')).toBe('200');
     await number.fill('120');
     await number.press('Enter');
     await expect(fitted).toContainText('f is fitted to 200 points from 120 of them');

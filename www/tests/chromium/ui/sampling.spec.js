@@ -86,7 +86,7 @@ test('the settings', async ({ page }) => {
   await test.step('typing a radius samples with it', async () => {
     await afresh(page);
     const before = await report(page);
-    const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
+    const box = page.locator('.setting[data-setting="radius_share"] input[role=spinbutton]');
     await box.fill('2');
     await box.press('Enter');
     await box.blur();
@@ -202,7 +202,7 @@ test('the run and its buttons', async ({ page }) => {
     await afresh(page);
     const before = await report(page);
     await page.getByRole('button', { name: 'Advanced' }).click();
-    const limit = page.locator('.setting[data-setting="max_particles"] input[type=number]');
+    const limit = page.locator('.setting[data-setting="max_particles"] input[role=spinbutton]');
     await limit.fill('2000');
     await limit.press('Enter');
     const notice = page.locator('.toast');
