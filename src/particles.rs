@@ -15,7 +15,8 @@ pub struct Particles {
     pub origin: DVec3,
     /// Position on the surface, counted from `origin`.
     pub position: Vec<Vec3>,
-    /// Unit normal along the gradient of f: outward where f is smaller inside, as by the convention of this crate.
+    /// Unit normal along the gradient of f: outward where f is smaller inside, as by the convention
+    /// of this crate.
     pub normal: Vec<Vec3>,
     /// Repulsion radius.
     pub radius: Vec<f32>,

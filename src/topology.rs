@@ -135,8 +135,8 @@ impl Topology {
         self.is_manifold() && self.encloses()
     }
 
-    /// Whether there are triangles, and every edge has two of equal orientation, so that they enclose a volume. They may touch each other at
-    /// vertices.
+    /// Whether there are triangles, and every edge has two of equal orientation, so that they
+    /// enclose a volume. They may touch each other at vertices.
     #[must_use]
     pub fn encloses(&self) -> bool {
         !self.components.is_empty() && self.crowded_edges.is_empty() && self.borders.is_empty()
@@ -148,8 +148,8 @@ impl Topology {
         self.components.iter().map(Component::euler).sum()
     }
 
-    /// Takes part in turning the triangles round: those around the vertices for which `is_turned` holds are now counter-clockwise seen
-    /// from the other side.
+    /// Takes part in turning the triangles round: those around the vertices for which `is_turned`
+    /// holds are now counter-clockwise seen from the other side.
     pub(crate) fn turn(&mut self, is_turned: impl Fn(u32) -> bool) {
         self.borders
             .iter_mut()

@@ -1,10 +1,11 @@
 //! The paper's jobs and figures, made again: `cargo xtask paper` runs this and writes its output to
 //! `docs/tables/paper.md`.
 //!
-//! `--threads N` runs so many jobs at a time, each in a thread of its own. `--limit S` stops a particle
-//! system after so many seconds of processor time, `--pictures FOLDER` says where the figures go,
-//! `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the particles, to try
-//! it out. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary in `docs/paper.md`.
+//! `--threads N` runs so many jobs at a time, each in a thread of its own. `--limit S` stops a
+//! particle system after so many seconds of processor time, `--pictures FOLDER` says where the
+//! figures go, `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the
+//! particles, to try it out. Then `UPDATE_GOLDEN=1 cargo test --test it docs::` writes the summary
+//! in `docs/paper.md`.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 
 #[path = "../../tests/it/settings.rs"]

@@ -8,11 +8,11 @@ use crate::quality::Measurements;
 use core::ops::Range;
 use std::io::{self, Write};
 
-/// The particles as they are in a file, placed and facing outward, and what was measured of them; nothing where they stay what they
-/// are.
+/// The particles as they are in a file, placed and facing outward, and what was measured of them;
+/// nothing where they stay what they are.
 type Placed = Option<(Particles, Measurements)>;
 
-/// What a mesh file is written from.
+/// The vertices and faces that a mesh file lists, in the order in which it lists them.
 pub(crate) struct FileContent {
     placed: Placed,
     /// The vertices.

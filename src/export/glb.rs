@@ -31,8 +31,9 @@ struct BufferColumn {
     bytes: Vec<u8>,
 }
 
-/// Writes the triangles with the normals of their vertices, the generation levels of their particles as colours and, for programs, as the
-/// attribute `_LEVEL`. The z axis, which points up here, is turned to glTF's y. A mesh without triangles is an empty scene.
+/// Writes the triangles with the normals of their vertices, the generation levels of their
+/// particles as colours and, for programs, as the attribute `_LEVEL`. The z axis, which points up
+/// here, is turned to glTF's y. A mesh without triangles is an empty scene.
 pub(super) fn write(
     particles: &Particles,
     vertices: &Indexed,

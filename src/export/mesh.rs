@@ -14,11 +14,13 @@ use std::io::{self, Write};
 pub enum MeshFormat {
     /// Binary glTF 2.0: triangles, normals, and generation levels as colours.
     Glb,
-    /// Wavefront OBJ: triangles and normals, as text. With [`Vertices::Split`] the normals are numbered apart from the points.
+    /// Wavefront OBJ: triangles and normals, as text. With [`Vertices::Split`] the normals are
+    /// numbered apart from the points.
     Obj,
     /// Binary STL: triangles with their own normals. Single precision, no connectivity.
     Stl,
-    /// Binary little-endian PLY: points with normals, and the triangles; with [`Vertices::Columns`] all columns of the particles.
+    /// Binary little-endian PLY: points with normals, and the triangles; with [`Vertices::Columns`]
+    /// all columns of the particles.
     Ply,
     /// 3MF: triangles and their unit, for printers.
     ThreeMf,
@@ -65,8 +67,9 @@ impl From<MeshFormat> for MeshFile {
     }
 }
 
-/// Writes the mesh over `particles` to `out`, which should be buffered. Closed parts face outward, and their normals with them, whether f is
-/// smaller or larger inside; open ones are as f has them. `measured` is as for [`write`](super::write).
+/// Writes the mesh over `particles` to `out`, which should be buffered. Closed parts face outward,
+/// and their normals with them, whether f is smaller or larger inside; open ones are as f has them.
+/// `measured` is as for [`write`](super::write).
 ///
 /// # Errors
 ///

@@ -24,7 +24,8 @@ use serde::Serialize;
 use std::io::{self, Write};
 use vertices::Indexed;
 
-/// A file format for particles. Their normals follow the gradient: they point to larger f, outward where f is smaller inside.
+/// A file format for particles. Their normals follow the gradient: they point to larger f, outward
+/// where f is smaller inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
@@ -55,7 +56,8 @@ impl Format {
 pub struct ParticleFile {
     /// Format of the file.
     pub format: Format,
-    /// The record, which PLY carries. Of the others, a program has it beside the file: [`RecordText::document`].
+    /// The record, which PLY carries. Of the others, a program has it beside the file:
+    /// [`RecordText::document`].
     pub record: RecordText,
 }
 
@@ -270,7 +272,8 @@ fn ply_columns(
     ply_faces(&triangles.unwrap_or_default()[rows.start.max(n) - n..rows.end.max(n) - n], out)
 }
 
-/// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex have one type, since there are readers that take no others.
+/// PLY of a mesh: rows of vertices and of triangles. All properties of a vertex have one type,
+/// since there are readers that take no others.
 fn ply_mesh(
     particles: &Particles,
     vertices: &Indexed,
@@ -332,7 +335,8 @@ fn ply_header<'a>(
     writeln!(out, "end_header")
 }
 
-/// CSV begins with the names of the columns, which is the line that spreadsheets and data frames take for them: a record has no place in it.
+/// CSV begins with the names of the columns, which is the line that spreadsheets and data frames
+/// take for them: a record has no place in it.
 fn csv(particles: &Particles, measured: &quality::Measurements, out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, measured);
     let names: Vec<&str> = columns.iter().map(|column| column.name).collect();

@@ -1,12 +1,14 @@
-//! The record of a file, from which it can be made again: JSON, in each format at a place of its own.
+//! The record of a file, from which it can be made again: JSON, in each format at a place of its
+//! own.
 //!
-//! PLY and OBJ carry it in comments, 3MF in its description, GLB in the extras of its asset; beside a file that has no place for it stands
-//! a file of JSON. What it says is the caller's affair; here it is text.
+//! PLY and OBJ carry it in comments, 3MF in its description, GLB in the extras of its asset; beside
+//! a file that has no place for it stands a file of JSON. What it says is the caller's affair; here
+//! it is text.
 
 /// The word before a record.
 const MARK: &str = "marching_particles";
 
-/// Most characters of a line of a comment. MeshLab reads lines of a PLY header of up to 512.
+/// The longest comment line, in characters. MeshLab reads no PLY header line of more than 512.
 const LONGEST_LINE: usize = 200;
 
 /// A record as the formats carry it: its mark and the JSON, without the characters that end a comment or begin a tag.
@@ -29,8 +31,8 @@ impl RecordText {
         Self(Some(text))
     }
 
-    /// The record as comments, each after the words that begin one; nothing without a record. No line is longer than [`LONGEST_LINE`]: the
-    /// text goes on after the mark of the next line.
+    /// The record as comments, each after the words that begin one; nothing without a record. No
+    /// line is longer than [`LONGEST_LINE`]: the text goes on after the mark of the next line.
     pub(super) fn comment(&self, begin: &str) -> String {
         let mut rest = self.0.as_deref().unwrap_or_default();
         let mut lines = String::new();

@@ -5,20 +5,22 @@ use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How particles become vertices of a mesh file. It makes a difference on sharp edges, where a particle has a normal for each side.
+/// How particles become vertices of a mesh file. It makes a difference on sharp edges, where a
+/// particle has a normal for each side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Vertices {
-    /// One vertex for each particle, so that the mesh is closed where the surface is. On a sharp edge it has the mean of the normals of
-    /// the sides.
+    /// One vertex for each particle, so that the mesh is closed where the surface is. On a sharp
+    /// edge it has the mean of the normals of the sides.
     #[default]
     Joined,
-    /// On a sharp edge a vertex for each side, with the normal of that side. In OBJ the points stay joined, and faces name their normals
-    /// apart from them.
+    /// On a sharp edge a vertex for each side, with the normal of that side. In OBJ the points stay
+    /// joined, and faces name their normals apart from them.
     Split,
-    /// A vertex for each row of the particles, in their order, with all columns where the format takes them: PLY.
+    /// A vertex for each row of the particles, in their order, with all columns where the format
+    /// takes them: PLY.
     Columns,
 }
 
@@ -73,7 +75,8 @@ impl Vertices {
     }
 }
 
-/// A mesh as lists of vertices and triangles, as files have it: closed parts face outward, and the normals with them.
+/// A mesh as lists of vertices and triangles, as files have it: closed parts face outward, and the
+/// normals with them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshBuffers {
     /// Position of each vertex, in the coordinates of the formula.
@@ -87,8 +90,8 @@ pub struct MeshBuffers {
 }
 
 impl MeshBuffers {
-    /// The mesh over the rows of `particles`. Vertices are in the order of the rows; those in no triangle are left out, but for
-    /// [`Vertices::Columns`].
+    /// The mesh over the rows of `particles`. Vertices are in the order of the rows; those in no
+    /// triangle are left out, but for [`Vertices::Columns`].
     ///
     /// # Panics
     ///
@@ -174,7 +177,8 @@ impl Indexed {
                 }
             }
         }
-        // A lone normal keeps its bits, and opposite ones, at the edge of a blade, leave that of the first row.
+        // A lone normal keeps its bits, and opposite ones, at the edge of a blade, leave that of
+        // the first row.
         let mean = |(&own, (sum, count)): (&Vec3, (Vec3, u32))| {
             if count < 2 { sum } else { sum.try_normalize().unwrap_or(own) }
         };

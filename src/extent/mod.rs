@@ -123,20 +123,19 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
         let is_first = before.is_none();
         let mut found = scan::scan(bounded, half, Effort::Plain, &mut left).await;
         pause().await;
-        let plain = found;
-        if matches!(plain, Scan::TooLarge(_)) || is_first && plain == Scan::Undecided {
+        if found == Scan::Undecided && is_first {
             found = scan::scan(bounded, half, Effort::Thorough, &mut more).await;
             pause().await;
         }
-        if let Scan::TooLarge(hull) = plain {
-            // The surface is in both boxes. One that a closer look does not confirm is as good as any.
-            found = match found {
-                Scan::Inside(other) => Scan::Inside(Bounds {
-                    min: core::array::from_fn(|axis| hull.min[axis].max(other.min[axis])),
-                    max: core::array::from_fn(|axis| hull.max[axis].min(other.max[axis])),
-                }),
-                _ => Scan::Inside(hull),
+        if let Scan::TooLarge(hull) = found {
+            let closer = scan::scan(bounded, half, Effort::Thorough, &mut more).await;
+            pause().await;
+            // The surface is in both boxes. Without the other one the first still holds it.
+            let common = |other: Bounds| Bounds {
+                min: core::array::from_fn(|axis| hull.min[axis].max(other.min[axis])),
+                max: core::array::from_fn(|axis| hull.max[axis].min(other.max[axis])),
             };
+            found = Scan::Inside(if let Scan::Inside(other) = closer { common(other) } else { hull });
         }
         match found {
             Scan::Inside(hull) => {
@@ -153,7 +152,7 @@ async fn scanned(field: &mut dyn Field, cells: usize) -> Extent {
                 };
             }
             Scan::Crossing(hull) => bends = bends.or(hull),
-            Scan::Undecided | Scan::TooLarge(_) if is_first => return sampled::find(field).await,
+            Scan::Undecided if is_first => return sampled::find(field).await,
             Scan::Undecided | Scan::TooLarge(_) => {}
         }
         before = Some(half);

@@ -1,14 +1,18 @@
-//! The scan of a cube: it is divided into eighths, again and again, and cells without surface are dropped.
+//! The scan of a cube: it is divided into eighths, again and again, and cells without surface are
+//! dropped.
 //!
-//! A point at which a component reaches farthest along an axis, inside the cube, has no slope along the other two: else the
-//! surface would go on. So besides the cells at the faces of the cube only those are kept whose bounds allow that for some axis:
-//! of a sphere a few around its six poles. Bounds of the value are those of the expression and of the mean value form, as in
-//! the search for components.
+//! A point at which a component reaches farthest along an axis, inside the cube, has no slope along
+//! the other two: else the surface would go on. So besides the cells at the faces of the cube only
+//! those are kept whose bounds allow that for some axis: of a sphere a few around its six poles.
+//! Bounds of the value are those of the expression and of the mean value form, as in the search for
+//! components.
 //!
-//! Bounds are wide where a cell is large against the places at which f bends: over a cell on both sides of x = 0 those of x³(x − 2) reach far
-//! below the least value, and hundreds of cells far from the surface are kept. A thorough scan looks [into](look_into) each such cell
-//! before it keeps it: the cell is halved along the axis that widens its bounds most, and again, as long as few parts are left. It is
-//! made where a plain one leaves a box at one of whose sides no part of the surface is [seen](is_loose), or decides nothing.
+//! Bounds are wide where a cell is large against the places at which f bends: over a cell on both
+//! sides of x = 0 those of x³(x − 2) reach far below the least value, and hundreds of cells far
+//! from the surface are kept. A thorough scan looks [into](look_into) each such cell before it
+//! keeps it: the cell is halved along the axis that widens its bounds most, and again, as long as
+//! few parts are left. It is made where a plain one leaves a box at one of whose sides no part of
+//! the surface is [seen](is_loose), or decides nothing.
 
 use crate::field::{Bounded, Enclosure};
 use crate::math::{Bounds, sort_few};
@@ -37,12 +41,15 @@ const MANY_AT_FACES: usize = 1_500;
 /// surfaces take 1.1 times the cells, and surfaces of short periods eight times.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
-/// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that meet at a point of it, where the bounds
-/// are widest. More are as many as in a cell that the surface passes.
+/// Parts of a cell that are looked into at a time: two for each of the eight corners of a cell that
+/// meet at a point of it, where the bounds are widest. More are as many as in a cell that the
+/// surface passes.
 const MOST_PARTS: usize = 16;
-/// Times that a cell is halved for that: ten along each axis, by which a cell that is a 128th of the largest cube becomes one of 0.15.
+/// Times that a cell is halved for that: ten along each axis, by which a cell that is a 128th of
+/// the largest cube becomes one of 0.15.
 const HALVINGS: u32 = 30;
-/// Share of a box at each of its sides in which a cell with the surface is looked for. A box without one is too large.
+/// Share of a box at each of its sides in which a cell with the surface is looked for. A box
+/// without one is too large.
 const OUTER: f64 = 0.25;
 /// Cells that are looked into for that at each side, the outermost first.
 const MOST_OUTER: usize = 64;
@@ -107,8 +114,8 @@ impl ScanLevel {
     }
 }
 
-/// Scans the cube of this half-width around the origin, in about `left` cells, of which those visited are taken. Only a
-/// plain scan asks whether the box that it finds is too large.
+/// Scans the cube of this half-width around the origin, in about `left` cells, of which those
+/// visited are taken. Only a plain scan asks whether the box that it finds is too large.
 pub(super) async fn scan(field: &mut dyn Bounded, half: f64, effort: Effort, left: &mut usize) -> Scan {
     let side = 2.0 * half * LARGER;
     let lo = side * (OFF_CENTRE / 2.0 - 0.5);
@@ -231,7 +238,8 @@ async fn visit(
     kept
 }
 
-/// Whether a box is too large: at one of its sides no cell shows that it may hold the extreme there, once its parts are looked into.
+/// Whether a box is too large: at one of its sides no cell shows that it may hold the extreme
+/// there, once its parts are looked into.
 async fn is_loose(field: &mut dyn Bounded, level: &ScanLevel, kept: &[OpenCell], hull: &Bounds) -> bool {
     let mut batch = BoundsBatch::default();
     let room = OUTER * hull.size().max_element();
@@ -325,7 +333,8 @@ impl BoundsBatch {
         }
     }
 
-    /// Finds the boxes in which a factor of the field may vanish, by the bounds of the expression and the mean value form.
+    /// Finds the boxes in which a factor of the field may vanish, by the bounds of the expression
+    /// and the mean value form.
     fn find_parts(&mut self, field: &mut dyn Bounded, factor: usize) {
         self.known.resize(self.boxes.len(), Enclosure::UNKNOWN);
         field.enclose(factor, &self.boxes, &mut self.known);
@@ -362,8 +371,8 @@ impl BoundsBatch {
         }
     }
 
-    /// The extremes that a factor of the field may have in a cell, by the bounds of its parts; none where it vanishes nowhere. The parts are
-    /// taken from those that are `left`.
+    /// The extremes that a factor of the field may have in a cell, by the bounds of its parts; none
+    /// where it vanishes nowhere. The parts are taken from those that are `left`.
     fn look_into(
         &mut self,
         field: &mut dyn Bounded,

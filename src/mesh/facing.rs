@@ -1,4 +1,5 @@
-//! The inside of the closed parts of a mesh, and which parts have to be turned so that they face outward.
+//! The inside of the closed parts of a mesh, and which parts have to be turned so that they face
+//! outward.
 
 use crate::math::{Forest, NONE, key_of, sort_by_key, sort_pairs};
 use crate::slices::{LIGHT, pause};
@@ -25,7 +26,8 @@ pub enum Inside {
 /// How the parts of a mesh face.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Facing {
-    /// For each vertex, whether the triangles around it have to be turned to face outward; empty where all do.
+    /// For each vertex, whether the triangles around it have to be turned to face outward; empty
+    /// where all do.
     pub(crate) turned: Vec<bool>,
     /// Sign of f inside of the closed parts; none if there is no closed part.
     pub(crate) inside: Option<Inside>,
@@ -51,11 +53,13 @@ impl Part {
 
 /// How the parts of a mesh face, whose triangles are counter-clockwise round the gradient of f.
 ///
-/// A closed part that lies in no other one faces outward if it encloses a positive volume. Parts within it stay to it as they are: the
-/// walls of a hollow bound one solid. Where f is positive inside of all closed parts, the open ones are turned with them, so that the
-/// mesh as a whole is that of −f; elsewhere open parts stay as f has them.
+/// A closed part that lies in no other one faces outward if it encloses a positive volume. Parts
+/// within it stay to it as they are: the walls of a hollow bound one solid. Where f is positive
+/// inside of all closed parts, the open ones are turned with them, so that the mesh as a whole is
+/// that of −f; elsewhere open parts stay as f has them.
 ///
-/// Linear in the triangles. Where the signs of the volumes differ, which part holds which is found by a ray from each.
+/// Linear in the triangles. Where the signs of the volumes differ, which part holds which is found
+/// by a ray from each.
 pub(crate) async fn facing(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -> Facing {
     let (parts, part_of) = parts(position, triangles, topology).await;
     let is_inward = |k: usize| parts[k].faces_inward();
@@ -144,7 +148,8 @@ async fn parts(position: &[Vec3], triangles: &[[u32; 3]], topology: &Topology) -
     (parts, part_of)
 }
 
-/// For each part, the closed part that holds it and is held by none: itself if there is no such part, or if it is open.
+/// For each part, the closed part that holds it and is held by none: itself if there is no such
+/// part, or if it is open.
 async fn outermost(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], part_of: &[u32]) -> Vec<usize> {
     // Rays along x from the last vertices of the closed parts, by their y.
     let mut rays: Vec<(Vec3, u32)> = (0..)
@@ -184,8 +189,9 @@ async fn outermost(position: &[Vec3], triangles: &[[u32; 3]], parts: &[Part], pa
     (0..parts.len() as u32).map(|part| outer(part).unwrap_or(part) as usize).collect()
 }
 
-/// Whether the ray along x from a point meets a triangle. A ray meets a closed mesh an odd number of times if and only if it begins inside,
-/// also where it runs through edges and corners: each side counts by a rule that is the same for both of its triangles.
+/// Whether the ray along x from a point meets a triangle. A ray meets a closed mesh an odd number
+/// of times if and only if it begins inside, also where it runs through edges and corners: each
+/// side counts by a rule that is the same for both of its triangles.
 fn is_met(corners: [Vec3; 3], p: Vec3) -> bool {
     let [a, b, c] = corners.map(|corner| (corner - p).as_dvec3());
     // Whether the way from p along y in the plane of y and z runs across a side.

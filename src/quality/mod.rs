@@ -100,7 +100,8 @@ pub struct Measurements {
     pub places: Places,
     /// The opening that the triangles of natural neighbours leave in the surface; none if they close it.
     pub(crate) opening: Option<Opening>,
-    /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close; none if they close no part.
+    /// Sign of f inside of the parts of the surface that the triangles of natural neighbours close;
+    /// none if they close no part.
     pub(crate) inside: Option<Inside>,
 }
 
@@ -329,9 +330,9 @@ async fn measure_neighbourhoods(
     pairs
 }
 
-/// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of those that are also counted
-/// `once`, as the first rows of their particles; and the connected component of each point, the opening of the triangles, and what is
-/// inside of them.
+/// Measures angles, agreement and topology of the triangles, of the points that are `inner` and of
+/// those that are also counted `once`, as the first rows of their particles; and the connected
+/// component of each point, the opening of the triangles, and what is inside of them.
 async fn measure_triangles(
     prepared: &Prepared,
     [inner, once]: [&[bool]; 2],

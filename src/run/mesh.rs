@@ -26,7 +26,8 @@ pub struct MeshAnswer {
     pub left_out: usize,
     /// [Volume](Triangulation::volume) that the mesh encloses; none where it is open.
     pub volume: Option<f64>,
-    /// Sign of f inside of the closed parts; none if there is no closed part. All face outward in files.
+    /// Sign of f inside of the closed parts; none if there is no closed part. All face outward in
+    /// files.
     pub inside: Option<Inside>,
     /// [Smallest angle](Triangulation::smallest_angle) of any triangle, in degrees; none without triangles.
     pub smallest_angle: Option<f64>,
@@ -150,16 +151,16 @@ impl<F: Field> Run<F> {
         self.meshing.joined()
     }
 
-    /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from outside. There are none before
-    /// [`Run::join`] is done.
+    /// The triangles of the [mesh](Run::mesh): triples of particles, counter-clockwise seen from
+    /// outside. There are none before [`Run::join`] is done.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.mesh().map_or(&[], |mesh| &mesh.triangles)
     }
 
-    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of [`MEDIUM`] rows each; the
-    /// file, once it is complete. Another wish, or a change of the particles, begins a file anew. Before [`Run::join`] is done it has no
-    /// triangles.
+    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the
+    /// work, of [`MEDIUM`] rows each; the file, once it is complete. Another wish, or a change of
+    /// the particles, begins a file anew. Before [`Run::join`] is done it has no triangles.
     ///
     /// # Errors
     ///

@@ -34,8 +34,9 @@ pub struct Report {
     /// Volume that the mesh encloses to which [`Run::join`] has joined the particles; none where it is open, or they were not joined.
     #[serde(rename = "volume")]
     pub joined_volume: Option<f64>,
-    /// Sign of f inside of the closed parts of the surface, by that mesh if the particles were joined, else by the triangles of natural
-    /// neighbours; none where no part is closed, or nothing was measured.
+    /// Sign of f inside of the closed parts of the surface, by that mesh if the particles were
+    /// joined, else by the triangles of natural neighbours; none where no part is closed, or
+    /// nothing was measured.
     pub inside: Option<Inside>,
     /// Smallest angle of the triangles of that mesh in degrees, those at its border among them; none where the particles were not joined.
     pub smallest_angle: Option<f64>,

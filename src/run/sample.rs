@@ -90,8 +90,9 @@ impl Sample {
         self.bounds
     }
 
-    /// The triangles over the particles: an oriented manifold, closed where the surface is. Closed parts are counter-clockwise seen from
-    /// outside, also where f is larger inside. The first call joins the particles, in below a microsecond each.
+    /// The triangles over the particles: an oriented manifold, closed where the surface is. Closed
+    /// parts are counter-clockwise seen from outside, also where f is larger inside. The first call
+    /// joins the particles, in below a microsecond each.
     #[must_use]
     pub fn mesh(&self) -> &Triangulation {
         let bounds = || self.bounds.relative_to(self.particles.origin);
@@ -111,8 +112,9 @@ impl Sample {
         self.mesh().volume(&self.particles)
     }
 
-    /// Writes the particles with what was measured of them to `out`, which should be buffered: in a [`Format`](crate::Format), or as
-    /// a [`ParticleFile`] with a record. Their normals follow the gradient: they point inward where f is larger inside.
+    /// Writes the particles with what was measured of them to `out`, which should be buffered: in a
+    /// [`Format`](crate::Format), or as a [`ParticleFile`] with a record. Their normals follow the
+    /// gradient: they point inward where f is larger inside.
     ///
     /// # Errors
     ///
@@ -140,10 +142,12 @@ impl Sample {
         MeshBuffers::new(self.mesh(), &self.particles, vertices)
     }
 
-    /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a [`MeshFormat`](crate::MeshFormat), or as a
-    /// [`MeshFile`] with a size, an upward axis and a record. A mesh that is open is written as it is: see [`Sample::mesh_warnings`].
+    /// Writes the [mesh](Sample::mesh) to `out`, which should be buffered: in a
+    /// [`MeshFormat`](crate::MeshFormat), or as a [`MeshFile`] with a size, an upward axis and a
+    /// record. A mesh that is open is written as it is: see [`Sample::mesh_warnings`].
     ///
-    /// Closed parts face outward, also where f is larger inside. A particle on a crease is one vertex, unless [`Vertices`] asks for more.
+    /// Closed parts face outward, also where f is larger inside. A particle on a crease is one
+    /// vertex, unless [`Vertices`] asks for more.
     ///
     /// # Errors
     ///

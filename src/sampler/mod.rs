@@ -358,7 +358,8 @@ impl Sampler {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
             while self.components.search(probe, &self.bounds, tolerance, least_gap, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
-            // Where branches meet, f may be zero on a curve or at a point that has no highest point of either.
+            // Where branches meet, f may be zero on a curve or at a point that has no highest point
+            // of either.
             let search = if self.creases.is_open { Search::Searched } else { self.components.witnessed() };
             self.survey.adopt(probe.field, found, &self.bounds, search);
             if self.survey.position.is_empty() {
@@ -370,7 +371,8 @@ impl Sampler {
         }
     }
 
-    /// Looks for a zero of f on a curve, or a point by itself, among singular points, if none is known.
+    /// Looks for a zero of f on a curve, or a point by itself, among singular points, if none is
+    /// known.
     fn find_bare_place(&mut self, field: &mut dyn Field, singular: &[Singular]) {
         if self.bare_place().is_none() {
             let probe = &mut Probe::new(field, &mut self.tools.memory);
@@ -450,7 +452,8 @@ impl Sampler {
         self.survey.bare.or(self.creases.bare)
     }
 
-    /// Whether nothing was seen of a surface, and nothing was proven: f may have one that is small against the box, or beyond it.
+    /// Whether nothing was seen of a surface, and nothing was proven: f may have one that is small
+    /// against the box, or beyond it.
     pub(crate) fn shows_nothing(&self) -> bool {
         let absence = self.survey.absence;
         let is_unseen = matches!(absence, Absence::NotSeen | Absence::Undefined | Absence::Constant);

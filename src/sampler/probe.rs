@@ -66,16 +66,18 @@ impl<'a> Probe<'a> {
         patch.zip(known).is_none_or(|(patch, known)| known.contains(&patch))
     }
 
-    /// Whether a zero of f is one of a curve, or a point by itself, on no surface: f keeps one sign around it, and most planes through it have no
-    /// other zero of f around it. A plane cuts a surface, and holds a curve that is tangent to it, as the edge of a solid may be. `size` is
+    /// Whether a zero of f is one of a curve, or a point by itself, on no surface: f keeps one sign
+    /// around it, and most planes through it have no other zero of f around it. A plane cuts a
+    /// surface, and holds a curve that is tangent to it, as the edge of a solid may be. `size` is
     /// the largest distance at which f is looked at; the surface is not to bend within it.
     ///
     /// The evaluations, which are in double precision, are not counted.
     pub(crate) fn is_bare_zero(&mut self, point: DVec3, size: f64) -> bool {
-        /// Distances as shares of the size: a surface that bends within one need not within the other, and what the point may be off by counts
-        /// least at the larger one.
+        /// Distances as shares of the size: a surface that bends within one need not within the
+        /// other, and what the point may be off by counts least at the larger one.
         const SIZES: [f64; 2] = [1.0, 0.25];
-        /// Normals of the planes. Any three are independent, so that at most two of the planes hold one direction.
+        /// Normals of the planes. Any three are independent, so that at most two of the planes hold
+        /// one direction.
         const NORMALS: [DVec3; 5] = [
             DVec3::new(0.8, 0.5, 0.3),
             DVec3::new(-0.3, 0.8, 0.5),
@@ -84,7 +86,8 @@ impl<'a> Probe<'a> {
             DVec3::new(-0.7, 0.2, 0.7),
         ];
         const MOST_CUT: usize = 2;
-        /// |f| over its largest value at that distance below which it is zero: Newton's method ends nearer than that to the zero.
+        /// Below this share of its largest value at that distance |f| counts as zero: Newton's method
+        /// ends nearer than that to a zero.
         const ZERO: f64 = 0.01;
         let (at_point, _) = self.field.value_and_gradient(point);
         let distances = SIZES.map(|share| share * size);
@@ -98,10 +101,12 @@ impl<'a> Probe<'a> {
             && !self.changes_sign_near(point, size)
     }
 
-    /// Whether f changes its sign near the zero to which Newton's method leads from a point: a surface that is small beside `size` looks like a
-    /// point or a curve.
+    /// Whether f changes its sign near the zero to which Newton's method leads from a point: a
+    /// surface that is small beside `size` looks like a point or a curve.
     fn changes_sign_near(&mut self, mut point: DVec3, size: f64) -> bool {
-        /// Of the size: Newton's method halves the distance to a double zero at each step, and the distances looked at double.
+        /// Number of Newton steps, and of distances that are tried. Each step halves the distance
+        /// to a double zero, and each distance is half of the one before: 40 of them reach from
+        /// `size` down to rounding.
         const STEPS: usize = 40;
         for _ in 0..STEPS {
             let (value, gradient) = self.field.value_and_gradient(point);
@@ -126,10 +131,12 @@ impl<'a> Probe<'a> {
         false
     }
 
-    /// The largest |f| all around a point at a distance; 0 where f has both signs there, NaN where it has no value.
+    /// The largest |f| all around a point at a distance; 0 where f has both signs there, NaN where
+    /// it has no value.
     fn most_around(&mut self, point: DVec3, distance: f64) -> f64 {
-        /// Steps from the place with the least |f|, each twice as long as one to a simple zero: they end on a curve through the point, and lead
-        /// into a narrow cone in which f has the other sign.
+        /// Number of steps towards a smaller |f|. Each is twice a Newton step, so that it ends at a
+        /// double zero (a curve) and passes a simple one (the side of a narrow cone), where f
+        /// changes its sign.
         const STEPS: u32 = 8;
         let (mut least, mut most) = ((f64::INFINITY, DVec3::ZERO), 0.0_f64);
         let mut sign = 0.0;
@@ -162,12 +169,14 @@ impl<'a> Probe<'a> {
         most
     }
 
-    /// Whether f is zero somewhere on the circle around a point across `normal`, or changes its sign or has no value there.
+    /// Whether f is zero somewhere on the circle around a point across `normal`, or changes its
+    /// sign or has no value there.
     fn is_zero_around(&mut self, point: DVec3, normal: DVec3, radius: f64) -> bool {
-        /// |f| over its largest value on the circle below which it is zero: far above rounding, and above what the steps leave of |f| where
-        /// it is the distance to a sheet. Beside the curve of |u| + v² it is about the radius.
+        /// Below this share of its largest value on the circle |f| counts as zero. It is far above
+        /// rounding and above what the steps leave of |f| beside a sheet; beside the curve of |u| + v²
+        /// the share is about the radius.
         const ZERO: f64 = 1e-9;
-        /// Arcs of the circle, and the tangent of half of one.
+        /// The circle is divided into this many arcs; `TANGENT` is tan(π/8), of half an arc.
         const ARCS: usize = 8;
         const TANGENT: f64 = 0.4142;
         let u = normal.any_orthogonal_vector().normalize_or_zero();
@@ -239,8 +248,8 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// The least of some values of a function between −`most` and `most`, near its minimum if it has one: by the golden section (J. Kiefer,
-/// "Sequential minimax search for a maximum", 1953).
+/// The least of some values of a function between −`most` and `most`, near its minimum if it has
+/// one: by the golden section (J. Kiefer, "Sequential minimax search for a maximum", 1953).
 fn least_within(most: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
     /// The share of an interval that is left after a step.
     const GOLDEN: f64 = 0.618_033_988_749_895;

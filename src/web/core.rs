@@ -285,7 +285,8 @@ impl Core {
         self.session.run.join(budget).map(|answer| to_js(&answer))
     }
 
-    /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none before it is complete.
+    /// The triangles of the mesh, three rows each, counter-clockwise round their normals; none
+    /// before it is complete.
     pub fn triangles(&self) -> Vec<u32> {
         self.session.run.mesh().map_or_else(Vec::new, |mesh| mesh.corners().as_flattened().to_vec())
     }

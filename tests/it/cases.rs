@@ -1,8 +1,9 @@
 //! Random cases: which of them a run takes, and how many.
 //!
-//! A run takes a tenth of the cases, from a seed that changes every day, so that many runs see more than one long run would.
-//! `MARCHING_PARTICLES_TENTHS=10` takes all of them (`cargo xtask test --all`), a larger number more than that, and
-//! `MARCHING_PARTICLES_SEED` repeats a run: each test prints the seed of a case that fails.
+//! A run takes a tenth of the cases, from a seed that changes every day, so that many runs see more
+//! than one long run would. `MARCHING_PARTICLES_TENTHS=10` takes all of them (`cargo xtask test
+//! --all`), a larger number more than that, and `MARCHING_PARTICLES_SEED` repeats a run: each test
+//! prints the seed of a case that fails.
 
 use std::env;
 use std::ops::Range;
@@ -49,7 +50,8 @@ pub(crate) fn proptest(all: u64) -> proptest::test_runner::Config {
     }
 }
 
-/// Asserts that about this share of the cases, or more, is as wanted: by no more than four standard deviations fewer.
+/// Asserts that about this share of the cases, or more, is as wanted: by no more than four standard
+/// deviations fewer.
 pub(crate) fn assert_share(wanted: u64, cases: u64, share: f64, what: &str) {
     let expected = share * cases as f64;
     let deviation = (expected * (1.0 - share)).sqrt();

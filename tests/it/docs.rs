@@ -1,6 +1,6 @@
-//! Holds the documents to the program: the table of settings to the settings, the summaries in `docs`
-//! to the tables that the benches have written, the promised compiler to the one in use, and every
-//! link to a file.
+//! Holds the documents to the program: the table of settings to the settings, the summaries in
+//! `docs` to the tables that the benches have written, the promised compiler to the one in use, and
+//! every link to a file.
 //!
 //! `UPDATE_GOLDEN=1 cargo test --test it docs::` writes what differs.
 
@@ -162,7 +162,8 @@ fn methods_summary() -> String {
          | Largest hole | Closest pair |\n| --- | --- | --: | --: | --: | --: | --: | --: |\n",
     );
     for Section { title, rows, .. } in sections(&read("docs/tables/methods.md")) {
-        // A surface has a row for the front, and one without a name after it if it could be refined.
+        // A surface has a row for the front, and one without a name after it if it could be
+        // refined.
         let pairs = rows.windows(2).filter(|pair| pair[1][0].is_empty());
         let (fronts, refined): (Vec<_>, Vec<_>) = pairs.map(|pair| (&pair[0], &pair[1])).unzip();
         for (method, rows) in [("front", fronts), ("refined", refined)] {

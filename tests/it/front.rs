@@ -11,9 +11,10 @@ use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::Figures;
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode};
 
-/// Pins: the share of particles with six neighbours and the mean of the smallest angles of the triangles that the front gives today
-/// with 56,000 particles, rounded down. Surfaces whose curvature changes its sign have less: there the rows of the front are
-/// compressed on one side and stretched on the other, and fronts that went around a handle meet out of step.
+/// Pins: the share of particles with six neighbours and the mean of the smallest angles of the
+/// triangles that the front gives today with 56,000 particles, rounded down. Surfaces whose
+/// curvature changes its sign have less: there the rows of the front are compressed on one side and
+/// stretched on the other, and fronts that went around a handle meet out of step.
 const PINS: [(&str, f64, f64); 4] =
     [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
 

@@ -16,6 +16,7 @@ mod crease_box;
 mod crease_mesh;
 mod crease_quality;
 mod creased;
+mod curves;
 mod differential;
 mod docs;
 mod door;

@@ -241,7 +241,8 @@ fn face_alike(points: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3], of_norm
     })
 }
 
-/// Sharp edges, with the number of triangles at a corner, the Euler number and the volume of each solid; f is smaller inside, or larger.
+/// Sharp edges, with the number of triangles at a corner, the Euler number and the volume of each
+/// solid; f is smaller inside, or larger.
 const SHARP: [(&str, i64, f64); 6] = [
     ("max(abs(x), abs(y), abs(z)) - 1", 2, 8.0),
     ("1 - max(abs(x), abs(y), abs(z))", 2, 8.0),
@@ -353,7 +354,8 @@ fn files_face_outward_whichever_way_f_grows_and_the_report_says_so() {
         assert_eq!(sample.volume().is_some(), volume.is_some(), "{text}");
         let told = sample.volume().zip(volume);
         assert!(told.is_none_or(|(told, volume)| (told / volume - 1.0).abs() < 0.02), "{text}: {told:?}");
-        // Normals of particles follow the gradient; the triangles by rows are counter-clockwise round them.
+        // Normals of particles follow the gradient; the triangles by rows are counter-clockwise
+        // round them.
         let particles = sample.particles();
         assert!(face_alike(
             &particles.position,

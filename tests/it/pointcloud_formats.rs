@@ -1,4 +1,5 @@
-//! Tests of the readers of files as scanners and other programs write them: OFF, PCD, PTS, colours, headers, and rows without coordinates.
+//! Tests of the readers of files as scanners and other programs write them: OFF, PCD, PTS, colours,
+//! headers, and rows without coordinates.
 
 use crate::pointcloud_read::{CORNERS, FACES, assert_is_tetrahedron, binary_ply, cloud, read, refused};
 use glam::DVec3;
@@ -6,7 +7,8 @@ use marching_particles::pointcloud::NormalSource;
 use marching_particles::pointcloud::read::InputFormat;
 use std::fmt::Write as _;
 
-/// The tetrahedron as OFF: a header, `more` after the coordinates of each point and after each face.
+/// The tetrahedron as OFF: a header, `more` after the coordinates of each point and after each
+/// face.
 fn off(header: &str, more: &str) -> String {
     let mut text = format!("{header}\n");
     for [x, y, z] in CORNERS {
@@ -40,7 +42,8 @@ fn off_is_read_with_its_prefixes_colours_and_comments() {
             assert_eq!(warnings, Vec::<String>::new(), "{header}");
         }
     }
-    // Normals come before colours or after them: as Geomview and Open3D write them, and as MeshLab does.
+    // Normals come before colours or after them: as Geomview and Open3D write them, and as MeshLab
+    // does.
     for (header, before, after) in [
         ("NOFF", "", ""),
         ("CNOFF", "", " 9 9 9"),
@@ -85,7 +88,8 @@ fn off_is_read_with_its_prefixes_colours_and_comments() {
     }
 }
 
-/// A field of a PCD file: its name, size, type, count, and the component of the points that it holds, if it holds one.
+/// A field of a PCD file: its name, size, type, count, and the component of the points that it
+/// holds, if it holds one.
 type PcdField = (&'static str, usize, char, usize, Option<usize>);
 
 const XYZ: [PcdField; 3] = [("x", 4, 'F', 1, Some(0)), ("y", 4, 'F', 1, Some(1)), ("z", 4, 'F', 1, Some(2))];
@@ -459,7 +463,8 @@ fn columns_are_found_by_the_names_that_programs_give_them() {
     };
     type Row = fn([f64; 3]) -> String;
     let named: [(&str, Row); 8] = [
-        // pandas with its index, R with its quotes, ParaView, NumPy and CloudCompare with their comments, with spaces in names, and a label.
+        // pandas with its index, R with its quotes, ParaView, NumPy and CloudCompare with their
+        // comments, with spaces in names, and a label.
         (",x,y,z,nx,ny,nz", |[x, y, z]| format!("7,{x},{y},{z},{x},{y},{z}")),
         ("\"\",\"x\",\"y\",\"z\",\"nx\",\"ny\",\"nz\"", |[x, y, z]| format!("\"1\",{x},{y},{z},{x},{y},{z}")),
         ("\"Normals:0\",\"Normals:1\",\"Normals:2\",\"Points:0\",\"Points:1\",\"Points:2\"", |[x, y, z]| {

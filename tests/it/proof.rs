@@ -212,7 +212,8 @@ fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>)
     family_of(name, share, (75, TINY_SHARE), |factors| factors.join("*"), make);
 }
 
-/// The same, of formulas made from their factors by `join`; of so many cases in all, with tiny gaps for so large a share.
+/// The same, of formulas made from their factors by `join`; of so many cases in all, with tiny gaps
+/// for so large a share.
 fn family_of(
     name: &str,
     share: f64,

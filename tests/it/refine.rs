@@ -28,7 +28,8 @@ pub(crate) fn assert_rings(particles: &Particles) {
 
 #[test]
 fn closed_surfaces_come_out_in_order() {
-    // Pins, today's figures rounded down: share of six, mean smallest angle, smallest angle, closest pair.
+    // Pins, today's figures rounded down: share of six, mean smallest angle, smallest angle,
+    // closest pair.
     for (id, count, seed, [six, mean, smallest, rho]) in [
         ("ellipsoid", 14_000, 0, [0.985, 56.3, 39.0, 0.76]),
         ("sphere", 14_000, 1, [0.985, 56.2, 39.0, 0.76]),
@@ -289,7 +290,8 @@ fn a_front_has_no_mesh_before_it_is_joined() {
 
 #[test]
 fn surfaces_that_bend_more_are_refined_once() {
-    // Pins, today's figures rounded down: share of six and mean smallest angle. The front comes to 0.795 and 52.2° at worst.
+    // Pins, today's figures rounded down: share of six and mean smallest angle. The front comes to
+    // 0.795 and 52.2° at worst.
     for (id, six, mean) in [
         ("double-torus", 0.96, 55.5),
         ("decocube", 0.95, 55.5),

@@ -121,7 +121,8 @@ fn the_mesh_of_a_front_on_a_random_solid_is_closed() {
                 let sample = sample(Formula::parse(&text).expect("a formula"), &settings).expect("a sample");
                 let topology = &sample.mesh().topology;
                 let name = format!("{seed}, {:?}, {text}", settings.sampling);
-                // All bodies are convex and hold the origin, so that from there every point of the surface is seen.
+                // All bodies are convex and hold the origin, so that from there every point of the
+                // surface is seen.
                 assert_eq!((topology.components.len(), topology.borders.len()), (1, 0), "{name}");
                 assert_eq!(topology.components[0].euler(), 2, "{name}");
                 assert!(sample.volume().is_some(), "{name}");

@@ -1,4 +1,5 @@
-//! The core of the browser tests in Firefox and in WebKit. An engine that cannot be had is skipped, and the reason is printed.
+//! The core of the browser tests in Firefox and in WebKit. An engine that cannot be had is skipped,
+//! and the reason is printed.
 
 use std::path::PathBuf;
 use std::process::Command;

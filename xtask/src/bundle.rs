@@ -1,10 +1,12 @@
-//! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer for WebGPU and for WebGL2.
+//! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer
+//! for WebGPU and for WebGL2.
 //!
-//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → `target/xtask/bundles` → `www/src/wasm`, where the page takes it from,
-//! whichever purpose it was built for. For development and for `cargo xtask test` cargo optimises less and wasm-opt is left out.
-//! The declarations are checked in, since the page's types are those of `src/web/`; the rest is not. A bundle is not built
-//! again when a hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding
-//! and optimising are skipped as well.
+//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → `target/xtask/bundles` → `www/src/wasm`,
+//! where the page takes it from, whichever purpose it was built for. For development and for `cargo
+//! xtask test` cargo optimises less and wasm-opt is left out. The declarations are checked in,
+//! since the page's types are those of `src/web/`; the rest is not. A bundle is not built again
+//! when a hash over everything that goes into it is unchanged; when cargo then gives the same
+//! module as before, binding and optimising are skipped as well.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +27,8 @@ use crate::wasm_target::WasmTarget;
 pub(crate) enum Purpose {
     /// The published site, and benches.
     Site,
-    /// The development server and the quick tests: soon compiled, by the profile `wasm-dev`, and not optimised for size.
+    /// The development server and the quick tests: soon compiled, by the profile `wasm-dev`, and
+    /// not optimised for size.
     Development,
 }
 
@@ -321,8 +324,8 @@ fn bind(bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
     declare(bundle, stage)
 }
 
-/// Rewrites the declarations in `stage` as they are checked in. The module's own exports are left out: the page calls the class, and
-/// their names change from build to build.
+/// Rewrites the declarations in `stage` as they are checked in. The module's own exports are left
+/// out: the page calls the class, and their names change from build to build.
 fn declare(bundle: Bundle, stage: &Path) -> Result<()> {
     let file = stage.join(format!("{}.d.ts", bundle.out_name()));
     let mut text = String::new();
@@ -376,8 +379,8 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
 }
 
-/// Copies the files that differ to where the page takes them from. Each is replaced at once, so that a running development server
-/// never reads half of one.
+/// Copies the files that differ to where the page takes them from. Each is replaced at once, so
+/// that a running development server never reads half of one.
 fn publish(folder: &Path, page: &Path) -> Result<()> {
     fs::create_dir_all(page).with_context(|| format!("could not create {}", page.display()))?;
     for old in files_under(page)? {

@@ -1,4 +1,5 @@
-//! The project's checks: those of every change, which continuous integration runs, and those that the published site is held to.
+//! The project's checks: those of every change, which continuous integration runs, and those that
+//! the published site is held to.
 
 use std::path::Path;
 use std::process::Command;
@@ -38,15 +39,18 @@ pub(crate) enum Part {
     Page,
     /// The built site in Chromium, at / and in a sub-path.
     Chromium,
-    /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without cargo-deny.
+    /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without
+    /// cargo-deny.
     Deny,
     /// rustdoc, warnings denied, and the crate as cargo would publish it.
     Docs,
-    /// The bundles of the published site, held to their budgets and to the digests of the native core.
+    /// The bundles of the published site, held to their budgets and to the digests of the native
+    /// core.
     Release,
     /// Mesh files against Khronos' glTF validator.
     Gltf,
-    /// Files of every format in the programs that people read them with; skipped, with the reason, without Python.
+    /// Files of every format in the programs that people read them with; skipped, with the reason,
+    /// without Python.
     Readers,
     /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
     Browsers,
@@ -76,8 +80,8 @@ const ALL: [Part; 14] = [
     Part::Soak,
 ];
 
-/// Parts that make and check the bundles of the page. They run beside those that compile natively, because the last crate of
-/// every build takes one processor only.
+/// Parts that make and check the bundles of the page. They run beside those that compile natively,
+/// because the last crate of every build takes one processor only.
 const BUNDLES: [Part; 3] = [Part::Parity, Part::Release, Part::Page];
 
 /// Parts that drive a browser, which takes all processors and waits for time to pass: they run last and alone.
@@ -92,9 +96,10 @@ pub(crate) struct Options {
     /// Only format, lint and native.
     #[arg(long, conflicts_with_all = ["parts", "all"])]
     fast: bool,
-    /// Everything that the published site is held to: besides the usual parts the documentation, the bundles and the site as they
-    /// are published, Firefox and WebKit, files in the programs that read them, all random cases, and a soak. With parts: these, on
-    /// the published bundles and with all random cases.
+    /// Everything that the published site is held to: besides the usual parts the documentation,
+    /// the bundles and the site as they are published, Firefox and WebKit, files in the programs
+    /// that read them, all random cases, and a soak. With parts: these, on the published bundles
+    /// and with all random cases.
     #[arg(long)]
     all: bool,
     /// The parts to run; the usual ones if none is named.
@@ -162,7 +167,8 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Chooses and prints the random cases: a tenth of them or all, from a seed that is of today unless the environment names one.
+/// Chooses and prints the random cases: a tenth of them or all, from a seed that is of today unless
+/// the environment names one.
 fn random_cases(is_all: bool) -> [(&'static str, String); 2] {
     const SEED: &str = "MARCHING_PARTICLES_SEED";
     const TENTHS: &str = "MARCHING_PARTICLES_TENTHS";
@@ -238,7 +244,8 @@ impl Checks<'_> {
     }
 }
 
-/// Builds the bundles and the site as they are published, and holds them to the digests and the budgets.
+/// Builds the bundles and the site as they are published, and holds them to the digests and the
+/// budgets.
 fn release(project: &Project) -> Result<()> {
     parity(project, Purpose::Site)?;
     site::build(project, Purpose::Site)?;

@@ -58,7 +58,8 @@ struct Arguments {
 enum Task {
     /// Serve the page for development and print its address.
     Serve(serve::Options),
-    /// Run the checks: format, lints, native tests, WebAssembly, page, Chromium; with --all everything else, too.
+    /// Run the checks: format, lints, native tests, WebAssembly, page, Chromium; with --all
+    /// everything else, too.
     Test(check::Options),
     /// Build the static site into dist/ and hold its size to the budgets.
     Build,
@@ -66,7 +67,8 @@ enum Task {
     Bench(bench::Options),
     /// Run the paper's jobs and write its tables (docs/tables/paper.md) and figures (docs/paper).
     Paper(paper::Options),
-    /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test and build do the first by themselves).
+    /// Build the WebAssembly bundles into www/src/wasm and rewrite their declarations (serve, test
+    /// and build do the first by themselves).
     Wasm {
         /// Those of the development server, which are compiled sooner and sample up to 15 % slower.
         #[arg(long)]

@@ -1,4 +1,5 @@
-//! The native tests: compiled once, then each executable run by itself, so that the time of every test is known.
+//! The native tests: compiled once, then each executable run by itself, so that the time of every
+//! test is known.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +11,8 @@ use crate::project::{Project, cargo};
 use crate::step;
 use crate::times;
 
-/// What is compiled natively. Every command names it, because another choice of features has cargo compile everything again.
+/// What is compiled natively. Every command names it, because another choice of features has cargo
+/// compile everything again.
 pub(crate) const TESTED: [&str; 5] =
     ["--package", "marching-particles", "--features", "marching-particles/cli", "--locked"];
 
@@ -93,8 +95,8 @@ fn compiled(messages: &str) -> Result<Vec<Executable>> {
     Ok(found)
 }
 
-/// Runs the tests of an executable and notes the time of each. The harness of the stable compiler tells times as JSON only if it is
-/// asked as that of a nightly one is.
+/// Runs the tests of an executable and notes the time of each. The harness of the stable compiler
+/// tells times as JSON only if it is asked as that of a nightly one is.
 fn run(command: &mut Command) -> Result<()> {
     command.args(["-Z", "unstable-options", "--report-time", "--format", "json"]).env("RUSTC_BOOTSTRAP", "1");
     let output = command.output().with_context(|| format!("could not start {command:?}"))?;

@@ -1,4 +1,5 @@
-//! The paper's tables and figures, made again: `docs/tables/paper.md` and the pictures in `docs/paper`.
+//! The paper's tables and figures, made again: `docs/tables/paper.md` and the pictures in
+//! `docs/paper`.
 
 use std::fs;
 use std::process::{Command, Stdio};

@@ -1,5 +1,6 @@
-//! The files of the command line against the programs that people read them with: MeshLab, trimesh, Open3D, libigl, meshio, pygltflib,
-//! pandas and NumPy, in a Python environment of the project's own. Without Python the check is skipped, and the reason is printed.
+//! The files of the command line against the programs that people read them with: MeshLab, trimesh,
+//! Open3D, libigl, meshio, pygltflib, pandas and NumPy, in a Python environment of the project's
+//! own. Without Python the check is skipped, and the reason is printed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,8 @@ const LABEL: &str = "files: the programs that read them";
 /// Packages of Debian with what MeshLab and Open3D are linked to.
 const LIBRARIES: [&str; 5] = ["libgl1", "libopengl0", "libusb-1.0-0", "libgomp1", "libx11-6"];
 
-/// Writes files of every format and has each program read them. Prints a table of programs and formats.
+/// Writes files of every format and has each program read them. Prints a table of programs and
+/// formats.
 ///
 /// # Errors
 ///

@@ -35,7 +35,8 @@ fn budget_kb(bundle: Bundle) -> f64 {
     }
 }
 
-/// Where the site is built: `dist/` what is published, in the target folder what only the quick tests look at.
+/// Where the site is built: `dist/` what is published, in the target folder what only the quick
+/// tests look at.
 pub(crate) fn folder(project: &Project, purpose: Purpose) -> PathBuf {
     match purpose {
         Purpose::Site => project.dist.clone(),

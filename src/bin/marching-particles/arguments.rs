@@ -132,9 +132,10 @@ Exit codes:
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct SampleArguments {
-    /// Make again what a PLY, OBJ, GLB or 3MF file holds that this program or its page has written: its surface, box and settings. A CSV
-    /// file has its record beside it, in a file whose name goes on with .json. What else is given takes the place of the file's; with
-    /// another surface, its settings alone are taken
+    /// Make again what a PLY, OBJ, GLB or 3MF file holds that this program or its page has written:
+    /// its surface, box and settings. A CSV file has its record beside it, in a file whose name
+    /// goes on with .json. What else is given takes the place of the file's; with another surface,
+    /// its settings alone are taken
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     pub(crate) like: Option<PathBuf>,
 
@@ -144,21 +145,23 @@ pub(crate) struct SampleArguments {
     #[command(flatten)]
     pub(crate) sampling: SamplingOptions,
 
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, distance to the nearest
-    /// particle, residual, and whether a singular point is near), csv (the same, and what it was made from in a file of JSON beside it), xyz or
-    /// npy (position, normal). Normals follow the gradient of f: they point inward where f is larger inside. May be given again;
-    /// replaces what is there
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent,
+    /// valence, distance to the nearest particle, residual, and whether a singular point is near),
+    /// csv (the same, and what it was made from in a file of JSON beside it), xyz or npy (position,
+    /// normal). Normals follow the gradient of f: they point inward where f is larger inside. May
+    /// be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 
-    /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
-    /// colours), 3mf (with its unit), stl, obj or ply (with normals). Closed surfaces face outward. May be given again; replaces what
-    /// is there. Unless --method or --relax is given, the method is refined, whose triangles are better
+    /// File for the triangle mesh over the particles; its extension is its format: glb (with
+    /// normals, generation levels as colours), 3mf (with its unit), stl, obj or ply (with normals).
+    /// Closed surfaces face outward. May be given again; replaces what is there. Unless --method or
+    /// --relax is given, the method is refined, whose triangles are better
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
 
-    /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own: in glb, obj and ply. stl and 3mf have no
-    /// normals
+    /// Vertices of the files of --mesh on sharp edges, where the sides have normals of their own:
+    /// in glb, obj and ply. stl and 3mf have no normals
     #[arg(long, value_name = "WORD", value_parser = vertices(), default_value = "joined", help_heading = "Output")]
     pub(crate) vertices: Vertices,
 
@@ -201,8 +204,9 @@ pub(crate) struct SurfaceArguments {
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
-    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS, CSV), up to 50 MB. A smooth surface
-    /// is fitted to all of them. Normals come from the file, else from its faces, else they are estimated
+    /// File of points or of a mesh: PLY, OBJ, STL, OFF, PCD, or text with a point a line (XYZ, PTS,
+    /// CSV), up to 50 MB. A smooth surface is fitted to all of them. Normals come from the file,
+    /// else from its faces, else they are estimated
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 

@@ -60,7 +60,8 @@ impl OutputFile {
     }
 }
 
-/// The path of the record of a file that has no place for one in it: beside it, with .json after its name.
+/// The path of the record of a file that has no place for one in it: beside it, with .json after
+/// its name.
 pub(crate) fn record_path(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".json");

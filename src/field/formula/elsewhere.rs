@@ -27,7 +27,7 @@ pub(super) fn function(name: &str) -> Option<Function> {
     Function::find(name)
 }
 
-/// What a call stands for.
+/// The function or the expression that a called name means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Called {
     Function(Function),
@@ -35,7 +35,8 @@ pub(super) enum Called {
     Power,
     /// a^2
     Square,
-    /// The sum of the products of the first half of the arguments with the second half.
+    /// The dot product of two vectors, of which the arguments list the components one after the
+    /// other.
     Dot,
     /// The angle of the point (a, b).
     AngleOf,

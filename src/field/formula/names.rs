@@ -1,4 +1,5 @@
-//! What names stand for: arguments, coordinates, definitions, constants, functions, and parameters.
+//! Looks a name up: it is an argument, a coordinate, a definition, a constant, a function or a
+//! parameter.
 
 use super::MAX_DEPTH;
 use super::ast::{COORDINATES, Constant, Expr, ExprKind, FUNCTIONS, Reference};

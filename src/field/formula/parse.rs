@@ -44,7 +44,7 @@ pub(super) struct Parser<'a> {
     /// Whether calls are written as in Mathematica, so that `E` is Euler's number.
     pub(super) is_mathematica: bool,
     pub(super) declared: &'a [&'a str],
-    /// What was defined so far, with the depth of each.
+    /// The definitions read so far, each with the depth of its nesting.
     pub(super) definitions: Vec<(Definition, usize)>,
     /// The name that is being defined, with its arguments.
     pub(super) present: Option<(String, Vec<String>)>,

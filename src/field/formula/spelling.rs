@@ -75,8 +75,8 @@ pub(super) fn unlikely_parameter(
     Some(error(message).suggest(meant))
 }
 
-/// What is said of a parameter that stands in a formula without coordinates: some names are those
-/// of other coordinates in books.
+/// Says that a name is a parameter, in a formula without coordinates. Names of polar coordinates
+/// are told what to write for them.
 pub(super) fn no_coordinate(name: &str) -> String {
     let instead = match name {
         "r" | "R" | "rho" | "ρ" | "radius" => {

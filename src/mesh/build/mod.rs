@@ -41,10 +41,11 @@ use stars::Stars;
 /// Triangles over points, with their topology and the points and borders that are left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangulation {
-    /// Triples of particles, each by its first row, so that particles on creases are vertices that the patches share; at the tip of a cone
-    /// each sheet has a vertex of its own. They form an oriented manifold: every edge has one triangle or two, every vertex one fan.
-    /// Closed parts face outward, also where f is larger inside; others are counter-clockwise round their normals. [`Self::corners`] has the
-    /// same triangles by rows.
+    /// Triples of particles, each by its first row, so that particles on creases are vertices that
+    /// the patches share; at the tip of a cone each sheet has a vertex of its own. They form an
+    /// oriented manifold: every edge has one triangle or two, every vertex one fan. Closed parts
+    /// face outward, also where f is larger inside; others are counter-clockwise round their
+    /// normals. [`Self::corners`] has the same triangles by rows.
     pub triangles: Vec<[u32; 3]>,
     /// Components, borders and Euler numbers, counted anew on the triangles.
     pub topology: Topology,
@@ -58,7 +59,8 @@ pub struct Triangulation {
     pub inside: Option<Inside>,
     /// The triangles by rows, round the normals; empty where these are `triangles`.
     pub(crate) corners: Vec<[u32; 3]>,
-    /// For each vertex, whether the triangles around it were turned to face outward; empty where none were.
+    /// For each vertex, whether the triangles around it were turned to face outward; empty where
+    /// none were.
     pub(crate) turned: Vec<bool>,
 }
 
@@ -70,9 +72,10 @@ impl Triangulation {
         Joined { triangles, ..Joined::default() }.counted(particles).await
     }
 
-    /// The same triangles in the same order, by rows: a particle on a crease has a row for each patch, with the normal of that patch. They are
-    /// counter-clockwise round the normals of their rows, which point to larger f: the other way round than [`Self::triangles`] where
-    /// f is larger inside.
+    /// Returns the corners of the triangles as rows of the particles. A particle on a crease has a
+    /// row for each patch, with the normal of that patch; [`Self::triangles`] names the first of
+    /// them everywhere. Corners run counter-clockwise round the normals of their rows, which point
+    /// to larger f: where f is larger inside, [`Self::triangles`] run the other way round.
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {
         if self.corners.is_empty() { &self.triangles } else { &self.corners }
@@ -99,9 +102,9 @@ impl Triangulation {
         if self.is_turned(triangle) { [a, c, b] } else { [a, b, c] }
     }
 
-    /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed units of the coordinates: the sum of
-    /// a · (b × c) / 6 over them, by the divergence theorem. Positive whether f is smaller or larger inside. `None` where they are not
-    /// closed.
+    /// Volume that the triangles over these particles enclose, exact to the triangles, in cubed
+    /// units of the coordinates: the sum of a · (b × c) / 6 over them, by the divergence theorem.
+    /// Positive whether f is smaller or larger inside. `None` where they are not closed.
     #[must_use]
     pub fn volume(&self, particles: &Particles) -> Option<f64> {
         let at = |i: u32| particles.position[i as usize].as_dvec3();

@@ -14,7 +14,8 @@ const SHOWN: usize = 24;
 /// Names of the components of a point and its normal, in headers and messages.
 pub(super) const COMPONENTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Index in [`COMPONENTS`] of the component that a column of this name holds, by the names that programs give it.
+/// Index in [`COMPONENTS`] of the component that a column of this name holds, by the names that
+/// programs give it.
 pub(super) fn component(name: &[u8]) -> Option<usize> {
     /// The names in lower case, of x to nz each. ParaView's are the last ones.
     const NAMES: [[&[u8]; 6]; 4] = [
@@ -121,7 +122,8 @@ impl<'a> Input<'a> {
         }
     }
 
-    /// `value`, if it can be a coordinate; NaN if it is not finite. The error message calls the coordinate `name`.
+    /// `value`, if it can be a coordinate; NaN if it is not finite. The error message calls the
+    /// coordinate `name`.
     pub(super) fn coordinate(&self, value: f64, name: &str) -> Result<f64, ReadError> {
         if value.is_finite() && value.abs() > LARGEST {
             return Err(self.error(format!("{name} is {value:e}; up to {LARGEST:e} can be used")));
@@ -129,7 +131,8 @@ impl<'a> Input<'a> {
         Ok(if value.is_finite() { value } else { f64::NAN })
     }
 
-    /// Coordinate that a word spells; NaN if the word says that there is none. The error message calls the coordinate `name`.
+    /// Coordinate that a word spells; NaN if the word says that there is none. The error message
+    /// calls the coordinate `name`.
     pub(super) fn coordinate_of(&self, word: &[u8], name: &str) -> Result<f64, ReadError> {
         if let Some(value) = coordinate_number(word) {
             return self.coordinate(value, name);

@@ -42,8 +42,8 @@ impl FileMesh {
         Ok(())
     }
 
-    /// Leaves out the points that have a coordinate which is not finite, and the faces at them, and warns of it. A normal that is not finite
-    /// is none.
+    /// Leaves out the points that have a coordinate which is not finite, and the faces at them, and
+    /// warns of it. A normal that is not finite is none.
     pub(super) fn leave_out_undefined(&mut self) -> Result<(), ReadError> {
         self.normal.iter_mut().filter(|normal| !normal.is_finite()).for_each(|normal| *normal = DVec3::ZERO);
         let (total, before) = (self.position.len(), self.faces.len());

@@ -1,8 +1,9 @@
-//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, PCD, and text with a point a line, detected by content.
+//! Reader of files of points and meshes: PLY, OBJ, STL, OFF, PCD, and text with a point a line,
+//! detected by content.
 //!
-//! A file is read in slices of work, and the caller can show progress. Its content is not trusted: the
-//! counts in a header are compared with the size of the file before memory is allocated, and an error states its
-//! location.
+//! A file is read in slices of work, and the caller can show progress. Its content is not trusted:
+//! the counts in a header are compared with the size of the file before memory is allocated, and an
+//! error states its location.
 
 mod format;
 mod input;
@@ -143,12 +144,14 @@ impl Reader {
         self.format
     }
 
-    /// Reads the header and all rows, which are lines or records: the points and faces. Points with a coordinate that is not finite are left
-    /// out, with a warning that counts them. `tell` gets the fraction of the file that is read.
+    /// Reads the header and all rows, which are lines or records: the points and faces. Points with
+    /// a coordinate that is not finite are left out, with a warning that counts them. `tell` gets
+    /// the fraction of the file that is read.
     ///
     /// # Errors
     ///
-    /// An error with the number of the row that cannot be read, one of the header, or [`ReadError::NoPoints`].
+    /// An error with the number of the row that cannot be read, one of the header, or
+    /// [`ReadError::NoPoints`].
     pub async fn read(self, tell: impl Fn(f64)) -> Result<FileMesh, ReadError> {
         let Self { format, bytes, mut mesh } = self;
         let mut input = Input::new(&bytes, &tell);

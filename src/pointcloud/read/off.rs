@@ -5,8 +5,9 @@ use super::input::{COMPONENTS, Input, quoted, words};
 use super::mesh::FileMesh;
 use glam::DVec3;
 
-/// The letters before `OFF`, if a word begins such a file: `ST`, `C` and `N` say that points have texture coordinates, colours and
-/// normals; `4` and `n` that they are not points in space. The first number may follow without a space.
+/// The letters before `OFF`, if a word begins such a file: `ST`, `C` and `N` say that points have
+/// texture coordinates, colours and normals; `4` and `n` that they are not points in space. The
+/// first number may follow without a space.
 pub(super) fn prefix(word: &[u8]) -> Option<&[u8]> {
     let at = word.windows(3).position(|letters| letters == b"OFF")?;
     let (prefix, rest) = word.split_at(at);
@@ -41,7 +42,8 @@ pub(super) async fn read(input: &mut Input<'_>, mesh: &mut FileMesh) -> Result<(
         );
     }
     let has_normals = prefix.contains(&b'N');
-    // What stands nearest to `OFF` comes first in a line: normals in CNOFF, colours of three or four numbers in NCOFF.
+    // What stands nearest to `OFF` comes first in a line: normals in CNOFF, colours of three or
+    // four numbers in NCOFF.
     let colours_first =
         prefix.iter().rposition(|&letter| letter == b'C') > prefix.iter().rposition(|&letter| letter == b'N');
     let after = if prefix.starts_with(b"ST") { 2 } else { 0 };

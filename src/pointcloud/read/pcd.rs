@@ -1,5 +1,5 @@
-//! Reader of PCD files (Point Cloud Library, "The PCD (Point Cloud Data) file format", versions 0.5 to 0.7), as text, binary and
-//! compressed.
+//! Reader of PCD files (Point Cloud Library, "The PCD (Point Cloud Data) file format", versions 0.5
+//! to 0.7), as text, binary and compressed.
 
 use super::input::{COMPONENTS, Input, component, quoted, words};
 use super::mesh::FileMesh;
@@ -44,7 +44,8 @@ const KEYS: [&[u8]; 10] = [
     b"DATA",
 ];
 
-/// Whether a file begins as such a file does: with a comment that says so, or with the first line of a header.
+/// Whether a file begins as such a file does: with a comment that says so, or with the first line
+/// of a header.
 pub(super) fn begins_with(bytes: &[u8]) -> bool {
     /// Comments that may come before the header are short.
     const LOOKED_AT: usize = 1024;
@@ -214,7 +215,8 @@ async fn read_text(input: &mut Input<'_>, header: &Header, mesh: &mut FileMesh) 
     Ok(())
 }
 
-/// Adds the point whose numbers `bytes` gives: those of a field before which a point has so many bytes.
+/// Adds the point whose numbers `bytes` gives: those of a field before which a point has so many
+/// bytes.
 fn add_point<'b>(
     input: &Input,
     header: &Header,
@@ -232,7 +234,8 @@ fn add_point<'b>(
     mesh.add_point(values, header.has_normals())
 }
 
-/// Reads points whose fields follow each other, all of the first one and so on, compressed together.
+/// Reads points whose fields follow each other, all of the first one and so on, compressed
+/// together.
 async fn read_compressed(
     input: &mut Input<'_>,
     header: &Header,
@@ -263,8 +266,8 @@ async fn read_compressed(
     Ok(())
 }
 
-/// Unpacks LZF, the format of M. Lehmann's LibLZF: runs of bytes as they are, and references to bytes before. None if it does not give as many
-/// bytes as it should.
+/// Unpacks LZF, the format of M. Lehmann's LibLZF: runs of bytes as they are, and references to
+/// bytes before. None if it does not give as many bytes as it should.
 async fn unpack(packed: &[u8], size: usize, input: &mut Input<'_>) -> Result<Option<Vec<u8>>, ReadError> {
     let mut out: Vec<u8> = Vec::new();
     let mut bytes = packed;

@@ -1,5 +1,5 @@
-//! Reader of text with a point a line: XYZ files, with or without a normal and other columns, CSV files with a header, and PTS files,
-//! which begin with the number of their points.
+//! Reader of text with a point a line: XYZ files, with or without a normal and other columns, CSV
+//! files with a header, and PTS files, which begin with the number of their points.
 
 use super::input::{self, Input, component, coordinate_number, number, quoted};
 use super::mesh::FileMesh;
@@ -8,19 +8,21 @@ use crate::math::median;
 use core::ops::Range;
 use glam::DVec3;
 
-/// Lengths at which a vector may be a normal that was written with few digits, over that of the others: of unit normals with one digit after
-/// the point each component is off by 0.05 at most, and the length by 0.087.
+/// Lengths at which a vector may be a normal that was written with few digits, over that of the
+/// others: of unit normals with one digit after the point each component is off by 0.05 at most,
+/// and the length by 0.087.
 const ALIKE: Range<f64> = 0.9..1.1;
 
-/// Share of the rows with such a vector from which on three columns are normals: a normal is missing or zero here and there.
-/// With half of it twelve random clouds are read the same.
+/// Share of the rows with such a vector from which on three columns are normals: a normal is
+/// missing or zero here and there. With half of it twelve random clouds are read the same.
 const ALIKE_SHARE: f64 = 0.9;
 
-/// Number of points up to which no more is asked of normals than their length. More do not all face one octant, as colours do, which have no
-/// negative components, and not all one way.
+/// Number of points up to which no more is asked of normals than their length. More do not all face
+/// one octant, as colours do, which have no negative components, and not all one way.
 const FEW: usize = 8;
 
-/// Columns among which normals are looked for: those of a point with intensity, a colour with opacity, and a normal.
+/// Columns among which normals are looked for: those of a point with intensity, a colour with
+/// opacity, and a normal.
 const LOOKED_AT: usize = 11;
 
 /// Component of a point and its normal that each column of a file holds, if it holds one. Bytes, because a line may have as many columns
@@ -46,7 +48,8 @@ pub(super) fn begins_with(line: &[u8]) -> bool {
     words.first().is_some_and(|word| number(word).is_some()) || named(&words).is_some()
 }
 
-/// The character that separates the columns of a line, if it is one of those between which a column may be empty.
+/// The character that separates the columns of a line, if it is one of those between which a column
+/// may be empty.
 fn separator(line: &[u8]) -> Option<u8> {
     let mut words = Vec::new();
     [b';', b',', b'\t'].into_iter().find(|&separator| {
@@ -58,8 +61,8 @@ fn separator(line: &[u8]) -> Option<u8> {
     })
 }
 
-/// The words of a line: between separators, if the line has any, where a word in quotes may hold them; else between white space, commas and
-/// semicolons.
+/// The words of a line: between separators, if the line has any, where a word in quotes may hold
+/// them; else between white space, commas and semicolons.
 fn split<'a>(line: &'a [u8], separator: Option<u8>, words: &mut Vec<&'a [u8]>) {
     words.clear();
     if let Some(separator) = separator.filter(|separator| line.contains(separator)) {
@@ -117,7 +120,8 @@ struct Known {
 }
 
 impl Known {
-    /// Takes a line that may come before the points: a header, or their number. Returns whether it is one.
+    /// Takes a line that may come before the points: a header, or their number. Returns whether it
+    /// is one.
     fn take_head(&mut self, words: &[&[u8]], input: &Input) -> Result<bool, ReadError> {
         let count = if let [word] = words { core::str::from_utf8(word).ok() } else { None };
         let count: Option<u64> = count.and_then(|word| word.parse().ok());
@@ -234,7 +238,8 @@ struct Others {
 }
 
 impl Others {
-    /// Takes three columns that are normals for those of the points: of one length, and not all of them positive, as colours are.
+    /// Takes three columns that are normals for those of the points: of one length, and not all of
+    /// them positive, as colours are.
     fn become_normals(self, mesh: &mut FileMesh) -> Result<(), ReadError> {
         let rows = mesh.position.len();
         let Some(triples) = self.width.checked_sub(2).filter(|_| rows > 0) else { return Ok(()) };

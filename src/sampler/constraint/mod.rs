@@ -104,7 +104,8 @@ pub struct Creases {
     faces: Vec<FacePair>,
     /// A place where sheets cross along a curve and no patch ends, which is not followed: three planes through one line, say.
     pub(super) passed: Option<DVec3>,
-    /// A place where branches are zero together and f is on a curve or at a point alone, as |x| + |y| is.
+    /// A place where branches are zero together and f is on a curve or at a point alone, as |x| +
+    /// |y| is.
     pub(super) bare: Option<DVec3>,
     /// Whether there may be a crease where none was found.
     pub(super) is_open: bool,
@@ -197,8 +198,9 @@ impl Creases {
         self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
     }
 
-    /// The first corner that lies on a crease of these branches, on the way from one of its points to the next and farther along than `after`,
-    /// and is none of the `others`: how far along it lies, and its number.
+    /// The first corner that lies on a crease of these branches, on the way from one of its points
+    /// to the next and farther along than `after`, and is none of the `others`: how far along it
+    /// lies, and its number.
     fn corner_on(
         &self,
         probe: &mut Probe,
@@ -230,7 +232,8 @@ impl Creases {
         for curve in core::mem::take(&mut self.curves) {
             let mut cuts = Vec::new();
             for (k, chord) in curve.chords().enumerate() {
-                // Each corner is farther along the chord than the one before, so that none comes twice.
+                // Each corner is farther along the chord than the one before, so that none comes
+                // twice.
                 let mut after = 0.0;
                 while let Some((along, corner)) =
                     self.corner_on(probe, curve.branches, chord, after, step, curve.corners)

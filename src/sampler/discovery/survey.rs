@@ -86,7 +86,8 @@ struct Candidates {
     place: Vec<Vec3>,
     /// Area that each candidate stands for; none where f keeps its sign.
     areas: Vec<Option<f32>>,
-    /// Whether f need not change its sign beside a candidate: it is zero at a node, or keeps its sign.
+    /// Whether f need not change its sign beside a candidate: it is zero at a node, or keeps its
+    /// sign.
     is_unsure: Vec<bool>,
     /// Sum of the areas.
     area: f64,
@@ -287,7 +288,8 @@ struct Starts<'a> {
     branch: Option<u32>,
 }
 
-/// Moves the candidates onto the surface and keeps those that converge inside the box, but for zeros on a curve or at a point alone.
+/// Moves the candidates onto the surface and keeps those that converge inside the box, but for
+/// zeros on a curve or at a point alone.
 fn project(probe: &mut Probe, bounds: &Bounds, starts: Starts, spacing: f32, out: &mut Survey) {
     let Starts { place: start, areas, is_unsure, branch } = starts;
     probe.select(branch);
@@ -354,7 +356,8 @@ fn project_on_branches(
     probe.select(None);
 }
 
-/// The unsure ones of the points that have landed, with these normals, on both sides of which f has the same sign.
+/// The unsure ones of the points that have landed, with these normals, on both sides of which f has
+/// the same sign.
 fn touching(
     probe: &mut Probe,
     points: &[Vec3],
@@ -394,7 +397,8 @@ pub(crate) fn bare_among(
     selection(&points, SAMPLES).find(|&&p| probe.is_bare_zero(p, bare_size(spacing))).copied()
 }
 
-/// Distance at which f is looked at around a zero that may be on no surface, for a grid of this spacing.
+/// Distance at which f is looked at around a zero that may be on no surface, for a grid of this
+/// spacing.
 pub(crate) fn bare_size(spacing: f64) -> f64 {
     f64::from(LARGEST) * spacing
 }

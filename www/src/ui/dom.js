@@ -2,7 +2,9 @@
  * Creates and binds elements. Text becomes text nodes and styles are set through the CSS object model, as the page's
  * strict content security policy requires.
  */
+
 import { effect } from '@preact/signals-core';
+import { segmentsOf } from './segments.js';
 
 /** @import { Children, Given, Props, SvgProps } from './types.js' */
 
@@ -214,3 +216,6 @@ export const usesKeyboard = () => keyboard;
 
 /** Returns whether the user prefers reduced motion. */
 export const reducedMotion = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+/** Shows a message in which code stands between backticks. @param {string} message */
+export const marked = (message) => segmentsOf(message).map(({ text, code }) => (code ? h('code', null, text) : text));

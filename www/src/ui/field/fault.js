@@ -85,14 +85,3 @@ export function excerptOf(formula, start, end) {
 
 /** @param {string} text */
 const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
-
-/**
- * Splits a message into segments. Text between backticks is code.
- * @param {string} message
- */
-export function segmentsOf(message) {
-  const parts = message.split('`');
-  // An unpaired backtick is a character of the formula.
-  if (parts.length % 2 === 0) return [{ text: message, code: false }];
-  return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
-}

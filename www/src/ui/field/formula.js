@@ -1,9 +1,9 @@
 /** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
 import { computed } from '@preact/signals-core';
 import { button } from '../button.js';
-import { fill, h, live, query, uniqueId } from '../dom.js';
+import { fill, h, live, marked, query, uniqueId } from '../dom.js';
 import { mathElement, mathLines } from '../mathml.js';
-import { describeFault, segmentsOf } from './fault.js';
+import { describeFault } from './fault.js';
 import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
 
@@ -139,11 +139,7 @@ class FormulaInput {
     fill(
       error,
       editor.marks ? null : excerptElement(view),
-      h(
-        'p',
-        null,
-        segmentsOf(view.message).map(({ text, code }) => (code ? h('code', null, text) : text)),
-      ),
+      h('p', null, marked(view.message)),
       view.repairs.length ? this.#repairButtons(view.repairs) : null,
     );
     // On a phone there is little room below the editor.

@@ -2,16 +2,16 @@
 
 import { button } from '../button.js';
 import { createDialog } from '../dialog.js';
-import { h } from '../dom.js';
+import { h, marked } from '../dom.js';
 
 /** @import { Description } from '../../engine/types.js' */
 
-/** What a formula may have besides the functions, a paragraph each. */
+/** The rules of the language besides its functions, a paragraph each. */
 const SYNTAX = [
-  'Write f(x, y, z) or an equation. A product needs no sign: 2x y. Powers: x^2 or x². Unknown names become sliders. 1/2x is (1/2)x.',
-  'Definitions come before the surface, each ends with a ; or its line: r = hypot(x, y); (r - 1)^2 + z^2 = 0.1. Functions, too: f(a, b) = a^2 + b^2. Shift Enter begins a line. Comments: // …, # …, /* … */.',
-  'Conditions compare by <, <=, > and >=, with and, or, not: x < 1 and y > 0 ? a : b. The remainder is a % b.',
-  'There are no vectors: hypot(x, z) is length(p.xz). Formulas of LaTeX, MATLAB, Python, GLSL and Mathematica are read where they have the same meaning here.',
+  'Write a function of x, y and z, or an equation. A product needs no sign: `2x y`. Powers: `x^2` or `x²`. `1/2x` is `(1/2)x`. Unknown names become sliders.',
+  'Definitions stand before the surface, each ended by a `;` or by its line: `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1`. Functions, too: `f(a, b) = a^2 + b^2`. Shift Enter begins a line. Comments: `// …`, `# …`, `/* … */`.',
+  'Conditions compare with `<`, `<=`, `>` and `>=`, joined by `and`, `or`, `not`: `x < 1 and y > 0 ? a : b`. The remainder is `a % b`.',
+  'There are no vectors: write `hypot(x, z)` for `length(p.xz)`. Formulas of LaTeX, MATLAB, Python, GLSL and Mathematica are read where they mean the same here.',
 ];
 
 /** @type {ReturnType<typeof createDialog> | null} */
@@ -24,7 +24,11 @@ let dialog = null;
 export function openFunctions(description, insert) {
   dialog ??= createDialog(
     'Formula syntax',
-    SYNTAX.map((line) => h('p', { class: 'quiet' }, line)),
+    h(
+      'div',
+      { class: 'syntax' },
+      SYNTAX.map((line) => h('p', { class: 'quiet' }, marked(line))),
+    ),
     h(
       'ul',
       { class: 'functions' },

@@ -3,7 +3,7 @@
 import { computed } from '@preact/signals-core';
 import { enlarge } from '../box.js';
 import { button } from '../button.js';
-import { h, live } from '../dom.js';
+import { h, live, marked } from '../dom.js';
 import { NO_MESH, verdictOf } from '../mesh-words.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 
@@ -98,7 +98,9 @@ function emptyState(engine) {
       : ['No surface inside the box', 'Change the formula, or widen the box.']);
   return [
     h('h2', null, title),
-    message && !nowhere ? h('p', { class: 'quiet reason' }, message) : null,
+    message && !nowhere
+      ? h('p', { class: `quiet ${stop_reason === 'constant' ? '' : 'reason'}` }, marked(message))
+      : null,
     h(
       'p',
       { class: 'quiet' },

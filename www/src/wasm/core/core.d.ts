@@ -173,7 +173,8 @@ export class Core {
      */
     step(budget: number): Progress;
     /**
-     * The triangles of the mesh, three rows each, counter-clockwise round their normals; none before it is complete.
+     * The triangles of the mesh, three rows each, counter-clockwise round their normals; none
+     * before it is complete.
      */
     triangles(): Uint32Array<ArrayBuffer>;
     /**

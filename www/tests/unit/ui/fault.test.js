@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { changeBetween, describeFault, excerptOf, segmentsOf } from '../../../src/ui/field/fault.js';
+import { changeBetween, describeFault, excerptOf } from '../../../src/ui/field/fault.js';
+import { segmentsOf } from '../../../src/ui/segments.js';
 
 /** @import { FieldFault } from '../../../src/engine/types.js' */
 
