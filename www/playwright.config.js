@@ -33,6 +33,8 @@ const webgpu = [
 ];
 /** Whether the one test that takes minutes runs, and no other. */
 const SOAK = !!process.env.SOAK;
+/** Whether tests that take longest, marked `@all`, run too: they are those of `cargo xtask test --all`. */
+const ALL = !!process.env.ALL;
 const port = Number(process.env.MARCHING_PARTICLES_TEST_PORT ?? 4517);
 
 /** @param {string[]} args */
@@ -43,6 +45,7 @@ const chromium = (args) => ({
 
 export default defineConfig({
   testDir: 'tests/chromium',
+  grepInvert: ALL ? undefined : /@all/,
   testMatch: SOAK ? '**/soak.spec.js' : '**/*.spec.js',
   outputDir: 'test-results/chromium',
   forbidOnly: !!process.env.CI,

@@ -197,6 +197,7 @@ impl Checks<'_> {
                 Part::Gltf => gltf(self.project),
                 Part::Readers => readers::test(self.project),
                 Part::Page => self.page(),
+                Part::Chromium if self.purpose == Purpose::Site => self.chromium(&[("ALL", "1")]),
                 Part::Chromium => self.chromium(&[]),
                 Part::Browsers => self.site().and_then(|()| browsers::test(self.project, self.purpose)),
                 Part::Soak => self.chromium(&[("SOAK", "400")]),

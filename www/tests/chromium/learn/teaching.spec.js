@@ -65,44 +65,48 @@ const WALLS = [
   { width: 1920, height: 1080, letters: 24 },
 ];
 
-test('a rehearsal: in every window every slide is whole, with a large figure and large letters', async ({
-  page,
-}, info) => {
-  test.setTimeout(300_000);
-  const { clean } = await openLesson(page, { hash: '#why&mode=present', ...WALLS[0] });
-  await expect(page.locator('.present-bar')).toBeVisible();
-  const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
-  const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
-  for (const stop of stops) {
-    await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
-    let presses = 0;
-    let least = 1;
-    let seen = await settledSlide(page);
-    for (;;) {
-      for (const { width, height, letters } of WALLS) {
-        await page.setViewportSize({ width, height });
-        seen = await settledSlide(page);
-        const name = `${stop}, press ${presses}, ${width} × ${height}`;
-        expect(seen.beyond, name).toEqual([]);
-        expect(seen.letters, `${name}: ${seen.smallest}`).toBeGreaterThanOrEqual(letters);
-        expect(seen.words, name).toBeGreaterThan(2);
-        // A figure, or words that fill the slide.
-        if (seen.figure === null) expect(seen.words, name).toBeGreaterThan(20);
-        else expect(seen.figure, name).toBeGreaterThanOrEqual(0.6);
-        least = Math.min(least, seen.figure ?? 1);
+test(
+  'a rehearsal: in every window every slide is whole, with a large figure and large letters',
+  {
+    tag: '@all',
+  },
+  async ({ page }, info) => {
+    test.setTimeout(300_000);
+    const { clean } = await openLesson(page, { hash: '#why&mode=present', ...WALLS[0] });
+    await expect(page.locator('.present-bar')).toBeVisible();
+    const stops = await page.locator('[data-stop]').evaluateAll((all) => all.map(({ id }) => id));
+    const rows = ['| Stop | Figure | Letters | Words | Presses |', '|---|---:|---:|---:|---:|'];
+    for (const stop of stops) {
+      await expect(page.locator(`#${stop}[data-current]`)).toBeVisible();
+      let presses = 0;
+      let least = 1;
+      let seen = await settledSlide(page);
+      for (;;) {
+        for (const { width, height, letters } of WALLS) {
+          await page.setViewportSize({ width, height });
+          seen = await settledSlide(page);
+          const name = `${stop}, press ${presses}, ${width} × ${height}`;
+          expect(seen.beyond, name).toEqual([]);
+          expect(seen.letters, `${name}: ${seen.smallest}`).toBeGreaterThanOrEqual(letters);
+          expect(seen.words, name).toBeGreaterThan(2);
+          // A figure, or words that fill the slide.
+          if (seen.figure === null) expect(seen.words, name).toBeGreaterThan(20);
+          else expect(seen.figure, name).toBeGreaterThanOrEqual(0.6);
+          least = Math.min(least, seen.figure ?? 1);
+        }
+        if (stop === stops.at(-1) && presses === 15) break;
+        await page.keyboard.press('Space');
+        presses += 1;
+        // The address changes before the slide does.
+        if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
       }
-      if (stop === stops.at(-1) && presses === 15) break;
-      await page.keyboard.press('Space');
-      presses += 1;
-      // The address changes before the slide does.
-      if (!(await page.evaluate((id) => location.hash.startsWith(`#${id}&`), stop))) break;
+      const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
+      rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
     }
-    const figure = seen.figure === null ? 'none' : `${Math.round(100 * least)} %`;
-    rows.push(`| ${stop} | ${figure} | ${seen.letters} px | ${seen.words} | ${presses} |`);
-  }
-  await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
-  clean();
-});
+    await writeFile(info.outputPath('rehearsal.md'), `${rows.join('\n')}\n`);
+    clean();
+  },
+);
 
 test('an address of the last slide shows its first card with both pictures', async ({ page }) => {
   await openLesson(page, { hash: '#differences&mode=present' });
