@@ -54,7 +54,8 @@ export class Runs {
     const { loader } = this;
     const about = description(this.store);
     const state = loader.present();
-    const settings = completeSettings(about, state.settings);
+    const isMesh = this.store.meshing.value !== null;
+    const settings = completeSettings(about, isMesh ? { ...state.settings, method: 'refined' } : state.settings);
     return {
       kind: 'sample',
       field: { ...fieldRequest(state, about, loader.key()), ...pulled },
@@ -154,7 +155,7 @@ export class Runs {
     store.notice.value = {
       id: 'size',
       kind: 'warn',
-      text: `About ${predicted.toLocaleString()} particles would be needed; the limit is ${limit.toLocaleString()}.`,
+      text: `About ${predicted.toLocaleString('en')} particles would be needed; the limit is ${limit.toLocaleString('en')}.`,
       action: {
         label: 'Sample them anyway',
         run: () => {

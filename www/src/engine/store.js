@@ -49,6 +49,7 @@ export function createStore() {
     adapter: signal(''),
     notice: signal(null),
     mesh: signal(null),
+    meshing: signal(null),
     hover: signal(null),
     spot: signal(null),
     legend: signal(null),

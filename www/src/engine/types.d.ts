@@ -266,6 +266,8 @@ export interface EngineSignals {
   notice: ReadonlySignal<Notice | null>;
   /** of the mesh drawn; null while there is none */
   mesh: ReadonlySignal<MeshAnswer | null>;
+  /** how particles were drawn before a mesh was made, which the refined method samples; null while none is made */
+  meshing: ReadonlySignal<Pick<ViewState, 'draw' | 'level' | 'step'> | null>;
   hover: ReadonlySignal<Hover | null>;
   /** the place that was pointed out last; null once it no longer applies */
   spot: ReadonlySignal<Place | null>;
@@ -375,8 +377,10 @@ export interface EngineCommands {
   savePng: (options?: { width?: number; height?: number; transparent?: boolean }) => Promise<Blob>;
   /** the particles; `ply` has the record of what they were made from, `json` is the record alone */
   exportFile: (format: ParticleFormat, options?: { link?: string }) => Promise<Blob>;
-  /** draws the mesh of the refined method, which is sampled if the surface is not */
+  /** draws the mesh of the refined method, whatever method is set, until `leaveMesh` */
   makeMesh: () => void;
+  /** draws particles by the method that is set, as before the mesh was made */
+  leaveMesh: () => void;
   /** once no run is left; with the record of what it was made from, unless `plain` */
   exportMesh: (format: MeshFormat, options?: Partial<Omit<FileRequest, 'format'>>) => Promise<Blob>;
   dismissNotice: () => void;

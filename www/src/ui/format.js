@@ -1,35 +1,12 @@
-/** Formats numbers in the user's locale, with thin spaces and a true minus sign. */
+/** Formats numbers as English text does: with a point, as in formulas, grouped by commas, and a true minus sign. */
 
 /** U+2212, which is as wide as a digit. Intl writes a hyphen instead. */
 const MINUS = '\u2212';
 const THIN_NO_BREAK = '\u202f';
 export const MISSING = '\u2013';
 
-/**
- * Returns the valid language tags. Under the POSIX locale a browser may report `C` or `en-US@posix`, which Intl
- * rejects.
- * @param {readonly string[]} tags
- */
-export function validLocales(tags) {
-  return tags.filter((tag) => {
-    try {
-      return Intl.getCanonicalLocales(tag).length === 1;
-    } catch {
-      return false;
-    }
-  });
-}
-
-/** @type {string | string[] | undefined} */
-let locale = typeof navigator === 'undefined' ? undefined : validLocales(navigator.languages);
 /** @type {Map<string, Intl.NumberFormat>} */
 const formats = new Map();
-
-/** Sets the locale in tests. @param {string | string[] | undefined} tag */
-export function setLocale(tag) {
-  locale = tag;
-  formats.clear();
-}
 
 /**
  * @param {number} value
@@ -39,13 +16,10 @@ function write(value, options) {
   const key = JSON.stringify(options);
   let format = formats.get(key);
   if (!format) {
-    format = new Intl.NumberFormat(locale, options);
+    format = new Intl.NumberFormat('en', options);
     formats.set(key, format);
   }
-  return format
-    .format(value)
-    .replace(/-/g, MINUS)
-    .replace(/[\u00a0\u2009]/g, THIN_NO_BREAK);
+  return format.format(value).replace(/-/g, MINUS);
 }
 
 /** @param {unknown} value @returns {value is number} */

@@ -11,7 +11,6 @@ export function attachMenu(button, items, { label }) {
   const id = uniqueId('menu');
   const menu = h('div', { class: 'menu', id, popover: 'auto', role: 'group', 'aria-label': label }, items);
   button.popoverTargetElement = menu;
-  button.setAttribute('aria-haspopup', 'true');
   button.setAttribute('aria-expanded', 'false');
   menu.addEventListener('toggle', (event) => {
     const open = event.newState === 'open';

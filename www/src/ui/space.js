@@ -1,5 +1,6 @@
 /** Computes directions, extents and sections in the space of the surface, for controls and for marks on the picture. */
 import { along, cross, distance, dot, vec } from '../engine/vector.js';
+import { formatSignificant } from './format.js';
 
 /** @import { Angles, Bounds, Columns, CuttingPlane, Ray, Vec3 } from '../engine/types.js' */
 
@@ -59,6 +60,12 @@ export function axisOf(direction) {
     if (others.every((k) => Math.abs(direction[k]) < STRAIGHT)) return { axis, sign: Math.sign(direction[axis]) };
   }
   return null;
+}
+
+/** The equation of a plane across an axis; null for any other. @param {CuttingPlane} plane */
+export function equationOf({ normal, offset }) {
+  const straight = axisOf(normal);
+  return straight && `${AXES[straight.axis]} = ${formatSignificant(straight.sign * offset, 3)}`;
 }
 
 /**

@@ -16,8 +16,9 @@ const STAY_MS = 6000;
  * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
  */
 export function mountToasts(host, engine, isTold) {
-  host.setAttribute('role', 'status');
-  host.setAttribute('aria-live', 'polite');
+  // Screen readers announce what is added to a region that is already there: at once in an alert, else in a pause.
+  const alerts = host.appendChild(h('div', { role: 'alert' }));
+  const status = host.appendChild(h('div', { role: 'status' }));
   /** @type {Map<string, { element: HTMLElement, timer: number }>} */
   const shown = new Map();
 
@@ -44,10 +45,11 @@ export function mountToasts(host, engine, isTold) {
     const { id, kind } = notice;
     const old = shown.get(id);
     if (old) clearTimeout(old.timer);
-    const element = old?.element ?? host.appendChild(h('div'));
+    const region = kind === 'error' ? alerts : status;
+    const element = old?.element.parentElement === region ? old.element : region.appendChild(h('div'));
+    if (old?.element !== element) old?.element.remove();
     element.className = 'toast';
     element.dataset.kind = kind;
-    if (kind === 'error') element.setAttribute('role', 'alert');
     fill(
       element,
       partsOf(notice, () => remove(id)),

@@ -244,7 +244,9 @@ test('a mesh is made by the refined method, once, and its figures are those of t
   await until(p.engine.busy, (busy) => !busy);
   const mesh = await until(p.engine.mesh, (made) => made);
   const report = await until(p.engine.report, (told) => told && told.smallest_angle !== null && told);
-  expect(p.engine.state.value).toMatchObject({ settings: { method: 'refined' }, view: { draw: 'mesh' } });
+  // The state keeps the method that was chosen.
+  expect(p.engine.state.value).toMatchObject({ settings: {}, view: { draw: 'mesh' } });
+  expect(p.engine.state.value.settings.method).toBeUndefined();
   expect(report).toMatchObject({ smallest_angle: mesh?.smallest_angle, refined_levels: expect.any(Number) });
   expect(mesh?.loops).toEqual([]);
   expect(mesh?.smallest_angle).toBeGreaterThan(30);
@@ -256,6 +258,27 @@ test('a mesh is made by the refined method, once, and its figures are those of t
   p.engine.makeMesh();
   expect(p.engine.busy.value).toBe(false);
   expect(p.engine.progress.value.run).toBe(run);
+  // Back to the particles as they were: the method, and how they are drawn.
+  p.engine.leaveMesh();
+  await until(p.engine.busy, (busy) => !busy);
+  expect(p.engine.state.value.view.draw).toBe('discs');
+  expect(p.engine.columns.record?.settings.method).not.toBe('refined');
+  expect(p.engine.progress.value.particles).toBe(particles);
+});
+
+test('another surface keeps the settings of the sampling, not those of the surface before', async () => {
+  const p = await open();
+  await p.set({
+    settings: { thickness: 0.2, box_faces: 'closed', relax_steps: 4 },
+    plane: { normal: [1, 0, 0], offset: 0 },
+  });
+  p.engine.setSurface('torus');
+  await until(p.engine.busy, (busy) => !busy);
+  expect(p.state).toMatchObject({ surface: 'torus', settings: { relax_steps: 4 }, plane: null });
+  expect(Object.keys(p.state.settings)).toEqual(['relax_steps']);
+  await p.set({ settings: { thickness: 0.2 } });
+  await p.set({ surface: 'sphere' });
+  expect(p.state.settings).toEqual({});
 });
 
 /** FNV-1a, 64 bits. @param {Uint8Array} bytes */

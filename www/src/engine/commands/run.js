@@ -4,32 +4,42 @@
  * @module
  */
 import { completeSettings } from '../share/state.js';
-import { change, changeView, description, showAll } from '../store.js';
+import { changeView, description, showAll } from '../store.js';
 
 /**
  * @import { Parts } from '../parts.js'
- * @import { EngineCommands } from '../types.js'
+ * @import { EngineCommands, Settings } from '../types.js'
  */
 
 /** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
 
-/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh'>} RunCommands */
+/** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh' | 'leaveMesh'>} RunCommands */
 
 /** @param {Parts} parts @returns {RunCommands} */
 export function runCommands({ store, columns, runs }) {
+  /** Whether the particles are those of a method. @param {Settings[string]} method */
+  const isOf = (method) => columns.record?.settings.method === method;
   return {
     run() {
       showAll(store);
       runs.resample({ grow: true });
     },
     makeMesh() {
-      const { settings } = store.state.value;
-      const isRefined = settings.method === 'refined' && columns.record?.settings.method === 'refined';
-      change(store, { settings: { ...settings, method: 'refined' } });
+      const { draw, level, step } = store.state.value.view;
+      store.meshing.value ??= { draw, level, step };
       // Before the picture asks for a mesh, so that the present particles are not joined to one.
-      if (!isRefined || store.partial.value) runs.resample();
+      if (!isOf('refined') || store.partial.value) runs.resample();
       changeView(store, { draw: 'mesh', level: null, step: null });
+    },
+    leaveMesh() {
+      const before = store.meshing.value;
+      if (!before) return;
+      store.meshing.value = null;
+      const { view, settings } = store.state.value;
+      // Who has chosen another way of drawing meanwhile keeps it.
+      if (view.draw === 'mesh') changeView(store, before);
+      if (!isOf(completeSettings(description(store), settings).method)) runs.resample();
     },
     stop: () => runs.stop(),
     generateOnly() {

@@ -4,9 +4,10 @@
  * @module
  */
 
+import { batch } from '@preact/signals-core';
 import { FILE_SURFACE } from '../constants.js';
-import { freshShape } from '../points/loader.js';
 import {
+  freshShape,
   fromPoints,
   modelOf,
   newParameter,
@@ -19,8 +20,8 @@ import {
 import { change, changeView, description, showAll } from '../store.js';
 
 /**
- * @import { Parts, Pulled } from '../parts.js'
- * @import { EngineCommands, Shape } from '../types.js'
+ * @import { Parts } from '../parts.js'
+ * @import { EngineCommands, Shape, State } from '../types.js'
  */
 
 /**
@@ -45,7 +46,7 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
       const surface = surfaceOf(about, id);
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
       showAll(store);
-      change(store, freshShape(id, surface?.formula));
+      change(store, freshShape(description(store), state.value.settings, id, surface?.formula));
       // Another surface is framed, wherever the hand has left the camera.
       const { camera } = viewer;
       if (!camera.state.fit) {
@@ -74,7 +75,8 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         // The values of the gallery's parameters belong to its formula; in another one the same names begin afresh.
         const isOwn = surfaceOf(store.description.value, surface)?.formula === formula;
         const next = isOwn ? { formula: text, parameters: {} } : { formula: text };
-        change(store, fresh ? freshShape(description(store).surfaces[0].id, text) : next);
+        const about = description(store);
+        change(store, fresh ? freshShape(about, state.value.settings, about.surfaces[0].id, text) : next);
         framing.written({ typed: true });
       } else if (!store.typing.value) {
         if (!typing) runs.sampling.commit();
@@ -101,29 +103,39 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
 /** @param {Parts} parts @returns {InputCommands} */
 export function inputCommands({ store, runs }) {
   const { state } = store;
-  /** @param {boolean} live @param {Pulled} [pulled] */
-  const resample = (live, pulled = undefined) => {
-    // A pull ends with the parameters that the core answers.
-    store.dragging.value = live || pulled !== undefined;
-    if (live) runs.resampleLive(pulled);
-    else runs.resample({ pulled, changed: true });
+  /**
+   * Changes the state and says whether a drag is under way, as one, so that the history records the drag once.
+   * @param {boolean} dragging @param {Partial<State>} patch
+   */
+  const take = (dragging, patch) =>
+    batch(() => {
+      store.dragging.value = dragging;
+      change(store, patch);
+    });
+  /** @param {boolean} live @param {Partial<State>} patch */
+  const resample = (live, patch) => {
+    take(live, patch);
+    if (live) runs.resampleLive();
+    else runs.resample({ changed: true });
   };
   return {
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;
-      change(store, { parameters: { ...state.value.parameters, [name]: value } });
-      resample(live);
+      resample(live, { parameters: { ...state.value.parameters, [name]: value } });
     },
     resetParameter(name) {
       const { [name]: _, ...parameters } = state.value.parameters;
       change(store, { parameters });
       runs.resample();
     },
-    pull: (parameters, pins, { live = false } = {}) => resample(live, { parameters, pins: [...pins] }),
-    setPulls(pulls, { live = false } = {}) {
-      change(store, { pulls: [...pulls] });
-      resample(live);
+    pull(parameters, pins, { live = false } = {}) {
+      const pulled = { parameters, pins: [...pins] };
+      // A pull ends with the parameters that the core answers.
+      store.dragging.value = true;
+      if (live) runs.resampleLive(pulled);
+      else runs.resample({ pulled, changed: true });
     },
+    setPulls: (pulls, { live = false } = {}) => resample(live, { pulls: [...pulls] }),
     declareParameter(name) {
       const { declared } = state.value;
       if (declared.some((p) => p.name === name)) return;
@@ -138,26 +150,22 @@ export function inputCommands({ store, runs }) {
     setBounds(bounds, { live = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
-      change(store, { bounds: valid });
-      resample(live);
+      resample(live, { bounds: valid });
     },
     setPlane(plane, { live = false } = {}) {
       const valid = plane === null ? null : validPlane(plane);
       if (valid === undefined) return;
-      store.dragging.value = live;
-      change(store, { plane: valid });
+      take(live, { plane: valid });
     },
     fitBox() {
       const { box_mode: _, ...settings } = state.value.settings;
-      change(store, { bounds: null, settings });
-      resample(false);
+      resample(false, { bounds: null, settings });
     },
     setSetting(name, value, { live = false } = {}) {
       const about = store.description.value;
       const valid = about ? validSetting(about, name, value) : undefined;
       if (valid === undefined) return;
-      change(store, { settings: { ...state.value.settings, [name]: valid } });
-      resample(live);
+      resample(live, { settings: { ...state.value.settings, [name]: valid } });
     },
     resetSetting(name) {
       const { [name]: _, ...settings } = state.value.settings;

@@ -7,33 +7,16 @@
  */
 import { batch } from '@preact/signals-core';
 import { FILE_SURFACE } from '../constants.js';
-import { defaultState, fromPoints, modelOf } from '../share/state.js';
+import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../share/state.js';
 import { PointsClient } from './client.js';
 
 /**
- * @import { State } from '../types.js'
+ * @import { Shape } from '../types.js'
  * @import { LoaderOptions, Refusal, SampleOptions, Wanted } from './types.js'
- */
-
-/**
- * The part of the state that determines the surface.
- * @typedef {Omit<State, 'v' | 'view' | 'settings'>} Shape
  */
 
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
 const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
-
-/** @param {string} surface @param {string} [formula] @returns {Shape} */
-export const freshShape = (surface, formula = '') => ({
-  surface,
-  formula,
-  parameters: {},
-  declared: [],
-  centres: null,
-  bounds: null,
-  plane: null,
-  pulls: [],
-});
 
 export class ModelLoader {
   #store;
@@ -87,7 +70,7 @@ export class ModelLoader {
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
-    const { v: _, view: __, settings: ___, ...shape } = this.#store.state.value;
+    const { v: _, view: __, ...shape } = this.#store.state.value;
     this.#last = shape;
   }
 
@@ -99,10 +82,9 @@ export class ModelLoader {
 
   /** @returns {Shape} */
   #before() {
-    const { description } = this.#store;
-    if (this.#last || !description.value) return this.#last ?? freshShape('');
-    const { surface, formula } = defaultState(description.value);
-    return freshShape(surface, formula);
+    const about = this.#store.description.value;
+    const { v: _, view: __, ...first } = about ? defaultState(about) : emptyState();
+    return this.#last ?? first;
   }
 
   /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
@@ -138,7 +120,7 @@ export class ModelLoader {
     // Without a core the solver alone refuses what is too large.
     const most = this.#store.description.value?.limits.file_bytes ?? Number.POSITIVE_INFINITY;
     if (file.size > most) {
-      const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
+      const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString('en');
       this.#refused(FILE_SURFACE, file.name, {
         kind: 'too_large',
         message: `the file has ${mb(file.size)} MB; up to ${mb(most)} MB are read`,
@@ -151,7 +133,8 @@ export class ModelLoader {
     const wanted = { id: FILE_SURFACE, name: file.name, order: { file, centres: null } };
     await this.#order(wanted, keyOf(key, null), () => {
       this.#opened = { file, key };
-      state.value = { ...state.value, ...freshShape(FILE_SURFACE) };
+      const { value: now } = state;
+      state.value = { ...now, ...freshShape(this.#store.description.value, now.settings, FILE_SURFACE) };
       this.#sample({ grow: true, fit: true });
     });
   }

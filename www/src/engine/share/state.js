@@ -12,7 +12,7 @@ import { homeView, validView } from './view.js';
 
 /**
  * @import {
- *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, SurfaceInfo,
+ *   Bounds, CuttingPlane, Description, FieldRequest, Limits, Parameter, Pull, Settings, State, Shape, SurfaceInfo,
  * } from '../types.js'
  */
 
@@ -54,6 +54,30 @@ export function completeSettings(description, settings) {
   const all = {};
   for (const info of description.settings) all[info.name] = settings[info.name] ?? info.default;
   return all;
+}
+
+/**
+ * Returns the settings that stay when another surface is chosen: those of the box are of one surface.
+ * @param {Description} description
+ * @param {Settings} settings
+ * @returns {Settings}
+ */
+export function lastingSettings({ settings: known }, settings) {
+  const lasts = (/** @type {string} */ name) => known.some((info) => info.name === name && info.group !== 'Box');
+  return Object.fromEntries(Object.entries(settings).filter(([name]) => lasts(name)));
+}
+
+/**
+ * Returns the shape that begins with another surface.
+ * @param {Description | null} description
+ * @param {Settings} settings  up to now
+ * @param {string} surface
+ * @param {string} [formula]
+ * @returns {Shape}
+ */
+export function freshShape(description, settings, surface, formula = '') {
+  const { v: _, view: __, ...shape } = emptyState();
+  return { ...shape, surface, formula, settings: description ? lastingSettings(description, settings) : settings };
 }
 
 /**
@@ -282,7 +306,9 @@ export function mergeState(now, patch, description, hasFile) {
     typeof patch.surface === 'string'
       ? patch.surface !== now.surface
       : typeof patch.formula === 'string' && fromPoints(description, now.surface);
-  const base = another ? { ...defaultState(description), view: now.view, settings: now.settings } : now;
+  const base = another
+    ? { ...defaultState(description), view: now.view, settings: lastingSettings(description, now.settings) }
+    : now;
   const raw = {
     ...base,
     // A surface named in the patch brings its own formula.

@@ -7,7 +7,17 @@ import { explain } from '../explain.js';
 import { formatSignificant } from '../format.js';
 import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
-import { AXES, anglesOf, axisOf, axisVector, centreOf, directionOf, extentOf, towardEye } from '../space.js';
+import {
+  AXES,
+  anglesOf,
+  axisOf,
+  axisVector,
+  centreOf,
+  directionOf,
+  equationOf,
+  extentOf,
+  towardEye,
+} from '../space.js';
 
 /** @import { Bounds, CuttingPlane, Engine, ReadonlySignal, Signal } from '../../engine/types.js' */
 
@@ -44,9 +54,8 @@ export function createCuttingPlane(engine) {
   }
 
   const told = () => {
-    const [now, straight] = [plane.value, axis.value];
-    if (!now) return 'off';
-    return straight ? `${AXES[straight.axis]} = ${formatSignificant(straight.sign * now.offset, 3)}` : 'free direction';
+    if (!plane.value) return 'off';
+    return (axis.value && equationOf(plane.value)) ?? 'free direction';
   };
   const details = h(
     'details',

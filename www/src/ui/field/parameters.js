@@ -1,5 +1,5 @@
 /** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
-import { computed } from '@preact/signals-core';
+import { batch, computed } from '@preact/signals-core';
 import { canGrab } from '../../engine/pulls.js';
 import { button } from '../button.js';
 import { h } from '../dom.js';
@@ -65,10 +65,11 @@ function resetAll(engine) {
     const { parameters, pulls } = engine.state.value;
     return Object.keys(parameters).length > 0 || pulls.length > 0;
   });
-  const press = () => {
-    if (engine.state.peek().pulls.length > 0) engine.setPulls([]);
-    for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
-  };
+  const press = () =>
+    batch(() => {
+      if (engine.state.peek().pulls.length > 0) engine.setPulls([]);
+      for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
+    });
   return button({ class: () => (changed.value ? 'plain small' : 'plain small invisible'), press }, 'Reset');
 }
 

@@ -1,4 +1,5 @@
 /** The button that makes a mesh, and opens the panel with the verdict on it. The panel comes with the first press. */
+import { untracked } from '@preact/signals-core';
 import { button } from '../button.js';
 import { h, live, query } from '../dom.js';
 import { explain, place } from '../explain.js';
@@ -14,6 +15,9 @@ import sheet from './mesh.css?url';
 export function createMeshButton(engine, toast) {
   /** @type {Promise<HTMLElement> | null} */
   let panel = null;
+  const methodOf = () => engine.state.value.settings.method;
+  /** The method that is set while the panel is open. @type {ReturnType<typeof methodOf>} */
+  let method;
   const load = async () => {
     const [{ createMeshPanel }] = await Promise.all([import('./panel.js'), loadSheet(sheet)]);
     const close = () => {
@@ -27,14 +31,19 @@ export function createMeshButton(engine, toast) {
       event.stopPropagation();
       close();
     });
+    holder.addEventListener('toggle', ({ newState }) => {
+      if (newState === 'closed') engine.leaveMesh();
+    });
     document.body.append(holder);
-    // A mesh is of no use beside a formula with a mistake. The caret stays in the formula.
+    // A mesh is of no use beside a formula with a mistake; the caret stays in the formula. Who chooses another method
+    // wants to see it.
     live(holder, () => {
-      if (engine.fieldError.value) holder.hidePopover();
+      if (engine.fieldError.value || methodOf() !== method) holder.hidePopover();
     });
     return holder;
   };
   const open = async () => {
+    method = untracked(methodOf);
     engine.makeMesh();
     panel ??= load();
     try {
@@ -51,7 +60,7 @@ export function createMeshButton(engine, toast) {
       toast({ id: 'save', kind: 'error', text: 'A part of the page could not be loaded. Load it again.' });
     }
   };
-  const text = 'Samples by the refined method, joins the particles to triangles, checks them, and saves them.';
+  const text = 'Samples by the refined method and joins the particles to triangles, to look at, check and save.';
   const element = explain(button({ press: () => void open() }, 'Make a mesh'), () => ({ text }), { side: 'above' });
   return { element, open };
 }

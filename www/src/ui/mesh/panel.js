@@ -96,7 +96,12 @@ export function createMeshPanel(engine, { toast, close }) {
     note,
     verticesLine,
     verticesNote,
-    button({ class: 'save', off: () => !made.value, press: save }, 'Save mesh'),
+    h(
+      'div',
+      { class: 'mesh-ends' },
+      button({ press: close }, 'Back to particles'),
+      button({ class: 'save', off: () => !made.value, press: save }, 'Save mesh'),
+    ),
   );
 }
 

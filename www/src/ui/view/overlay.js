@@ -6,6 +6,7 @@ import { button } from '../button.js';
 import { h, live, marked } from '../dom.js';
 import { NO_MESH, verdictOf } from '../mesh-words.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
+import { createKept } from './kept.js';
 
 /**
  * @import { Engine, ReadonlySignal } from '../../engine/types.js'
@@ -51,7 +52,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const whole = computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. '));
   // The caption has one line, and its whole text is shown where the pointer rests on it.
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true', title: () => whole.value });
-  view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
+  view.append(empty, h('div', { class: 'foot' }, createKept(engine), caption, hint), spoken);
   caption.append(
     h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),
     h('span', { class: 'detail' }, () => (engine.loading.value ? '' : told.value?.text)),

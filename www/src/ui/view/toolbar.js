@@ -75,7 +75,7 @@ export function createToolbar(engine, { hide, shortcuts, picture, makeMesh, moti
         'formula, box and settings, as JSON; PLY includes it',
       ),
       heading('Mesh'),
-      choice('Make a mesh', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
+      choice('Export mesh…', makeMesh, 'GLB, 3MF, STL, OBJ or PLY'),
     ],
     { label: 'Export' },
   );

@@ -2,7 +2,7 @@
  * The cutting plane and the handles of the clip box: by pointer, by finger, by keyboard, in links and in the history.
  */
 import { expect, test } from '@playwright/test';
-import { afresh, atRest, open, scan, settled, state } from './helpers.js';
+import { afresh, atRest, open, scan, settled, state, typeFormula } from './helpers.js';
 
 /** @import { Locator, Page } from '@playwright/test' */
 
@@ -40,6 +40,27 @@ const run = (/** @type {Page} */ page) =>
 
 test('the cutting plane and the faces of the box', async ({ page }) => {
   const { clean } = await open(page);
+  await test.step('what stays when the formula changes is told in the picture, and ended there', async () => {
+    await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.setSetting('thickness', 0.1);
+      engine.setPlane({ normal: [1, 0, 0], offset: 0 });
+    });
+    const kept = page.locator('.kept');
+    await expect(kept).toContainText('Cut at x = 0');
+    await typeFormula(page, '(x - 3)^2 + y^2 + z^2 = 0.5');
+    await settled(page);
+    await expect(kept).toContainText('Cut at x = 0, which hides everything');
+    await kept.getByRole('button', { name: 'End the cut' }).click();
+    await expect(kept).toHaveText('Thickness 0.1');
+    expect((await state(page)).plane).toBe(null);
+    // Another surface begins without it.
+    await page.locator('.tile[data-surface="torus"]').click();
+    await settled(page);
+    await expect(kept).toBeHidden();
+    expect((await state(page)).settings).toEqual({});
+    await afresh(page);
+  });
   await test.step('a plane cuts the picture open by keyboard alone, and nothing is sampled', async () => {
     const before = await run(page);
     const panel = await openPlane(page);
@@ -83,6 +104,8 @@ test('the cutting plane and the faces of the box', async ({ page }) => {
     await panel.getByRole('radio', { name: 'x', exact: true }).check();
     const knob = page.getByRole('slider', { name: 'Cutting plane', exact: true });
     await expect(knob).toBeVisible();
+    // Until the choice is a step of the history by itself.
+    await page.waitForTimeout(900);
     const [x, y] = await middle(knob);
     const tip = await middle(page.locator('.plane-tip'));
     // Along the arrow, which is the way of the normal in the picture.

@@ -33,6 +33,25 @@ test('the history', async ({ page }) => {
     await settled(page);
   });
 
+  await test.step('a drag is undone at once, however long it pauses', async () => {
+    await afresh(page);
+    const range = page.locator('.row[data-parameter] input[type=range]').first();
+    const { x, y, width, height } = (await range.boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+    const to = (/** @type {number} */ share) => page.mouse.move(x + share * width, y + height / 2, { steps: 3 });
+    await to(0.5);
+    await page.mouse.down();
+    for (const share of [0.6, 0.7]) {
+      await to(share);
+      // Longer than the pause by which typing and keys become steps of their own.
+      await page.waitForTimeout(1000);
+    }
+    await page.mouse.up();
+    await settled(page);
+    expect((await state(page)).parameters).not.toEqual({});
+    await undo(page).click();
+    expect((await state(page)).parameters).toEqual({});
+  });
+
   await test.step('another surface that comes back is seen with all its levels', async () => {
     await afresh(page);
     await page.locator('.tile[data-surface="torus"]').click();

@@ -8,7 +8,9 @@ test('the mesh', async ({ page }) => {
     await page.getByRole('button', { name: 'Make a mesh' }).click();
     const panel = page.getByRole('region', { name: 'Mesh' });
     await expect(panel.locator('.verdict')).toHaveText(/^Watertight · Euler number 2 · volume [\d.]+ · smallest angle/);
-    expect(await state(page)).toMatchObject({ settings: { method: 'refined' }, view: { draw: 'mesh' } });
+    const made = await state(page);
+    expect(made.view.draw).toBe('mesh');
+    expect(made.settings.method).toBeUndefined();
     await expect(panel.getByRole('button', { name: 'Save mesh' })).toBeFocused();
     for (const format of ['glb', '3mf', 'stl', 'obj', 'ply']) {
       await panel.getByLabel('Format').selectOption(format);
@@ -23,7 +25,13 @@ test('the mesh', async ({ page }) => {
     await page.keyboard.press('Escape');
     await expect(panel).toBeHidden();
     await expect(page.getByRole('button', { name: 'Make a mesh' })).toBeFocused();
+    expect((await state(page)).view.draw).toBe('discs');
     await page.keyboard.press('Enter');
+    await expect(panel).toBeVisible();
+    await panel.getByRole('button', { name: 'Back to particles' }).click();
+    expect((await state(page)).view.draw).toBe('discs');
+    await page.getByRole('button', { name: 'Export', exact: true }).click();
+    await page.getByRole('button', { name: 'Export mesh…' }).click();
     await expect(panel).toBeVisible();
     await typeFormula(page, 'x^2 +');
     await expect(panel).toBeHidden();

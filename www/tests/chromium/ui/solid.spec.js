@@ -19,7 +19,7 @@ test('a periodic surface becomes a closed part, and a surface again', async ({ p
   await test.step('what is no thickness is refused in words', async () => {
     await thickness.fill('-1');
     await thickness.press('Enter');
-    await expect(page.getByRole('alert')).toContainText('from 0 on');
+    await expect(page.getByRole('alert').filter({ hasText: 'from 0 on' })).toBeVisible();
     expect((await state(page)).settings.thickness).toBeUndefined();
   });
   await test.step('links and the history have the choices', async () => {

@@ -1,14 +1,12 @@
-import { beforeAll, describe, expect, it } from 'vitest';
+import { describe, expect, it } from 'vitest';
 import { FILE_SURFACE } from '../../../src/engine/constants.js';
 import { factsOf, fittedOf } from '../../../src/ui/field/facts.js';
 import { carriesFiles, describeLoadingError, filesOf } from '../../../src/ui/field/files.js';
 import { storyOf } from '../../../src/ui/field/story.js';
-import { setLocale } from '../../../src/ui/format.js';
 import { description } from '../engine/description.js';
 
 /** @import { ModelInfo } from '../../../src/engine/types.js' */
 
-beforeAll(() => setLocale('en'));
 const info = /** @type {ModelInfo} */ ({
   name: 'dragon.ply',
   credit: '',

@@ -1,4 +1,4 @@
-import { beforeAll, describe, expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { nearest } from '../../../src/engine/vector.js';
 import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from '../../../src/figures/geometry.js';
 import { isAdaptive, momentAt } from '../../../src/figures/moment.js';
@@ -8,14 +8,11 @@ import { placedBefore, standIn } from '../../../src/ui/follow/find.js';
 import { circleAround } from '../../../src/ui/follow/mark.js';
 import { alikeIn } from '../../../src/ui/follow/run.js';
 import { heightsOf, stretchesOf } from '../../../src/ui/follow/tracks.js';
-import { setLocale } from '../../../src/ui/format.js';
 
 /**
  * @import { LessonEvent } from '../../../src/engine/types.js'
  * @import { Rest } from '../../../src/figures/types.js'
  */
-
-beforeAll(() => setLocale('en'));
 
 /** The events of a particle with two children: one is added, one matches. @type {LessonEvent[]} */
 const events = [

@@ -1,16 +1,13 @@
-import { beforeAll, describe, expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { Columns } from '../../../src/engine/columns.js';
 import { FATE, NO_PARENT } from '../../../src/engine/core-numbers.js';
 import { facing } from '../../../src/engine/view/facing.js';
-import { setLocale } from '../../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../../src/ui/levels/figures.js';
 import { moveOf } from '../../../src/ui/levels/keys.js';
 import { drawnAt, isOutOfSight, stepsOf, trackPlace } from '../../../src/ui/levels/levels.js';
 import { BINS, degreeBins, hexagonalCount, nearestBins, nearestOver } from '../../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../../src/ui/levels/table.js';
 import { spread } from '../../../src/ui/neighbours.js';
-
-beforeAll(() => setLocale('en-GB'));
 
 /** Fates of slots as the core packs them. @param {(keyof typeof FATE)[]} fates */
 const slots = (...fates) => fates.reduce((bits, fate, k) => (bits | (FATE[fate] << (3 * k))) >>> 0, 0);

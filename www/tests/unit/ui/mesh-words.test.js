@@ -1,11 +1,8 @@
-import { beforeAll, expect, it } from 'vitest';
-import { setLocale } from '../../../src/ui/format.js';
+import { expect, it } from 'vitest';
 import { borderOf } from '../../../src/ui/mesh/borders.js';
 import { verdictOf } from '../../../src/ui/mesh-words.js';
 
 /** @import { MeshAnswer } from '../../../src/engine/types.js' */
-
-beforeAll(() => setLocale('en'));
 
 /**
  * @param {[number, number][]} components  Euler number and open edges

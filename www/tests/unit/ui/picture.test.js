@@ -1,10 +1,7 @@
-import { beforeAll, describe, expect, test } from 'vitest';
-import { setLocale } from '../../../src/ui/format.js';
+import { describe, expect, test } from 'vitest';
 import { captionOf, endsOf } from '../../../src/ui/picture/compose.js';
 import { durationOf } from '../../../src/ui/picture/film.js';
 import { FILM_SIZES, sizesOf, sizeWords } from '../../../src/ui/picture/sizes.js';
-
-beforeAll(() => setLocale('en'));
 
 describe('the sizes of a picture', () => {
   test('are those of the window, 4K and a square', () => {

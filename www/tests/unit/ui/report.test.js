@@ -1,5 +1,4 @@
-import { beforeAll, describe, expect, it } from 'vitest';
-import { setLocale } from '../../../src/ui/format.js';
+import { describe, expect, it } from 'vitest';
 import { coarsen, trim } from '../../../src/ui/report/bins.js';
 import { listOf, placeOf } from '../../../src/ui/report/places.js';
 import { PLAIN } from '../../../src/ui/report/plain.js';
@@ -18,7 +17,6 @@ import { captionOf, loadingOf } from '../../../src/ui/view/caption.js';
 
 /** @import { ReportRow } from '../../../src/engine/types.js' */
 
-beforeAll(() => setLocale('en'));
 /**
  * @param {Partial<ReportRow>} [change]
  * @returns {ReportRow}
