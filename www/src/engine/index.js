@@ -14,7 +14,7 @@ import { Framing } from './framing.js';
 import { keepLook } from './look.js';
 import { createPicture } from './picture.js';
 import { Runs } from './runs.js';
-import { coreFetched } from './sampling/spawn.js';
+import { fetchCore } from './sampling/spawn.js';
 import { surfaceOf } from './share/state.js';
 import { createStore } from './store.js';
 
@@ -32,7 +32,7 @@ import { createStore } from './store.js';
 export function createEngine({ host, link = '', state = {}, backend = null }) {
   const store = createStore();
   const columns = new Columns();
-  const picture = createPicture({ host, store, columns, first: backend });
+  const picture = createPicture({ host, store, columns, first: backend, after: fetchCore() });
   const { viewer } = picture;
   const runs = new Runs({
     store,
@@ -62,7 +62,6 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
 
   /** @type {Parts} */
   const parts = { store, columns, picture, runs, framing, adopt };
-  let isOver = false;
   const closeLook = keepLook({ store, viewer, runs });
   /** @type {Engine} */
   const engine = {
@@ -87,13 +86,11 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     },
     debug: createDebug(parts),
     destroy() {
-      isOver = true;
       closeLook();
       for (const part of [framing, picture, runs]) part.close();
     },
   };
   runs.sampling.start();
-  // Nothing can be drawn before the first particles, so the renderer does not share the connection with the core.
-  void coreFetched().then(() => (isOver ? undefined : viewer.start()));
+  void viewer.start();
   return engine;
 }

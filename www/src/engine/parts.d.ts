@@ -35,6 +35,8 @@ export interface PictureOptions {
   columns: Columns;
   /** the back end to try first */
   first: BackendKind | null;
+  /** what the bundles of the renderer are fetched after */
+  after: Promise<unknown>;
 }
 export interface RunsOptions {
   store: Store;

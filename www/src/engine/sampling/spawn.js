@@ -26,5 +26,11 @@ export function spawnSampler() {
   return worker;
 }
 
-/** Resolves once the core has loaded, or could not be loaded. It has to be asked for by {@link spawnSampler} before. */
-export const coreFetched = () => Promise.resolve(core).catch(() => {});
+/**
+ * Asks for the core, and resolves once it has loaded or could not be loaded. The renderer comes after it, since the two do
+ * not share the connection: the first picture needs the core alone.
+ */
+export async function fetchCore() {
+  core ??= loadModule(coreUrl);
+  await core.catch(() => {});
+}

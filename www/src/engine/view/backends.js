@@ -51,10 +51,11 @@ const bundle = (kind) =>
  * @param {HTMLElement} host
  * @param {{onLost: (reason: string, message: string) => void, onError: (message: string) => void}} events  callbacks of
  *   this device only
+ * @param {Promise<unknown>} [after]  what the bundle is fetched after; the adapter is asked for at once
  * @returns {Promise<Device>}
  * @throws if the browser lacks the back end or its bundle fails to start
  */
-export async function openDevice(kind, host, events) {
+export async function openDevice(kind, host, events, after) {
   if (!(await available(kind))) throw new Error(`${kind} is not available`);
   const canvas = document.createElement('canvas');
   Object.assign(canvas.style, {
@@ -82,6 +83,7 @@ export async function openDevice(kind, host, events) {
       const { Painter } = await import('./painter.js');
       renderer = await Painter.create(canvas);
     } else {
+      await after;
       const { default: init, Renderer: Made } = await bundle(kind);
       await init();
       renderer = await Made.create(canvas, lost, (/** @type {string} */ message) => {

@@ -36,8 +36,12 @@ export class DeviceKeeper {
   /** Whether dots stand for a device that was lost out of sight. */
   #resting;
 
+  /** What is drawn on until the first device has opened and drawn. @type {Device | null} */
+  #standIn;
+  #after;
+
   /** @param {DeviceOptions} options */
-  constructor({ host, onOpen, onLost, onFallback, first = null, open = openDevice, clock }) {
+  constructor({ host, onOpen, onLost, onFallback, first = null, after, open = openDevice, clock }) {
     this.#host = host;
     this.#onOpen = onOpen;
     this.#onLost = onLost;
@@ -59,6 +63,8 @@ export class DeviceKeeper {
     this.opened = 0;
     this.#inSight = true;
     this.#resting = false;
+    this.#standIn = null;
+    this.#after = after;
     /** Rejects the promises that wait for an answer of the device. @type {Set<(error: Error) => void>} */
     this.waiting = new Set();
   }
@@ -70,16 +76,18 @@ export class DeviceKeeper {
     for (; this.#rank < BACKENDS.length; this.#rank += 1) {
       const kind = BACKENDS[this.#rank];
       try {
-        const opening = this.#open(kind, this.#host, {
-          onLost: (reason, message) => {
+        const events = {
+          onLost: (/** @type {string} */ reason, /** @type {string} */ message) => {
             if (this.epoch === epoch) this.lost(`${reason}: ${message}`);
           },
-          onError: (message) => {
+          onError: (/** @type {string} */ message) => {
             // The device reports an error. Reopening the same kind would not help.
             if (this.epoch === epoch) this.giveUp(message);
           },
-        });
-        const device = await Promise.race([opening, this.#clock.wait(LOADING_MS).then(() => null)]);
+        };
+        const opening = this.#open(kind, this.#host, events, this.#after);
+        const late = Promise.resolve(this.#after).then(() => this.#clock.wait(LOADING_MS));
+        const device = await Promise.race([opening, late.then(() => null)]);
         if (device && this.epoch === epoch) {
           this.#take(device);
           return;
@@ -105,7 +113,25 @@ export class DeviceKeeper {
   #take(device) {
     this.device = device;
     this.opened += 1;
-    this.#onOpen(device);
+    this.#onOpen(device, false);
+  }
+
+  /** Draws on a 2-D canvas until the first device is there, whose bundle takes as long to come as the core. */
+  async standIn() {
+    const { epoch } = this;
+    if (BACKENDS[this.#rank] === 'canvas2d') return;
+    const device = await this.#open('canvas2d', this.#host, { onLost: () => {}, onError: () => {} }).catch(() => null);
+    if (!device || this.epoch !== epoch || this.device) return device?.dispose();
+    this.#standIn = device;
+    this.device = device;
+    this.#onOpen(device, true);
+  }
+
+  /** Notes that the present device has drawn: what stood for it is no longer seen. */
+  drew() {
+    if (this.#standIn === this.device) return;
+    this.#standIn?.dispose();
+    this.#standIn = null;
   }
 
   /** Draws dots on a 2-D canvas, which needs no context of the graphics device, until the picture is in sight. */
@@ -141,6 +167,7 @@ export class DeviceKeeper {
     this.epoch += 1;
     this.device?.dispose();
     this.device = null;
+    this.drew();
     for (const refuse of this.waiting) refuse(new Error('the graphics device is lost'));
   }
 

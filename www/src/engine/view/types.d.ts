@@ -161,14 +161,16 @@ export interface PickOptions {
 }
 export interface DeviceOptions {
   host: HTMLElement;
-  /** a new device, without particles, is open */
-  onOpen: (device: Device) => void;
+  /** a new device, without particles, is open; `isStandIn`: until the first one of the kind that is wanted is there */
+  onOpen: (device: Device, isStandIn: boolean) => void;
   /** the device is lost and another is being opened */
   onLost: (kind: BackendKind, message: string) => void;
   /** a kind of device was abandoned, with `isLate` because it took too long to open */
   onFallback: (kind: BackendKind, message: string, isLate?: boolean) => void;
   /** kind to try first */
   first?: BackendKind | null;
+  /** what the bundles are fetched after */
+  after?: Promise<unknown>;
   open?: typeof openDevice;
   clock?: { now: () => number; wait: (ms: number) => Promise<void> };
 }
@@ -187,4 +189,6 @@ export interface ViewerOptions {
   look: ViewState;
   /** the back end to try first */
   first: BackendKind | null;
+  /** what the bundles of the renderer are fetched after */
+  after: Promise<unknown>;
 }

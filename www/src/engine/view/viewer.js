@@ -47,7 +47,7 @@ export class Viewer {
    * @param {ViewerOptions} options
    * @param {ViewerEvents} events
    */
-  constructor({ host, columns, look, first }, events) {
+  constructor({ host, columns, look, first, after }, events) {
     this.columns = columns;
     this.#events = events;
     this.camera = new Camera(look.camera);
@@ -73,7 +73,8 @@ export class Viewer {
     this.keeper = new DeviceKeeper({
       host,
       first,
-      onOpen: (device) => this.#opened(device),
+      after,
+      onOpen: (device, isStandIn) => this.#opened(device, isStandIn),
       onLost: events.onLost,
       onFallback: events.onFallback,
     });
@@ -82,7 +83,9 @@ export class Viewer {
   }
 
   start() {
-    return this.keeper.start();
+    const started = this.keeper.start();
+    void this.keeper.standIn();
+    return started;
   }
 
   destroy() {
@@ -320,14 +323,14 @@ export class Viewer {
   // ---- drawing
   // ------------------------------------------------------------------------------------------------------------
 
-  /** @param {Device} device  without any particle yet */
-  #opened(device) {
+  /** @param {Device} device  without any particle yet @param {boolean} isStandIn */
+  #opened(device, isStandIn) {
     this.screen.drawnBy(device.kind);
     this.upload.restart();
     this.#faces.restart();
     this.#creases.restart();
     this.#restyle();
-    this.#events.onDevice(device);
+    if (!isStandIn) this.#events.onDevice(device);
   }
 
   /** @param {number} nowS @param {number} dtS @returns {FrameResult} */
@@ -352,6 +355,7 @@ export class Viewer {
     if (dimming) this.due.style = true;
     if (moving || revealing || dimming || this.upload.glide.active) this.frames.ask();
     if (outcome === 'drawn') {
+      this.keeper.drew();
       this.#events.onFrame();
       return 'drawn';
     }

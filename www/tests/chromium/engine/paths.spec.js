@@ -1,6 +1,6 @@
 /** The page as a visitor meets it in a browser with WebGL2 only: the first load, input, the address, a lost context. */
 import { expect, test } from '@playwright/test';
-import { atRest, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
+import { atRest, coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
@@ -327,4 +327,25 @@ test('a core that is missing is named, and another try helps', async ({ page }) 
   await page.unroute('**/core_bg*.wasm');
   await page.getByRole('button', { name: 'Try again' }).click();
   await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+});
+
+test('until the renderer has come the surface is painted without it', async ({ page }) => {
+  let send = () => {};
+  const asked = new Promise((resolve) => {
+    send = () => resolve(null);
+  });
+  await page.route('**/render_bg*.wasm', async (route) => {
+    await asked;
+    await route.continue();
+  });
+  await page.goto(`./${link(coarse)}`);
+  await expect.poll(async () => (await status(page))?.progress.phase, { timeout: 20_000 }).toBe('done');
+  expect((await status(page)).backend).toBe('starting');
+  await expectSurface(page);
+  await expect(page.locator('#poster')).toHaveClass(/gone/);
+  send();
+  await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
+  await atRest(page);
+  await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
+  await expectSurface(page);
 });

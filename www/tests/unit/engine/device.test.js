@@ -4,9 +4,9 @@ import { DeviceKeeper } from '../../../src/engine/view/device.js';
 
 /**
  * A keeper over scripted devices. `broken` kinds cannot be opened; `lost` ones never answer.
- * @param {string[]} [broken] @param {string[]} [lost]
+ * @param {string[]} [broken] @param {string[]} [lost] @param {Promise<unknown>} [after]
  */
-function kept(broken = [], lost = []) {
+function kept(broken = [], lost = [], after) {
   /** @type {string[]} */
   const log = [];
   /** @type {any[]} */
@@ -15,10 +15,12 @@ function kept(broken = [], lost = []) {
   const clock = { ms: 0, late: () => {} };
   const keeper = new DeviceKeeper({
     host: /** @type {any} */ (null),
-    onOpen: (device) => log.push(`open ${device.kind}`),
+    onOpen: (device, isStandIn) => log.push(`${isStandIn ? 'stand-in' : 'open'} ${device.kind}`),
     onLost: (kind) => log.push(`lost ${kind}`),
     onFallback: (kind, _message, isLate) => log.push(`gave up ${kind}${isLate ? ', late' : ''}`),
-    open: async (kind, _host, on) => {
+    after,
+    open: async (kind, _host, on, wait) => {
+      await wait;
       if (lost.includes(kind)) await new Promise(() => {});
       if (broken.includes(kind)) throw new Error(`${kind} is not available`);
       events.push(on);
@@ -50,6 +52,45 @@ describe('the keeper of devices', () => {
     const { keeper, log } = kept(['webgpu', 'webgl2']);
     await keeper.start();
     expect(log.at(-1)).toBe('open canvas2d');
+  });
+
+  test('is stood in for until it has drawn', async () => {
+    let fetched = () => {};
+    const after = new Promise((resolve) => (fetched = () => resolve(null)));
+    const { keeper, log } = kept([], [], after);
+    const started = keeper.start();
+    await keeper.standIn();
+    fetched();
+    await started;
+    expect(log).toEqual(['stand-in canvas2d', 'open webgpu']);
+    keeper.drew();
+    expect(log.at(-1)).toBe('close canvas2d');
+    // A second time nothing is closed.
+    keeper.drew();
+    expect(log).toHaveLength(3);
+  });
+
+  test('is not stood in for once it is there, nor by itself', async () => {
+    const { keeper, log } = kept();
+    await keeper.start();
+    await keeper.standIn();
+    expect(log).toEqual(['open webgpu', 'close canvas2d']);
+    const painter = kept(['webgpu', 'webgl2']);
+    await painter.keeper.start();
+    await painter.keeper.standIn();
+    expect(painter.log.filter((line) => line.startsWith('stand-in'))).toEqual([]);
+  });
+
+  test('that is closed takes what stands in for it along', async () => {
+    let fetched = () => {};
+    const after = new Promise((resolve) => (fetched = () => resolve(null)));
+    const { keeper, log } = kept([], [], after);
+    const started = keeper.start();
+    await keeper.standIn();
+    fetched();
+    await started;
+    keeper.close();
+    expect(log.filter((line) => line.startsWith('close'))).toEqual(['close webgpu', 'close canvas2d']);
   });
 
   test('gives up a kind whose request is lost, says so, and tries it again when it is asked to', async () => {
