@@ -54,7 +54,7 @@ const SHORT: usize = 64;
 pub enum Reach {
     /// The surface within ±10⁴ lies in the box: by proof, or by what grids show of it where no bounds decide.
     Bounded,
-    /// The surface goes on beyond the box.
+    /// The surface continues outside the box.
     Endless,
     /// There is no surface within ±10⁴.
     Nowhere,

@@ -1,4 +1,5 @@
-//! Warnings about a run: a typed list, whose `Display` is a sentence for each.
+//! Warnings about a run: a typed list. The first sentence of each says in one line what happened
+//! and what to do; the others are details, which the page folds away.
 
 use super::report::{CreaseCounts, creases_of};
 use super::{Report, Run, check};
@@ -29,11 +30,15 @@ const CLOSE_COUNT: usize = 8;
 /// length; the report has all of them.
 const NAMED: usize = 4;
 
+/// Longest first sentence of a warning, in letters: two lines of the page's report.
+const FIRST_SENTENCE: usize = 110;
+
 /// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a share of the mesh's. Of smooth
 /// meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of a washer and 5 % of a cube.
 const AREA_TOLERANCE: f64 = 0.05;
 
-/// A warning about a run. `Display` gives it in one or two sentences, with what to do.
+/// A warning about a run. The first sentence of its `Display` says what happened and what to do, in
+/// at most [`FIRST_SENTENCE`] letters and without the words of the method; the others are details.
 ///
 /// Positions are in the coordinates of the field. `length` is the radius of the run; `Display` rounds positions to a thousandth of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -373,65 +378,74 @@ impl fmt::Display for Warning {
         match self {
             Self::Limit { predicted, limit } => write!(
                 f,
-                "about {predicted} particles would fit, more than the limit of {limit}; the run will stop there."
+                "About {predicted} particles fit here; the run stops at the limit of {limit}."
             ),
             Self::Touches => f.write_str(
-                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
+                "The surface is covered twice, because f touches zero without changing its sign. Both sides are sampled. \
                  If f is a square, enter what is squared instead.",
             ),
             Self::Bare { position, length } => write!(
                 f,
-                "f also comes to zero near {} on a curve or at a point, beside which it keeps one sign: it has no surface there, and \
-                 nothing is sampled.",
+                "f is also zero along a curve or at a point, where it has no surface to sample. It keeps one sign around that \
+                 place, near {}.",
                 place_text(*position, *length)
             ),
             Self::Beyond { bounds } => {
                 let [min, max] = [bounds.min, bounds.max].map(|corner| place_text(corner, bounds.diagonal()));
                 write!(
                     f,
-                    "Parts of the surface lie outside of the box that was fitted, from {min} to {max}, and are not sampled. To \
-                     sample them, give a box that holds them."
+                    "Parts of the surface lie outside the fitted box and are not sampled: set a larger box. It reaches from {min} \
+                     to {max}."
                 )
             }
             Self::SampledAs { equation } => write!(
                 f,
-                "f has powers, roots or absolute values of whole factors, which take its gradient on the surface. The same surface \
-                 with every factor once is sampled: {equation}"
+                "The same surface is sampled in a simpler form. The powers, roots or absolute values of whole factors in f \
+                 have no gradient on the surface; without them it is {equation}"
             ),
             Self::Gradient { position, length } => write!(
                 f,
-                "Near {} the gradient that the field gives is not that of its values: particles may lie off the surface and face the \
-                 wrong way. Correct the gradient, or leave it out and it is found by differences.",
+                "The gradient does not fit the values of f: correct it, or leave it out. Near {} the two differ, so that particles \
+                 may lie off the surface and face the wrong way. A gradient that is left out is found by differences.",
                 place_text(*position, *length)
             ),
             Self::Count { count, wanted } => write!(
                 f,
-                "There are {count} particles, not the {wanted} wanted: where they are large against the surface, its parts or its box, or \
-                 lie in rows along edges, their number changes by leaps."
+                "The run has {count} particles instead of {wanted}. Where particles are large compared with the surface, or lie in \
+                 rows along edges, a small change of the radius changes their number by much."
             ),
             Self::NotRefined(refusal) => refusal.fmt(f),
             Self::Unpaired { axis, repeats } => {
+                let axis = ["x", "y", "z"][*axis];
+                f.write_str(if *repeats {
+                    "The cell does not repeat: move the box. "
+                } else {
+                    "The cell does not repeat: set a box of whole periods. "
+                })?;
                 let reason = if *repeats {
-                    "the creases found on them differ. Where the surface runs through a corner or along an edge of the box, begin the box \
-                     elsewhere."
+                    "their edges differ, as where the surface runs through a corner or along an edge of the box."
                 } else {
                     "the box is not known to be a whole number of periods wide there."
                 };
-                write!(f, "Opposite faces across {} are closed, but not the same: {reason}", ["x", "y", "z"][*axis])
+                write!(f, "The faces across {axis} are closed, but not the same: {reason}")
             }
             Self::Children { not_converged, undefined } => {
                 let [not_converged, undefined] = [*not_converged, *undefined].map(|count| count as usize);
-                let children = |count| counted(count, "child", "children");
-                let troubles = those_that_are([
-                    (not_converged, format!("{} found no surface at the right distance", children(not_converged))),
-                    (undefined, format!("{} met a place without a value or a normal", children(undefined))),
+                let places = counted(not_converged + undefined, "place", "places");
+                write!(
+                    f,
+                    "At {places} the surface is too sharp or thin for this radius: choose a smaller one."
+                )?;
+                let found = those_that_are([
+                    (not_converged, format!("no surface at the right distance ({not_converged})")),
+                    (undefined, format!("no value or no normal ({undefined})")),
                 ]);
-                write!(f, "{troubles}: an edge, a singular point or a radius too large for the curvature.")
+                write!(f, " New particles found {found} there. At a singular point no radius helps.")
             }
             Self::CloseSheets { count } => write!(
                 f,
-                "{count} particles face another sheet of the surface within 2r. The sheets are kept apart, but the particles are \
-                 too large to tell them apart by position alone: choose a smaller radius."
+                "Sheets of the surface lie closer than the particles are wide: choose a smaller radius. {count} particles face \
+                 another sheet within 2r. The sheets are kept apart, but not by position alone."
             ),
             Self::Meets { crossings, touches, position, length } => {
                 let meets = those_that_are([
@@ -440,45 +454,44 @@ impl fmt::Display for Warning {
                 ]);
                 write!(
                     f,
-                    "The surface {meets}, first near {}. f has no gradient there, and the sheets are sampled up to it: the components \
+                    "The surface {meets}. f has no gradient there, first near {}, and the sheets are sampled up to it: the components \
                      and the Euler number of the sample are not those of the sheets.",
                     place_text(*position, *length)
                 )
             }
             Self::Crosses { curves, position, length } => write!(
                 f,
-                "Sheets of the surface cross along {}, first near {}, and share the particles there: components and Euler number \
-                 are those of all sheets together, and the mesh is no manifold along it.",
+                "Sheets of the surface cross along {}. They share the particles there, first near {}: components and Euler number \
+                 are those of all sheets together, and the mesh is no manifold.",
                 counted(*curves, "curve", "curves"),
                 place_text(*position, *length)
             ),
             Self::Moved => f.write_str(
-                "The particles have followed the surface while it moved: they are even, but less in order than those of a run, \
-                 and components were looked for by the survey alone. A new run places them in order.",
+                "The particles have moved with the surface: a new run places them in better order. They are even, but fewer have \
+                 six neighbours than after a run, and a component that appeared meanwhile can be missing.",
             ),
             Self::EndedEarly { seeds } => write!(
                 f,
-                "The run was ended early: {seeds} seeds had stayed alone beside other particles, because the particles are larger \
-                 than the distances between the parts of the surface. Choose a smaller radius."
+                "The run ended early, because the particles are too large here: choose a smaller radius. {seeds} parts of the \
+                 surface had room for one particle alone, beside those of other parts."
             ),
             Self::SmallFeatures { count } => write!(
                 f,
-                "Within 2r of other particles lie features too small for a particle of their own, {count} in all: a smaller radius \
-                 shows whether they are components of their own."
+                "Some features are too small for a particle of their own: choose a smaller radius. There are {count} within 2r of \
+                 other particles; they may be components of their own."
             ),
             Self::WithoutParticle { components, length, is_unresolved } => {
                 without_particle(f, components, *length, *is_unresolved)
             }
             Self::Open { edges, points, position, length } => {
                 let found = those_that_are([
-                    (*edges, format!("{} open", counted(*edges, "edge", "edges"))),
-                    (*points, format!("{} out", counted(*points, "particle", "particles"))),
+                    (*edges, counted(*edges, "open edge", "open edges")),
+                    (*points, format!("{} in no triangle", counted(*points, "particle", "particles"))),
                 ]);
                 write!(
                     f,
-                    "The triangles between the particles leave {found}, first near {}: the components and the Euler number of the \
-                     sample need not be those of the surface. The surface has an edge, a point or an end there, or is thinner or bends \
-                     more sharply than the particles are large; then choose a smaller radius.",
+                    "The particles leave gaps in the surface: choose a smaller radius. Their triangles have {found}, first near {}, so \
+                     that components and Euler number may be wrong. Where the surface has an edge, a tip or an end, no radius helps.",
                     place_text(*position, *length)
                 )
             }
@@ -489,8 +502,8 @@ impl fmt::Display for Warning {
                 };
                 write!(
                     f,
-                    "The mesh has {}, the sample {}: at this radius one of them, or both, do not have the topology of the surface. A \
-                     smaller radius may show which.",
+                    "The topology of the mesh is in doubt: choose a smaller radius. The mesh has {}, the particles {}; at least one \
+                     of them differs from the surface.",
                     told(0),
                     told(1)
                 )
@@ -507,8 +520,8 @@ impl fmt::Display for Warning {
                 let place = if *inside == Inside::Both { " some closed parts of" } else { "" };
                 write!(
                     f,
-                    "f is larger inside{place} the surface than outside. Files of the mesh face outward all the same; the normals of the \
-                     particles follow the gradient of f, and point inward there."
+                    "f is larger inside{place} the surface than outside. Meshes in files face outward all the same; the normals of \
+                     particles follow the gradient of f and point inward."
                 )
             }
             Self::FileDiffers { mesh, components, euler, area, position, length } => {
@@ -522,26 +535,26 @@ impl fmt::Display for Warning {
                 };
                 write!(
                     f,
-                    "The mesh of the file has {given}, the surface fitted to it {}: holes are closed, parts joined or edges rounded. \
-                     The farthest point of the file is near {}. More centres, or a file with more points, follow the mesh more closely.",
+                    "The surface differs from the mesh of the file: use more centres. The mesh has {given}, the surface {}: holes are \
+                     closed, parts joined or edges rounded. The farthest point of the file is near {}.",
                     told(*components, *euler, *area),
                     place_text(*position, *length)
                 )?;
                 let is_open = mesh.topology.is_some_and(|topology| topology.borders > 0);
-                f.write_str(if is_open { " The mesh is open: beyond its borders the surface goes on." } else { "" })
+                f.write_str(if is_open { " The mesh is open: the surface continues beyond its borders." } else { "" })
             }
             Self::Unproven { doubt, length } => unproven(f, doubt, *length),
             Self::Digits { position, distance, spacing } => write!(
                 f,
-                "f loses digits: near {} its rounding in double precision may move the surface by up to {}, {} times the distance between \
-                 neighbours. It is small beside its terms there: enter it in a form in which they do not cancel.",
+                "Rounding errors in f move the surface: enter f in a form whose terms do not cancel. Near {} the surface may be off by \
+                 up to {}, {} times the distance between neighbours.",
                 place_text(*position, *spacing),
                 about_length(*distance),
                 about_length(distance / spacing)
             ),
             Self::Overflow => f.write_str(
-                "f is too large for double precision in a part of the box, where components may be missed: enter it in a form with \
-                 smaller numbers, each factor by its logarithm for example, or make the box smaller.",
+                "f overflows in a part of the box, where the surface may be missed: make the box smaller. Or enter f in a form with \
+                 smaller numbers, for example the logarithm of each factor.",
             ),
         }
     }
@@ -576,55 +589,109 @@ fn without_particle(
     let places = named.collect::<Vec<_>>().join("; near ");
     let more = components.len().saturating_sub(NAMED);
     let rest = if more > 0 { format!("; and at {more} more places") } else { String::new() };
-    let cause = if is_unresolved {
-        "is too near another one"
+    let summary = if is_unresolved {
+        "Parts of the surface lie too close together to be told apart."
     } else {
-        "is too small or too near another one for this radius: choose a smaller radius"
+        "Parts of the surface have no particle: choose a smaller radius."
     };
-    write!(
-        f,
-        "No particle lies on the surface near {places}{rest}. A component there, or a part of one, {cause}."
-    )
+    write!(f, "{summary} There is none near {places}{rest}.")
 }
 
 /// Says why it is not proven that every component has been found.
 fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Result {
     match *doubt {
         Doubt::NoBounds => f.write_str(
-            "The field has no bounds to prove by that every component was found: one that is smaller than the grid of the survey can \
-             be missing.",
+            "A small component may be missing. The function has no bounds by which a proof could find it, and the survey's grid may \
+             pass it over.",
         ),
         Doubt::Creases => f.write_str(
-            "The creases of the surface were searched, not proven to be all: a component whose creases are finer than the cells of that \
-             search can be missing.",
+            "A small component may be missing. The creases of the surface were searched, not proven to be all.",
         ),
         Doubt::Unfinished => {
-            f.write_str("The run ended before the search for components did: one can be missing.")
+            f.write_str("A component may be missing, because the run was stopped during the search.")
         }
         Doubt::Unresolved { position, gap, least } => write!(
             f,
-            "Near {} two sheets of the surface are {} apart. Particles have single-precision coordinates, which tell sheets apart \
-             down to about {} in this box. Nearer ones may be sampled as one, and the components and the Euler number of the sample \
-             need not be those of the surface. A smaller radius does not help: move the sheets apart, or sample one factor of f at \
-             a time.",
+            "Two sheets are too close for single precision: move them apart. Near {} they are {} apart; sheets closer than about {} \
+             may be sampled as one in this box, so that components and Euler number may be wrong. A smaller radius does not \
+             help. One factor of f at a time does.",
             place_text(position, length),
             about_length(gap),
             about_length(least)
         ),
         Doubt::Cells { count, position, size } => write!(
             f,
-            "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
-             hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
+            "A small component may be missing: a smaller box may show it. The search for components left {} of the box open, the \
+             first near {} and {} wide: f is singular there, or too hard to bound.",
             counted(count as usize, "cell", "cells"),
             place_text(position, size.min(length)),
             about_length(size)
         ),
         Doubt::Witnesses { count, position } => write!(
             f,
-            "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
-             may be too near there for this radius: a smaller one may decide it.",
+            "A component may be missing: a smaller radius may decide it. Of {} it is not proven that a particle lies on the same \
+             component, first near {}; another part of the surface may be too near.",
             counted(count as usize, "point of the surface", "points of the surface"),
             place_text(position, length)
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_sentence_is_short_and_names_no_part_of_the_method() {
+        let (position, length) = ([-1.0 / 3.0, 1.0e-4, 12.5], 0.01);
+        let unproven = |doubt| Warning::Unproven { doubt, length };
+        let unsampled = Unsampled { position, reach: 0.1, goes_on: true };
+        let without = |is_unresolved| Warning::WithoutParticle {
+            components: vec![unsampled; NAMED + 1],
+            length,
+            is_unresolved,
+        };
+        let warnings = [
+            Warning::Limit { predicted: 12_345_678, limit: 1_000_000 },
+            Warning::Touches,
+            Warning::Bare { position, length },
+            Warning::Beyond { bounds: Bounds::cube(1.0 / 3.0) },
+            Warning::SampledAs { equation: "x = 0".to_owned() },
+            Warning::Gradient { position, length },
+            Warning::Count { count: 8_406, wanted: 8_000 },
+            Warning::Unpaired { axis: 0, repeats: true },
+            Warning::Unpaired { axis: 2, repeats: false },
+            Warning::Children { not_converged: 12_345, undefined: 123 },
+            Warning::CloseSheets { count: 12_345 },
+            Warning::Meets { crossings: 12, touches: 34, position, length },
+            Warning::Crosses { curves: 12, position, length },
+            Warning::Moved,
+            Warning::EndedEarly { seeds: 123 },
+            Warning::SmallFeatures { count: 123 },
+            without(true),
+            without(false),
+            Warning::Open { edges: 12, points: 34, position, length },
+            Warning::MeshDiffers { components: [1, 2], euler: [2, 4] },
+            Warning::MeshHoles { count: 12 },
+            Warning::MeshLeavesOut { count: 12 },
+            Warning::LargerInside(Inside::Both),
+            unproven(Doubt::NoBounds),
+            unproven(Doubt::Creases),
+            unproven(Doubt::Unfinished),
+            unproven(Doubt::Unresolved { position, gap: 1.0e-7, least: 1.0e-6 }),
+            unproven(Doubt::Cells { count: 28_264, position, size: 0.045 }),
+            unproven(Doubt::Witnesses { count: 12, position }),
+            Warning::Digits { position, distance: 1.0e-3, spacing: 0.01 },
+            Warning::Overflow,
+        ];
+        for warning in warnings {
+            let text = warning.to_string();
+            let first = text.split(". ").next().unwrap_or_default();
+            assert!(first.len() <= FIRST_SENTENCE, "{} letters: {first}", first.len());
+            for word in ["child", "cell of", "undecided", "converge", "survey", "seed", "NaN"] {
+                assert!(!first.contains(word), "{word}: {first}");
+            }
+            assert!(text.ends_with('.') || matches!(warning, Warning::SampledAs { .. }), "{text}");
+        }
     }
 }

@@ -87,7 +87,7 @@ pub struct Settings {
     pub size_mode: SizeMode,
     /// Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 % (§6).
     pub radius_share: f64,
-    /// Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.
+    /// Target count, met to within 3 %. Adaptive sampling scales all radii by one factor.
     pub count: u32,
     /// Law for the radius of an adaptive particle, given the principal curvatures.
     pub radius_law: LawKind,

@@ -332,7 +332,7 @@ pub fn settings() -> Vec<Setting> {
                 "count",
                 run.count,
                 "Count",
-                "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
+                "Target count, met to within 3 %. Adaptive sampling scales all radii by one factor.",
             ))
         },
         Setting {

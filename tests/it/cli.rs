@@ -619,7 +619,7 @@ fn a_formula_has_a_box_that_fits_and_a_surface_that_is_cut_is_told_with_what_to_
     let fixed = text(&[&tangle[..], &["--box", "fixed"]].concat());
     assert!(fixed.contains("from -2,-2,-2 to 2,2,2 cuts the surface"), "{fixed}");
     let endless = text(&["sample", "--formula", "z = 0"]);
-    assert!(endless.contains("goes on beyond the box from -4,-4,-4 to 4,4,4"), "{endless}");
+    assert!(endless.contains("continues outside the box from -4,-4,-4 to 4,4,4"), "{endless}");
     assert!(fails(3, &["sample", "--formula", "x^2 = -1"]).contains("±10,000"));
     assert!(fails(2, &["sample", "--formula", "x2 + y2 = 1"]).contains("in all 2 places: x^2 + y^2 = 1"));
 }

@@ -110,7 +110,7 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.growth.fates.undefined > 20, "{:?}", report.growth.fates);
     assert!(
-        report.warnings.iter().any(|w| w.to_string().contains("without a value")),
+        report.warnings.iter().any(|w| w.to_string().contains("no value or no normal")),
         "{:?}",
         report.warnings
     );

@@ -341,7 +341,7 @@ fn a_mesh_of_another_form_than_its_surface_is_told() {
     assert_eq!(said_of_mesh(fit_of("washer.obj", washer(0.4))), [""; 0]);
     // A hole that is finer than the distance between centres is closed.
     let [closed] = said_of_mesh(fit_of("washer.obj", washer(0.05))).try_into().expect("one warning");
-    let said = "The mesh of the file has 1 component, Euler number 0 and area 8.8";
+    let said = "The mesh has 1 component, Euler number 0 and area 8.8";
     assert!(
         closed.starts_with(said) && closed.contains("1 component, Euler number 2 and area 8."),
         "{closed}"

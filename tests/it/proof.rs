@@ -162,10 +162,10 @@ fn holds(case: &Case, context: &str) -> bool {
     if session.run.sampler().search() != Search::Proven {
         let warnings = session.report().warnings;
         let is_told = |doubt: &Doubt| match doubt {
-            Doubt::Unresolved { .. } => says(&warnings, "tell sheets apart down to"),
-            Doubt::Cells { .. } => says(&warnings, "undecided"),
+            Doubt::Unresolved { .. } => says(&warnings, "too close for single precision"),
+            Doubt::Cells { .. } => says(&warnings, "of the box open"),
             Doubt::Witnesses { .. } => {
-                says(&warnings, "could not be proven") || says(&warnings, "tell sheets apart")
+                says(&warnings, "it is not proven that") || says(&warnings, "too close for single precision")
             }
             _ => false,
         };

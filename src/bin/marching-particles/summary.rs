@@ -66,7 +66,10 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         let of = counted(report.border, "particle", "particles");
         match cut {
             Cut::Endless => {
-                writeln!(out, "the surface goes on beyond the box from {min} to {max}; --box sets another")?;
+                writeln!(
+                    out,
+                    "the surface continues outside the box from {min} to {max}; --box sets another"
+                )?;
             }
             Cut::Fixed | Cut::Outgrown => writeln!(
                 out,

@@ -133,7 +133,7 @@ export function createMaker({ setup, linkOf }) {
   const copy = async () => {
     try {
       await navigator.clipboard.writeText(link.value);
-      told.textContent = 'The link is on the clipboard.';
+      told.textContent = 'Link copied.';
     } catch {
       link.select();
       told.textContent = 'Copy the link from its box.';

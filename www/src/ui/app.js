@@ -47,9 +47,9 @@ export function mountInterface(engine, { grabs = false } = {}) {
     nav: byId('tabs'),
     panels: [
       { id: 'field', title: 'Field', panel: field, head: head(field) },
-      { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools },
+      { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools, folded: true },
       { id: 'levels', title: 'Levels', panel: levels },
-      { id: 'report', title: 'Report', panel: report, head: head(report) },
+      { id: 'report', title: 'Report', panel: report, head: head(report), folded: true },
     ],
     covered: () => (isBoxDrawn(engine) ? (view.querySelector('.empty')?.clientHeight ?? 0) : 0),
     inset: (insets) => engine.setInsets(insets),
@@ -108,7 +108,7 @@ export function mountInterface(engine, { grabs = false } = {}) {
     mountField(byId('field-body'), engine, description, { motion, pins });
     const mesh = createMeshButton(engine, toast);
     mountSampling(byId('sampling-body'), engine, description, { head: [mesh.element, samplingTools] });
-    mountReport(byId('report-body'), engine, description);
+    mountReport(byId('report-body'), engine, description, byId('report-title'));
     const legend = createLegend(engine, description);
     const [hide, makeMesh] = [layout.hideMore, () => void mesh.open()];
     const tools = { hide, shortcuts: shortcuts.open, picture, makeMesh, motion, toast };

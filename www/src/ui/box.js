@@ -41,7 +41,7 @@ export function withFace(bounds, axis, end, value) {
  */
 export function cutOf(report) {
   if (!report?.cut) return null;
-  if (report.cut === 'endless') return { text: 'The surface goes on beyond the box.', canFit: false };
+  if (report.cut === 'endless') return { text: 'The surface continues outside the box.', canFit: false };
   const of = report.border === 1 ? '1 particle lies' : `${report.border.toLocaleString('en')} particles lie`;
   return { text: `The box cuts the surface: ${of} at its border.`, canFit: true };
 }

@@ -5,14 +5,13 @@ import { signal } from '@preact/signals-core';
 import { button } from './button.js';
 import { live } from './dom.js';
 import { explain } from './explain.js';
+import { remembered } from './remembered.js';
 
 /**
  * @import { Signal } from '../engine/types.js'
  * @import { LayoutOptions } from './types.js'
  */
 
-/** Width below which the report is initially folded, to leave room for the picture. */
-const NARROW = '(max-width: 67.45em)';
 /** Width of a phone in portrait orientation, with panels and tabs below the picture. */
 const COMPACT = '(max-width: 44.95em)';
 
@@ -23,9 +22,7 @@ const COMPACT = '(max-width: 44.95em)';
 
 /** @param {LayoutOptions} parts */
 export function mountLayout({ shell, view, nav, panels, covered, inset }) {
-  const last = panels.findLast(({ head }) => head);
-  for (const each of panels)
-    if (each.head) addFold(each.title, each.panel, each.head, each === last && matchMedia(NARROW).matches);
+  for (const { title, panel, head, folded = false } of panels) if (head) addFold(title, panel, head, folded);
 
   /** @type {Signal<HTMLElement | null>} */
   const active = signal(panels[0].panel);
@@ -86,8 +83,8 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
 
 /** @param {string} title @param {HTMLElement} panel @param {HTMLElement} head @param {boolean} folded  at first */
 function addFold(title, panel, head, folded) {
-  const isFolded = signal(folded);
   const name = title.toLowerCase();
+  const isFolded = remembered(`fold-${name}`, folded);
   head.append(
     explain(
       button({

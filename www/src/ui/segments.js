@@ -10,3 +10,9 @@ export function segmentsOf(message) {
   if (parts.length % 2 === 0) return [{ text: message, code: false }];
   return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
 }
+
+/** Returns the first sentence and the others. @param {string} text */
+export function sentencesOf(text) {
+  const [first, ...rest] = text.split(/(?<=\.) (?=[A-Z])/);
+  return { first, rest: rest.join(' ') };
+}

@@ -18,7 +18,7 @@ export async function copyLink(engine, toast) {
     history.replaceState(null, '', url);
     try {
       await navigator.clipboard.writeText(url);
-      toast({ id: 'share', kind: 'info', text: 'The link is on the clipboard.' });
+      toast({ id: 'share', kind: 'info', text: 'Link copied.' });
     } catch {
       toast({ id: 'share', kind: 'info', text: 'The link is in the address bar.' });
     }

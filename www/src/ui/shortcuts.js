@@ -44,7 +44,7 @@ export function mountShortcuts(shortcuts) {
     ['Double click on a slider', 'Reset'],
   ]);
   const dialog = createDialog(
-    'Keyboard and hand',
+    'Keyboard and pointer',
     h(
       'dl',
       { class: 'keys' },

@@ -157,7 +157,8 @@ export type Explanation = { title?: string; text: string; ideal?: string };
 /** The preferred side of a popover, used if there is room. */
 export type Side = 'below' | 'above' | 'left';
 /** A panel with a `head` can be folded. */
-export type Panel = { id: string; title: string; panel: HTMLElement; head?: HTMLElement };
+/** A panel with a `head` can be folded to it; `folded`: it is on a first visit. */
+export type Panel = { id: string; title: string; panel: HTMLElement; head?: HTMLElement; folded?: boolean };
 export type Range = Pick<Parameter, 'name' | 'min' | 'max' | 'step'>;
 /** `bounce`: to the end and back; `loop`: to the end, and again from the beginning. */
 export type Course = 'bounce' | 'loop';

@@ -80,7 +80,7 @@ export function createCuttingPlane(engine) {
         'div',
         { class: 'repairs' },
         action('Flip', 'Hides the other side.', flip),
-        action('Face me', 'Turns the plane so that it hides what is nearer to you.', () => choose('free')),
+        action('Look straight at it', 'Turns the plane so that it hides what is nearer to you.', () => choose('free')),
       ),
     ),
   );

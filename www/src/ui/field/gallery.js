@@ -95,7 +95,8 @@ function createTile(engine, { words, chosen }, { group, entry: { id, name, story
     on: { change: () => engine.setSurface(id), click: again },
   });
   const hidden = () => words.value.length > 0 && !isFound();
-  return explain(h('label', { class: 'tile', hidden, data: { surface: id } }, input, face), () => ({
+  const caption = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name);
+  return explain(h('label', { class: 'tile', hidden, data: { surface: id } }, input, face, caption), () => ({
     title: name,
     text: story,
     ideal: credit,
@@ -105,15 +106,14 @@ function createTile(engine, { words, chosen }, { group, entry: { id, name, story
 /** @param {Engine} engine @param {Finding} finding @param {string} group @param {Entry} entry */
 function pictured(engine, finding, group, entry) {
   const picture = h('img', {
+    class: 'tile-face',
     alt: '',
     width: PICTURE_PX,
     height: PICTURE_PX,
     decoding: 'async',
     loading: 'lazy',
     src: `./gallery/${entry.id}.webp`,
-    on: {
-      error: () => picture.replaceWith(h('span', { class: 'tile-name', 'aria-hidden': 'true' }, entry.name)),
-    },
+    on: { error: () => picture.replaceWith(h('span', { class: 'tile-face' })) },
   });
   const isFound = () => has(entry, finding.words.value);
   return createTile(engine, finding, { group, entry, face: picture, isFound });
@@ -132,7 +132,7 @@ function createFileTile(engine, finding) {
   return () => {
     const name = file.value;
     const entry = { id: FILE_SURFACE, name, story: 'The file opened last.' };
-    const face = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, icon('file'), extensionOf(name));
+    const face = h('span', { class: 'tile-face', 'aria-hidden': 'true' }, icon('file'), extensionOf(name));
     return name && createTile(engine, finding, { group: POINTS, entry, face, isFound: () => false });
   };
 }

@@ -7,6 +7,7 @@ import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { createSlider } from '../slider.js';
+import { createWarning } from '../warning.js';
 import { factsOf, fittedOf } from './facts.js';
 
 /** @import { Description, Engine, ModelInfo, ReadonlySignal, Shape } from '../../engine/types.js' */
@@ -30,9 +31,7 @@ export function createModel(engine, description) {
     h('p', { class: 'quiet' }, () => model.value && fittedOf(model.value)),
     createCentres(engine, description, model),
     h('dl', { class: 'facts' }, () => model.value && factsOf(model.value).map(factElements)),
-    h('ul', { class: 'warnings', hidden: () => warnings.value.length === 0 }, () =>
-      warnings.value.map((text) => h('li', null, text)),
-    ),
+    h('ul', { class: 'warnings', hidden: () => warnings.value.length === 0 }, () => warnings.value.map(createWarning)),
   );
 
   // The last formula, with its parameters and box, for the way back.

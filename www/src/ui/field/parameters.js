@@ -55,7 +55,7 @@ function grabbing(engine, pins) {
     pins.value = isOn.peek() ? null : [];
   };
   return explain(button({ class: 'plain small', 'aria-pressed': () => String(isOn.value), press }, 'Grab'), () => ({
-    text: `Drag the surface${engine.field.value?.model ? '' : ': the parameters follow'}. Shift and drag does it once.`,
+    text: `Drag the surface${engine.field.value?.model ? '' : ': the parameters follow'}. Or Shift-drag without this mode.`,
   }));
 }
 

@@ -25,7 +25,7 @@ export function storyOf(description, id, info) {
     return {
       name: 'Your own formula',
       facts: '',
-      text: 'The surface where the formula is zero. Names other than x, y and z become sliders.',
+      text: 'The surface where the formula is zero. Unknown names become sliders.',
       credit: '',
     };
   const facts = [

@@ -60,7 +60,7 @@ export function createMeshButton(engine, toast) {
       toast({ id: 'save', kind: 'error', text: 'A part of the page could not be loaded. Load it again.' });
     }
   };
-  const text = 'Samples by the refined method and joins the particles to triangles, to look at, check and save.';
+  const text = 'Resamples, triangulates and checks the surface, ready to save.';
   const element = explain(button({ press: () => void open() }, 'Make a mesh'), () => ({ text }), { side: 'above' });
   return { element, open };
 }

@@ -60,7 +60,7 @@ export function createMeshPanel(engine, { toast, close }) {
   };
   tell();
   const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
-  const unit = select(UNITS.map((id) => [id, id || 'no unit']));
+  const unit = select(UNITS.map((id) => [id, id || 'unspecified']));
   unit.setAttribute('aria-label', 'Unit');
   const up = select(AXES.map((id) => [id, id]));
   const save = async () => {
@@ -90,8 +90,8 @@ export function createMeshPanel(engine, { toast, close }) {
     ),
     h('p', { class: 'verdict', role: 'status' }, verdict),
     showing(engine, made),
-    line('One unit is', scale, unit),
-    line('Points up', up),
+    line('1 unit =', scale, unit),
+    line('Up axis', up),
     line('Format', format),
     note,
     verticesLine,

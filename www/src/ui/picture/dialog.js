@@ -132,7 +132,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
   const subjects = selectOf(() => [
     [TURN, 'Turntable'],
     ...(engine.field.peek()?.parameters ?? []).map(({ name }) => [name, `Parameter ${name}`]),
-    [FREE, 'What I do'],
+    [FREE, 'My own moves'],
   ]);
   const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, sizeWords(entry)]));
   const seconds = selectOf(() => SEQUENCE_S.map((value) => [String(value), `${value}\u202fs`]));
@@ -175,7 +175,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
   const canFilm = kindOfFilm() !== null;
   return [
     h('h3', null, 'Film'),
-    choice('What moves', subjects.select),
+    choice('Motion', subjects.select),
     choice('Size', sizes.select),
     h('div', { class: 'picture-actions' }, [
       canFilm ? action('Record film', () => record(recordFilm)) : null,
@@ -197,7 +197,7 @@ function filmSection({ engine, page, parts, transparent, close }) {
       'p',
       { class: 'quiet' },
       canFilm
-        ? 'A film is recorded in the time in which it plays, without the panels. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.'
+        ? 'Films record in real time; panels are left out. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.'
         : 'This browser records no films. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.',
     ),
   ];

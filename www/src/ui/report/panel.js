@@ -1,5 +1,5 @@
 /**
- * The report panel: four figures in plain words, and behind them all figures, the timing and the distribution of the
+ * The report panel: four figures, and behind them all figures, the timing and the distribution of the
  * nearest distances.
  */
 import { computed } from '@preact/signals-core';
@@ -7,6 +7,7 @@ import { term } from '../button.js';
 import { fill, h, live } from '../dom.js';
 import { plural, withCounts } from '../format.js';
 import { remembered } from '../remembered.js';
+import { createWarning } from '../warning.js';
 import { createHistogram } from './histogram.js';
 import { listOf, placeOf } from './places.js';
 import { PLAIN } from './plain.js';
@@ -26,8 +27,9 @@ const DRAWN = {
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
+ * @param {HTMLElement} title  beside which a folded report says how it is
  */
-export function mountReport(body, engine, description) {
+export function mountReport(body, engine, description, title) {
   // During a run the figures of the previous one stay, dimmed, but for the count, which is that of the caption.
   let kept = engine.report.peek();
   const report = computed(() => {
@@ -41,8 +43,20 @@ export function mountReport(body, engine, description) {
   });
 
   const told = computed(() => report.value?.warnings ?? []);
+  // What a folded report says.
+  const line = h('span', { class: 'quiet now' }, () =>
+    report.value
+      ? [
+          plural(counted.value || report.value.count, 'particle'),
+          told.value.length && plural(told.value.length, 'warning'),
+        ]
+          .filter(Boolean)
+          .join(' · ')
+      : '',
+  );
+  title.after(line);
   const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, () =>
-    told.value.map((text) => h('li', null, withCounts(text))),
+    told.value.map((text) => createWarning(withCounts(text))),
   );
   const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
   const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
@@ -133,7 +147,7 @@ function whoseFigures(engine) {
   const { level, step, grain, follow } = engine.state.value.view;
   const isWhole = level === null && step === null && (grain === 'level' || follow === null);
   if (isWhole) return '';
-  return 'These are the figures of all particles at the end of the run. The picture shows an earlier moment of it.';
+  return 'Figures describe the finished run; the picture shows an earlier step.';
 }
 
 /**

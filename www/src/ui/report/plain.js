@@ -1,8 +1,8 @@
 /**
- * The four figures in plain words with which the report begins: how many particles, how even, how exact, and whether
- * every part of the surface has some.
+ * The four figures with which the report begins: the number of particles, how much their spacing varies, the largest
+ * error, and whether every part of the surface has particles.
  */
-import { formatCount, formatSignificant, MISSING, plural } from '../format.js';
+import { formatCount, formatSignificant, MISSING } from '../format.js';
 import { valueAt, writeWord } from './rows.js';
 
 /** @import { Report } from '../../engine/types.js' */
@@ -19,13 +19,13 @@ const percent = (share) => `${formatSignificant(100 * share, 2)}\u202f%`;
  */
 export const PLAIN = [
   {
-    label: 'How many',
+    label: 'Particles',
     help: 'Particles on the surface. A smaller radius, or a larger count, gives more.',
-    write: ({ count }) => plural(count, 'particle'),
+    write: ({ count }) => formatCount(count),
   },
   {
-    label: 'How even',
-    help: 'By so much the distances between neighbours vary around their mean. In a perfect lattice it is 0 %.',
+    label: 'Spacing variation',
+    help: 'How much the distance between neighbours varies, relative to its mean. A perfect lattice has 0 %.',
     write: (report) => {
       // Particles of many sizes are measured by their own radii.
       const variation = valueAt(report, 'quality.size_cv') ?? valueAt(report, 'quality.nn_cv');
@@ -33,7 +33,7 @@ export const PLAIN = [
     },
   },
   {
-    label: 'How exact',
+    label: 'Largest error',
     help: 'The largest distance of a particle from the surface, as a share of the distance between neighbours.',
     write: (report) => {
       const farthest = valueAt(report, 'quality.err_max');
@@ -42,7 +42,7 @@ export const PLAIN = [
     },
   },
   {
-    label: 'All found',
+    label: 'Completeness',
     help: 'Whether every part of the surface in the box has particles. Proven: there is no other part. By search: one smaller than the cells of the search can be missing.',
     write: (report) => {
       const missing = Number(valueAt(report, 'sampled.missing') ?? 0);

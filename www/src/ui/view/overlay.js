@@ -95,7 +95,7 @@ function emptyState(engine) {
   const [title, remedy] =
     EMPTY[stop_reason ?? ''] ??
     (nowhere
-      ? ['No surface within ±10,000', 'Change the formula: nowhere there do both sides become equal.']
+      ? ['No surface within ±10,000', 'Change the formula: the two sides are never equal there.']
       : ['No surface inside the box', 'Change the formula, or widen the box.']);
   return [
     h('h2', null, title),
@@ -111,7 +111,7 @@ function emptyState(engine) {
       'div',
       { class: 'empty-actions' },
       stop_reason === 'no_surface' && !nowhere ? button({ press: () => enlarge(engine) }, 'Double the box') : null,
-      button({ press: () => engine.setSurface(engine.state.peek().surface) }, 'Take the gallery formula back'),
+      button({ press: () => engine.setSurface(engine.state.peek().surface) }, 'Restore the gallery formula'),
     ),
   ];
 }

@@ -11,7 +11,7 @@ test('the box around a formula', async ({ page }) => {
   await test.step('a surface that goes on for ever is said to, and the box can be enlarged and fitted again', async () => {
     await typeFormula(page, 'sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)');
     await settled(page);
-    await expect(cut(page)).toContainText('goes on beyond the box');
+    await expect(cut(page)).toContainText('continues outside the box');
     await cut(page).getByRole('button', { name: 'Enlarge' }).click();
     await settled(page);
     expect((await state(page)).bounds).toEqual({ min: [-8, -8, -8], max: [8, 8, 8] });
@@ -19,7 +19,7 @@ test('the box around a formula', async ({ page }) => {
     await cut(page).getByRole('button', { name: 'Fit' }).click();
     await settled(page);
     expect((await state(page)).bounds).toBeNull();
-    await expect(cut(page)).toContainText('goes on beyond the box');
+    await expect(cut(page)).toContainText('continues outside the box');
   });
 
   await test.step('a formula without a surface is told so, as far as it was searched', async () => {

@@ -26,6 +26,10 @@ export async function open(page, { width = 1280, height = 800, hash = '' } = {})
       seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`),
     );
   });
+  // The tests of the panels begin with all of them open.
+  await page.addInitScript(() => {
+    for (const name of ['sampling', 'report']) localStorage.setItem(`marching-particles.fold-${name}`, 'off');
+  });
   await page.setViewportSize({ width, height });
   await page.goto(`${ADDRESS}${hash}`);
   await settled(page);

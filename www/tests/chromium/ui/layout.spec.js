@@ -188,7 +188,7 @@ test('targets are large, the theme can be switched, and the page says what it is
     expect(await top('.parameters')).toBeLessThan(await top('.story'));
     expect(await top('.story')).toBeLessThan(await top('.clip'));
     await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
-    await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
+    await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
   });
 
   await test.step('in a large window everything grows with it, in a usual one it has the size that the user has set', async () => {
@@ -293,7 +293,7 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await page.keyboard.press('h');
   await expect(page.locator('#panel-field')).toBeVisible();
   await page.keyboard.press('?');
-  await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
+  await expect(page.getByRole('dialog', { name: 'Keyboard and pointer' })).toBeVisible();
   await page.keyboard.press('Escape');
   await expect(page.getByRole('dialog')).toHaveCount(0);
   await clean();

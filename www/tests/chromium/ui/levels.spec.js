@@ -39,7 +39,7 @@ test('the timeline of the levels', async ({ page }) => {
     await press(page, 'Level forward');
     await page.keyboard.press('.');
     expect(await level(page)).toBe(2);
-    await expect(page.getByText('These are the figures of all particles at the end of the run.')).toBeVisible();
+    await expect(page.getByText('Figures describe the finished run')).toBeVisible();
     await expect(slider(page)).toHaveAttribute(
       'aria-valuetext',
       `Level 2 of ${last}: ${made[2]} particles, ${made[0] + made[1] + made[2]} so far`,

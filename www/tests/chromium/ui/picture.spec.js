@@ -79,7 +79,7 @@ test('the picture and what moves in it', async ({ page }) => {
   await test.step('a film of what the user does is recorded until it is stopped', async () => {
     await afresh(page, { width: 900, height: 700 });
     const dialog = await openDialog(page);
-    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('What I do');
+    await dialog.getByRole('combobox', { name: 'Motion' }).selectOption('My own moves');
     await dialog.getByRole('button', { name: 'Record film' }).click();
     const bar = page.getByRole('group', { name: 'Recording' });
     await expect(bar.getByText(/^[1-9]/)).toBeVisible();
@@ -198,7 +198,7 @@ test('a sequence of pictures', async ({ page }) => {
   const { clean } = await open(page, { width: 480, height: 360 });
   await test.step('a sequence can be given up', async () => {
     const dialog = await openDialog(page);
-    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Turntable');
+    await dialog.getByRole('combobox', { name: 'Motion' }).selectOption('Turntable');
     await dialog.getByRole('button', { name: 'Picture sequence' }).click();
     await page.getByRole('button', { name: 'Stop recording' }).click();
     await expect(page.getByRole('group', { name: 'Recording' })).toHaveCount(0);
@@ -211,7 +211,7 @@ test('a sequence of pictures', async ({ page }) => {
     await afresh(page, { width: 480, height: 360 });
     const before = await report(page);
     const dialog = await openDialog(page);
-    await dialog.getByRole('combobox', { name: 'What moves' }).selectOption('Parameter a');
+    await dialog.getByRole('combobox', { name: 'Motion' }).selectOption('Parameter a');
     await dialog.getByRole('combobox', { name: 'Size' }).nth(1).selectOption({ label: 'HD, 1280\u202f×\u202f720' });
     const { name, bytes } = await fileOf(page, () => dialog.getByRole('button', { name: 'Picture sequence' }).click());
     expect(name).toMatch(/\.zip$/);

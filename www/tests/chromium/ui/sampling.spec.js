@@ -246,7 +246,12 @@ test('the report, what can be taken away, and what is said where there is no sur
     );
     const particles = (await report(page)).count.toLocaleString('en');
     const plain = page.locator('.plain-figures');
-    await expect(plain.locator('.term')).toHaveText(['How many', 'How even', 'How exact', 'All found']);
+    await expect(plain.locator('.term')).toHaveText([
+      'Particles',
+      'Spacing variation',
+      'Largest error',
+      'Completeness',
+    ]);
     await expect(plain.locator('dd')).toHaveText([`${particles} particles`, /%$/, /%$/, 'proven']);
     await expect(page.locator('.figures')).toBeHidden();
     await openFigures(page);
@@ -302,7 +307,7 @@ test('the report, what can be taken away, and what is said where there is no sur
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
     await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
-    await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
+    await page.getByRole('button', { name: 'Restore the gallery formula' }).click();
     await settled(page);
     await expect(page.locator('.empty')).toBeHidden();
     expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(false);
@@ -376,7 +381,7 @@ test('a link to a formula without a surface in its box shows that box, whole', a
     expect(lowest).toBeLessThan(top);
   }
   const { distance } = (await state(page)).view.camera;
-  await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
+  await page.getByRole('button', { name: 'Restore the gallery formula' }).click();
   await settled(page);
   await atRest(page);
   expect((await state(page)).view.camera.distance).toBeLessThan(distance);

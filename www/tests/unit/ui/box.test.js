@@ -9,7 +9,7 @@ describe('a surface that the box cuts', () => {
 
   it('goes on for ever, which no box fits', () => {
     expect(cutOf({ cut: 'endless', border: 40 })).toEqual({
-      text: 'The surface goes on beyond the box.',
+      text: 'The surface continues outside the box.',
       canFit: false,
     });
   });

@@ -13,6 +13,7 @@ import {
   writeRange,
 } from '../../../src/ui/report/rows.js';
 import { wantsSlider } from '../../../src/ui/scale.js';
+import { sentencesOf } from '../../../src/ui/segments.js';
 import { captionOf, loadingOf } from '../../../src/ui/view/caption.js';
 
 /** @import { ReportRow } from '../../../src/engine/types.js' */
@@ -118,19 +119,27 @@ describe('the report', () => {
     const plain = (/** @type {object} */ report) => PLAIN.map(({ write }) => write(/** @type {any} */ (report)));
     const quality = { nn_cv: 0.0732, err_max: 5.3e-5 };
     expect(plain({ count: 4301, quality, search: 'proven', sampled: { missing: 0 } })).toEqual([
-      '4,301 particles',
+      '4,301',
       '±\u202f7.3\u202f%',
       '0.0053\u202f%',
       'proven',
     ]);
     const poor = { nn_cv: 0.3, size_cv: 0.081, err_max: 1e-8 };
     expect(plain({ count: 1, quality: poor, search: 'searched', sampled: { missing: 2 } })).toEqual([
-      '1 particle',
+      '1',
       '±\u202f8.1\u202f%',
       'below 0.001\u202f%',
       'all but 2',
     ]);
-    expect(plain({ count: 3, quality: null, search: null })).toEqual(['3 particles', '–', '–', '–']);
+    expect(plain({ count: 3, quality: null, search: null })).toEqual(['3', '–', '–', '–']);
+  });
+
+  it('shows the first sentence of a warning, and folds the others', () => {
+    expect(sentencesOf('Too small here: choose less. At (0.1, 2. 5) it is 0.5. Then more.')).toEqual({
+      first: 'Too small here: choose less.',
+      rest: 'At (0.1, 2. 5) it is 0.5. Then more.',
+    });
+    expect(sentencesOf('One alone.')).toEqual({ first: 'One alone.', rest: '' });
   });
 
   it('writes shares as per cent, whole numbers grouped, and words as they are', () => {

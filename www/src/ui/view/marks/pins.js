@@ -246,7 +246,7 @@ export function createPinCard(engine, pins) {
       if (!grip.holds) return 'The ranges of the parameters end here';
       if (names) return `${names} cannot move it here`;
     }
-    return 'Drag the surface; a press pins a place';
+    return 'Drag the surface. Click to pin a point';
   });
   const done = () => {
     pins.value = null;
