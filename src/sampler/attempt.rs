@@ -37,16 +37,18 @@ const RESERVE: f64 = 1.05;
 /// much a count is up to 5.6 % off.
 pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
-/// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time where the count leaps with the
-/// radius.
+/// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time
+/// where the count leaps with the radius.
 const MAX_ATTEMPTS: u32 = 8;
 /// Attempts at meeting a wanted count by the radius of a coarse front, each of which is refined.
 const MAX_COARSE_ATTEMPTS: u32 = 4;
 
-/// The packing that an attempt shows is taken to hold for other radii where its count is within this factor of the expected one.
-/// Larger: sheets nearer to each other than the particles are taken for a small area.
+/// The packing that an attempt shows is taken to hold for other radii where its count is within
+/// this factor of the expected one. Larger: sheets nearer to each other than the particles are
+/// taken for a small area.
 const TRUSTED: f64 = 1.5;
-/// Largest factor by which the radius changes after an attempt whose packing is not trusted. Smaller: more attempts.
+/// Largest factor by which the radius changes after an attempt whose packing is not trusted.
+/// Smaller: more attempts.
 const MOST_CHANGE: f64 = 2.0;
 
 /// An attempt at covering the surface.
@@ -94,9 +96,10 @@ impl Default for Search {
 }
 
 impl Search {
-    /// Changes the scale after an attempt with `miss` times the wanted number of particles, by the law that the number goes with
-    /// the inverse square of the radius. Between two scales, one with too many particles and one with too few, the next one is in
-    /// the middle if the law leads beyond them. Returns the factor on the radius.
+    /// Changes the scale after an attempt with `miss` times the wanted number of particles, by the
+    /// law that the number goes with the inverse square of the radius. Between two scales, one with
+    /// too many particles and one with too few, the next one is in the middle if the law leads
+    /// beyond them. Returns the factor on the radius.
     fn advance(&mut self, miss: f64, most_change: f64) -> f64 {
         let [many, few] = &mut self.bracket;
         if miss > 1.0 {
@@ -123,7 +126,8 @@ impl Search {
 pub(super) struct Refining {
     /// Times that the radius of the front is halved, after which it is that of the attempt.
     pub(super) halvings: u32,
-    /// The search for the radius of the front by which the wanted count is met; its scale is a factor on that radius.
+    /// The search for the radius of the front by which the wanted count is met; its scale is a
+    /// factor on that radius.
     search: Search,
     /// The front that came nearest.
     nearest: Option<NearestFront>,
@@ -152,7 +156,8 @@ struct NearestFront {
 }
 
 impl Refining {
-    /// Goes back to the front that came nearest to the wanted count, which stands then. Says whether there is one.
+    /// Goes back to the front that came nearest to the wanted count, which stands then. Says
+    /// whether there is one.
     pub(super) fn recall_nearest(&mut self) -> bool {
         let Some(NearestFront { scale, halvings, failures, .. }) = self.nearest.take() else { return false };
         self.search.completed = MAX_COARSE_ATTEMPTS;
@@ -391,9 +396,9 @@ impl Attempt {
         tolerance(self.front_radius() as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
-    /// Notes that this attempt has covered the surface with `count` particles, or more than that if it `is_capped`. Says whether
-    /// another one, with the radius as now corrected, should come nearer to the wanted count. After the last one it is the
-    /// nearest one again.
+    /// Notes that this attempt has covered the surface with `count` particles, or more than that if
+    /// it `is_capped`. Says whether another one, with the radius as now corrected, should come
+    /// nearer to the wanted count. After the last one it is the nearest one again.
     pub(super) fn is_corrected(&mut self, settings: &Settings, count: usize, is_capped: bool) -> bool {
         let miss = count as f64 / f64::from(settings.count);
         let is_met = !is_capped && (miss - 1.0).abs() <= COUNT_TOLERANCE;
@@ -433,10 +438,11 @@ impl Attempt {
         true
     }
 
-    /// Notes that the refinement of this attempt's front has ended with `count` particles. Says whether another front, with the
-    /// radius as now corrected, should lead nearer to the wanted count: where patches are flat, their lattice stays as the front
-    /// has placed it. After the last one it is the nearest one again. The radius of the refined particles stays, and so does a
-    /// lattice without a defect, if the first front `is_in_order`: its number can only leap.
+    /// Notes that the refinement of this attempt's front has ended with `count` particles. Says
+    /// whether another front, with the radius as now corrected, should lead nearer to the wanted
+    /// count: where patches are flat, their lattice stays as the front has placed it. After the
+    /// last one it is the nearest one again. The radius of the refined particles stays, and so does
+    /// a lattice without a defect, if the first front `is_in_order`: its number can only leap.
     pub(super) fn is_front_corrected(
         &mut self,
         settings: &Settings,

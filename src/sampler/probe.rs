@@ -47,13 +47,15 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, which is selected; a surface without creases has
-    /// none, and every point does. `size` is about the size of a particle there.
+    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, which is
+    /// selected; a surface without creases has none, and every point does. `size` is about the size
+    /// of a particle there.
     ///
     /// It is asked a little outside: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
-        /// Distance outside, in sizes of a particle, far above rounding in double precision: of two branches of which one is 10⁶ times as
-        /// steep, the other one is asked within a hundredth of a particle from where both are zero.
+        /// Distance outside, in sizes of a particle, far above rounding in double precision: of two
+        /// branches of which one is 10⁶ times as steep, the other one is asked within a hundredth
+        /// of a particle from where both are zero.
         const OUTSIDE: f64 = 1e-8;
         patch.is_none_or(|patch| {
             let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
@@ -97,7 +99,8 @@ impl<'a> Probe<'a> {
         /// ends nearer than that to a zero.
         const ZERO: f64 = 0.01;
         let (at_point, slope) = self.field.value_and_gradient(point);
-        // Where another branch of f is far steeper, f is small beside what is around it and yet no zero.
+        // Where another branch of f is far steeper, f is small beside what is around it and yet no
+        // zero.
         if at_point.abs() > ZERO * slope.length() * size && slope.length() > 0.0 {
             return false;
         }

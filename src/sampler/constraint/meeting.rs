@@ -13,8 +13,9 @@ pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// differ there, which is far above rounding. Half and double change the particles of 4 of 24 random solids, but not their number.
 pub(super) const ASIDE: f64 = 1e-4;
 
-/// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f: far above rounding, and so little that
-/// of two branches of which one is 10⁶ times as steep the other one counts, too, at [`ASIDE`].
+/// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f:
+/// far above rounding, and so little that of two branches of which one is 10⁶ times as steep the
+/// other one counts, too, at [`ASIDE`].
 const OUTSIDE: f64 = 1e-11;
 
 /// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half of the angle and 45° give the same

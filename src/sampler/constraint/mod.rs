@@ -50,8 +50,8 @@ const ONE_END: f64 = 0.1;
 /// 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
 const NEAR: f64 = 0.2;
 
-/// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and its last one along the box as far
-/// again.
+/// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and
+/// its last one along the box as far again.
 const LONGEST: f64 = 4.0;
 
 /// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding. With
@@ -84,8 +84,8 @@ impl Crease {
         self.points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing)
     }
 
-    /// Whether a chord runs within `reach` of a point, where none is longer than `longest`. Those that follow on a chord far away
-    /// are left out: they come nearer by one length each.
+    /// Whether a chord runs within `reach` of a point, where none is longer than `longest`. Those
+    /// that follow on a chord far away are left out: they come nearer by one length each.
     fn is_near(&self, p: DVec3, reach: f64, longest: f64) -> bool {
         let points = &self.points;
         let count = points.len() - usize::from(!self.is_closed);

@@ -11,10 +11,12 @@ use glam::DVec3;
 const HALVINGS: u32 = 12;
 /// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.
 const BISECTIONS: u32 = 30;
-/// Largest number of steps on one curve: 80 times the diagonal of the box. A longer one is divided, so that no walk is endless.
+/// Largest number of steps on one curve: 80 times the diagonal of the box. A longer one is divided,
+/// so that no walk is endless.
 pub(super) const MOST_STEPS: usize = 20_000;
 
-/// Corners that may lie within one step of a walk, one before the other, each of a branch that gives f at no other.
+/// Corners that may lie within one step of a walk, one before the other, each of a branch that
+/// gives f at no other.
 const MOST_RETREATS: u32 = 8;
 
 /// How a walk along a crease ended.
@@ -199,7 +201,8 @@ impl Walk<'_, '_> {
                     && (corner - here).dot(way) > 0.0
                     && corner.distance(here) <= (1.0 + BESIDE) * way.length()
                 {
-                    // Another corner may come before it, of a branch that gives f at neither end of the step.
+                    // Another corner may come before it, of a branch that gives f at neither end of
+                    // the step.
                     let share = (corner.distance(here) - BESIDE * self.step) / way.length();
                     if share > 0.0
                         && share < 1.0 - BESIDE
