@@ -15,6 +15,14 @@ const FULL: f64 = 0.6;
 /// Finds the smallest cube through whose faces the surface does not pass, and its box in it. The surface goes on if the grid of a larger cube
 /// shows more.
 pub(super) async fn find(field: &mut dyn Field) -> Extent {
+    // In single precision rounding decides the sign far from the origin, where terms nearly cancel.
+    field.use_double(Some(1.0));
+    let found = find_on_grids(field).await;
+    field.use_double(None);
+    found
+}
+
+async fn find_on_grids(field: &mut dyn Field) -> Extent {
     let mut seen = None;
     let mut halves = HALVES.into_iter().rev();
     while let Some(half) = halves.next() {

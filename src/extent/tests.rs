@@ -160,6 +160,20 @@ fn where_there_is_no_surface_it_is_said() {
 }
 
 #[test]
+fn the_sign_of_terms_that_cancel_far_away_is_not_rounding() {
+    // Cylinders of radius 1 or more, of which intervals decide nothing far from the origin.
+    for text in [
+        "x^2 + y^2 + z^2 = 1 + if(z > 0, z, z^2)",
+        "x^2 + y^2 + z^2 - 1 - z^2*cos(0*z)",
+        "x^2 + y^2 + z^2*z^2 - 2 - z^4*cos(0*x)",
+    ] {
+        let extent = extent(text);
+        assert_eq!(extent.reach, Reach::Endless, "{text}: {extent:?}");
+        assert_eq!(extent.bounds, Bounds::cube(USUAL_HALF), "{text}");
+    }
+}
+
+#[test]
 fn the_room_is_a_twentieth_and_three_radii() {
     let sphere = Extent { bounds: Bounds::cube(1.0), reach: Reach::Bounded };
     assert_eq!(sphere.with_room(|_| 0.006).max, [1.1; 3]);

@@ -37,8 +37,19 @@ const RESERVE: f64 = 1.05;
 /// much a count is up to 5.6 % off.
 pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
-/// Attempts at meeting a wanted count. With three or five 52 random surfaces get the same particles.
-const MAX_ATTEMPTS: u32 = 4;
+/// Attempts at meeting a wanted count, after which the nearest of them stands: a limit on time
+/// where the count leaps with the radius.
+const MAX_ATTEMPTS: u32 = 8;
+/// Attempts at meeting a wanted count by the radius of a coarse front, each of which is refined.
+const MAX_COARSE_ATTEMPTS: u32 = 4;
+
+/// The packing that an attempt shows is taken to hold for other radii where its count is within
+/// this factor of the expected one. Larger: sheets nearer to each other than the particles are
+/// taken for a small area.
+const TRUSTED: f64 = 1.5;
+/// Largest factor by which the radius changes after an attempt whose packing is not trusted.
+/// Smaller: more attempts.
+const MOST_CHANGE: f64 = 2.0;
 
 /// An attempt at covering the surface.
 #[derive(Clone, Default)]
@@ -53,10 +64,61 @@ pub(super) struct Attempt {
     packing: f64,
     /// Plan and state of the refinement of the front; none if the front is not refined.
     pub(super) refining: Option<Refining>,
-    /// Whether this attempt only measures the packing.
-    is_pilot: bool,
-    /// Attempts completed before this one.
+    search: Search,
+    /// The attempt that came nearest to the wanted count.
+    nearest: Option<Box<Nearest>>,
+}
+
+/// The radii of an attempt.
+#[derive(Clone)]
+struct Nearest {
+    /// Its count over the wanted one, or the inverse, which is the larger.
+    miss: f64,
+    radius: f64,
+    sizing: Option<Sizing>,
+}
+
+/// A search for the radius at which there are as many particles as are wanted.
+#[derive(Clone, Copy, Debug)]
+struct Search {
+    /// The radius over that of the first attempt.
+    scale: f64,
+    /// The largest scale known to give too many particles, and the smallest known to give too few.
+    bracket: [f64; 2],
+    /// Attempts completed.
     completed: u32,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self { scale: 1.0, bracket: [0.0, f64::INFINITY], completed: 0 }
+    }
+}
+
+impl Search {
+    /// Changes the scale after an attempt with `miss` times the wanted number of particles, by the
+    /// law that the number goes with the inverse square of the radius. Between two scales, one with
+    /// too many particles and one with too few, the next one is in the middle if the law leads
+    /// beyond them. Returns the factor on the radius.
+    fn advance(&mut self, miss: f64, most_change: f64) -> f64 {
+        let [many, few] = &mut self.bracket;
+        if miss > 1.0 {
+            *many = self.scale;
+            // The number need not fall as the radius grows.
+            *few = if *few > self.scale { *few } else { f64::INFINITY };
+        } else {
+            *few = self.scale;
+            *many = if *many < self.scale { *many } else { 0.0 };
+        }
+        let [many, few] = self.bracket;
+        let mut factor = miss.sqrt().clamp(1.0 / most_change, most_change);
+        let next = self.scale * factor;
+        if many > 0.0 && few.is_finite() && !(next > many && next < few) {
+            factor = (many * few).sqrt() / self.scale;
+        }
+        self.scale *= factor;
+        factor
+    }
 }
 
 /// Plan of the refinement of a front, and the failures so far.
@@ -64,6 +126,11 @@ pub(super) struct Attempt {
 pub(super) struct Refining {
     /// Times that the radius of the front is halved, after which it is that of the attempt.
     pub(super) halvings: u32,
+    /// The search for the radius of the front by which the wanted count is met; its scale is a
+    /// factor on that radius.
+    search: Search,
+    /// The front that came nearest.
+    nearest: Option<NearestFront>,
     /// Whether the surface has creases.
     pub(super) is_creased: bool,
     /// The radius field of the refined particles, where sizes differ: the front has one size, but where there are creases.
@@ -78,7 +145,26 @@ pub(super) struct Refining {
     pub(super) failure: Option<Refusal>,
 }
 
+/// A front whose refinement has ended.
+#[derive(Clone, Copy, Debug)]
+struct NearestFront {
+    /// Its count over the wanted one, or the inverse, which is the larger.
+    miss: f64,
+    scale: f64,
+    halvings: u32,
+    failures: u32,
+}
+
 impl Refining {
+    /// Goes back to the front that came nearest to the wanted count, which stands then. Says
+    /// whether there is one.
+    pub(super) fn recall_nearest(&mut self) -> bool {
+        let Some(NearestFront { scale, halvings, failures, .. }) = self.nearest.take() else { return false };
+        self.search.completed = MAX_COARSE_ATTEMPTS;
+        (self.search.scale, self.halvings, self.failures) = (scale, halvings, failures);
+        true
+    }
+
     /// The facts about the surface in a box that a refinement uses.
     pub(super) fn surface(&self, bounds: &Bounds) -> SurfaceFacts<'_> {
         SurfaceFacts {
@@ -99,8 +185,8 @@ impl Attempt {
         attempt.radius = settings.radius_share * diagonal;
         if settings.size_mode == SizeMode::Count {
             let wanted = f64::from(settings.count);
-            attempt.is_pilot = wanted > PILOT_FROM;
-            let first = if attempt.is_pilot { (wanted * PILOT_SHARE).max(LEAST_PILOT) } else { wanted };
+            let is_pilot = wanted > PILOT_FROM;
+            let first = if is_pilot { (wanted * PILOT_SHARE).max(LEAST_PILOT) } else { wanted };
             let radius = (attempt.count_times_radius_sq() / first).sqrt();
             if radius > 0.0 {
                 attempt.radius = radius;
@@ -174,15 +260,25 @@ impl Attempt {
             return Some(Refusal::Bent { at: bend.into() });
         };
         let unrefined = self.clone();
-        (self.radius, self.is_pilot) = (radius, false);
+        self.radius = radius;
         let mut sizing = self.sizing.take();
         if let Some(sizing) = &mut sizing {
             sizing.scale_to(count / self.packing);
         }
         // Why no coarser front is tried, should this one fail.
         let failure = (halvings == 0).then_some(Refusal::Bent { at: bend.into() });
-        self.refining =
-            Some(Refining { halvings, is_creased, sizing, ladder: None, bend, failures: 0, failure });
+        let (search, nearest) = (Search::default(), None);
+        self.refining = Some(Refining {
+            halvings,
+            search,
+            nearest,
+            is_creased,
+            sizing,
+            ladder: None,
+            bend,
+            failures: 0,
+            failure,
+        });
         self.grade_front(settings);
         if self.predicted_count(settings) > f64::from(settings.max_particles) {
             *self = unrefined;
@@ -248,7 +344,9 @@ impl Attempt {
 
     /// Radius of the front.
     pub(super) fn front_radius(&self) -> f64 {
-        let coarse = |refining: &Refining| refine::FRONT_RADIUS * f64::from(1_u32 << refining.halvings);
+        let coarse = |refining: &Refining| {
+            refine::FRONT_RADIUS * f64::from(1_u32 << refining.halvings) * refining.search.scale
+        };
         self.radius * self.refining.as_ref().map_or(1.0, coarse)
     }
 
@@ -298,22 +396,78 @@ impl Attempt {
         tolerance(self.front_radius() as f32, survey.residual_limits(), survey.gradient_scale)
     }
 
-    /// Notes that this attempt has covered the surface with `count` particles. Says whether another one, with the radius as
-    /// now corrected, should come nearer to the wanted count.
-    pub(super) fn is_corrected(&mut self, settings: &Settings, count: usize) -> bool {
-        self.completed += 1;
+    /// Notes that this attempt has covered the surface with `count` particles, or more than that if
+    /// it `is_capped`. Says whether another one, with the radius as now corrected, should come
+    /// nearer to the wanted count. After the last one it is the nearest one again.
+    pub(super) fn is_corrected(&mut self, settings: &Settings, count: usize, is_capped: bool) -> bool {
         let miss = count as f64 / f64::from(settings.count);
-        let is_met = !self.is_pilot && (miss - 1.0).abs() <= COUNT_TOLERANCE;
-        if settings.size_mode == SizeMode::Radius || is_met || self.completed >= MAX_ATTEMPTS {
+        let is_met = !is_capped && (miss - 1.0).abs() <= COUNT_TOLERANCE;
+        // A limit below the wanted count stands.
+        let is_limited = is_capped && settings.count > settings.max_particles;
+        self.search.completed += 1;
+        if settings.size_mode == SizeMode::Radius
+            || is_met
+            || is_limited
+            || self.search.completed > MAX_ATTEMPTS
+        {
             return false;
         }
-        self.packing *= count as f64 / self.expected_count();
-        self.radius *= miss.sqrt();
+        let packing = count as f64 / self.expected_count();
+        if !is_capped {
+            self.packing *= packing;
+            let miss = miss.max(1.0 / miss);
+            if self.nearest.as_ref().is_none_or(|nearest| miss < nearest.miss) {
+                let (radius, sizing) = (self.radius, self.sizing.clone());
+                self.nearest = Some(Box::new(Nearest { miss, radius, sizing }));
+            }
+        }
+        if self.search.completed == MAX_ATTEMPTS {
+            let Some(nearest) = self.nearest.take() else { return false };
+            let is_other = nearest.radius != self.radius || is_capped;
+            (self.radius, self.sizing) = (nearest.radius, nearest.sizing);
+            return is_other;
+        }
+        let is_trusted = !is_capped && (1.0 / TRUSTED..=TRUSTED).contains(&packing);
+        let most_change = if is_trusted { f64::INFINITY } else { MOST_CHANGE };
+        let factor = self.search.advance(if is_capped { f64::INFINITY } else { miss }, most_change);
+        self.radius *= factor;
         if let Some(sizing) = &mut self.sizing {
-            sizing.scale(miss.sqrt());
+            sizing.scale(factor);
         }
         self.follow_sizing();
-        self.is_pilot = false;
         true
+    }
+
+    /// Notes that the refinement of this attempt's front has ended with `count` particles. Says
+    /// whether another front, with the radius as now corrected, should lead nearer to the wanted
+    /// count: where patches are flat, their lattice stays as the front has placed it. After the
+    /// last one it is the nearest one again. The radius of the refined particles stays, and so does
+    /// a lattice without a defect, if the first front `is_in_order`: its number can only leap.
+    pub(super) fn is_front_corrected(
+        &mut self,
+        settings: &Settings,
+        count: usize,
+        is_in_order: bool,
+    ) -> bool {
+        let miss = count as f64 / f64::from(settings.count);
+        let Some(refining) = &mut self.refining else { return false };
+        let Refining { search, halvings, failures, .. } = *refining;
+        if settings.size_mode == SizeMode::Radius
+            || (miss - 1.0).abs() <= COUNT_TOLERANCE
+            || search.completed >= MAX_COARSE_ATTEMPTS
+            || (is_in_order && search.completed == 0)
+        {
+            return false;
+        }
+        let own = NearestFront { miss: miss.max(1.0 / miss), scale: search.scale, halvings, failures };
+        if refining.nearest.is_none_or(|nearest| own.miss < nearest.miss) {
+            refining.nearest = Some(own);
+        }
+        refining.search.completed += 1;
+        if refining.search.completed < MAX_COARSE_ATTEMPTS {
+            refining.search.advance(miss, f64::INFINITY);
+            return true;
+        }
+        refining.recall_nearest() && refining.search.scale != own.scale
     }
 }

@@ -4,6 +4,7 @@ pub(crate) use crate::field::BATCH;
 
 use crate::field::Field;
 use crate::field::descent::Descent;
+use crate::math::newton::step_to_surface;
 use crate::math::{Bounds, Sym3};
 use glam::{DVec3, Vec3};
 
@@ -46,17 +47,25 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch; a surface without creases has none, and every point
-    /// does. `size` is about the size of a particle there.
+    /// Whether a point of the sheet of a patch, with its normal there, lies on the patch, which is
+    /// selected; a surface without creases has none, and every point does. `size` is about the size
+    /// of a particle there.
     ///
     /// It is asked a little outside: within a solid, where its bodies share a plane, each of two branches gives f on its inner side alone.
     pub(crate) fn is_on_patch(&mut self, point: Vec3, normal: Vec3, size: f32, patch: Option<u32>) -> bool {
-        /// Distance outside, in sizes of a particle. It is far above the residual of a point, and far below the distance of sheets that
-        /// such particles tell apart.
-        const OUTSIDE: f64 = 1e-4;
+        /// Distance outside, in sizes of a particle, far above rounding in double precision: of two
+        /// branches of which one is 10⁶ times as steep, the other one is asked within a hundredth
+        /// of a particle from where both are zero.
+        const OUTSIDE: f64 = 1e-8;
         patch.is_none_or(|patch| {
             let outward = normal.as_dvec3() * (OUTSIDE * f64::from(size));
-            self.field.branch_at(point.as_dvec3() + outward) == patch
+            let mut place = point.as_dvec3();
+            if outward != DVec3::ZERO {
+                // A point in single precision may be farther from the sheet than that.
+                let step = step_to_surface(self.field.value_and_gradient(place));
+                place -= if step.length() <= f64::from(size) { step } else { DVec3::ZERO };
+            }
+            self.field.branch_at(place + outward) == patch
         })
     }
 
@@ -89,7 +98,12 @@ impl<'a> Probe<'a> {
         /// Below this share of its largest value at that distance |f| counts as zero: Newton's method
         /// ends nearer than that to a zero.
         const ZERO: f64 = 0.01;
-        let (at_point, _) = self.field.value_and_gradient(point);
+        let (at_point, slope) = self.field.value_and_gradient(point);
+        // Where another branch of f is far steeper, f is small beside what is around it and yet no
+        // zero.
+        if at_point.abs() > ZERO * slope.length() * size && slope.length() > 0.0 {
+            return false;
+        }
         let distances = SIZES.map(|share| share * size);
         let most = distances.map(|d| self.most_around(point, d));
         // False for NaN.

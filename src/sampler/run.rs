@@ -406,7 +406,7 @@ impl Sampler {
             return next;
         }
         let is_capped = self.tools.front.level().capped;
-        if !is_capped && self.attempt.is_corrected(&self.settings, count) {
+        if self.attempt.is_corrected(&self.settings, count, is_capped) {
             return self.begin_attempt();
         }
         let is_alone = self.tools.front.level().fates.added == 0 && self.output.particles.twins.is_empty();
@@ -474,6 +474,9 @@ impl Sampler {
         let least = |refining: &Refining| {
             u32::from(refining.ladder.is_some() || is_lone && refining.sizing.is_some())
         };
+        if self.attempt.refining.as_mut().is_some_and(Refining::recall_nearest) {
+            return self.begin_attempt();
+        }
         match &mut self.attempt.refining {
             Some(refining) if refining.halvings > least(refining) && refusal.is_coarse() => {
                 // Why a coarser front failed says more than the last refusal, which may only be that no other front can be tried.
@@ -516,6 +519,14 @@ impl Sampler {
                 self.output.moved |= has_changed;
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
+                }
+                if let Some(refining) = &mut self.attempt.refining {
+                    // Of the front over all components.
+                    refining.halvings = refinement.fewest_halvings();
+                }
+                let count = self.output.particles.count();
+                if self.attempt.is_front_corrected(&self.settings, count, refinement.are_in_order()) {
+                    return self.begin_attempt();
                 }
                 self.counts.refined_levels = Some(refinement.most_halvings());
                 self.output.corners = refinement.into_corners();

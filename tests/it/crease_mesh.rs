@@ -148,3 +148,22 @@ fn curved_patches_meet_at_their_crease() {
     // Fewer edges around the hole than a hole that would be filled.
     assert_closed("pierced cube", &drilled_cube(0.1, 0.1), 0, 0.02);
 }
+
+/// Which branch gives f does not depend on how steep its formula is, up to a million times as steep
+/// as another one.
+#[test]
+fn branches_of_very_different_slopes_meet_in_a_crease() {
+    for steep in ["1", "1000", "100000"] {
+        for (text, creases) in [
+            ("max(K*(z + 0.2*x*x - 0.1), x^2 + y^2 + z^2 - 1)", 1),
+            ("max(x^2 + y^2 + z^2 - 1, K*(x + y + z - 0.3), y - 0.2)", 3),
+            ("min(K*((x - 1)^2 + y^2 + z^2 - 0.5), x^2 + y^2 + z^2 - 1)", 1),
+        ] {
+            let text = text.replace('K', steep);
+            let field = Formula::parse(&text).expect("a formula");
+            let sample = sample(field, &Settings::with_count(2_000)).expect("a sample");
+            assert_eq!(sample.report().proof.creases, Some(creases), "{text}");
+            assert!(sample.mesh().topology.is_closed(), "{text}");
+        }
+    }
+}

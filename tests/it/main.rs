@@ -12,6 +12,7 @@ mod cases;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;
+mod counts;
 mod crease_box;
 mod crease_mesh;
 mod crease_quality;

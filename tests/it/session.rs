@@ -254,7 +254,7 @@ fn a_count_that_cannot_be_met_gives_a_warning() {
     };
     // The surfaces are a strip narrower than its particles and bars thinner than theirs.
     assert!(said(r#"{"formula":"x","bounds":{"min":[-1,-1,-1e-4],"max":[1,1,1e-4]}}"#, 500));
-    assert!(said(r#"{"surface":"decocube"}"#, 10));
+    assert!(said(r#"{"surface":"decocube"}"#, 8));
     assert!(!said(r#"{"surface":"decocube"}"#, 1000));
     assert!(!said(r#"{"surface":"sphere"}"#, 1));
 }

@@ -167,7 +167,7 @@ fn refusal_of_run(error: &Error) -> String {
 /// Warning about a run that meets the limit on particles.
 fn over_limit(predicted_count: u64, settings: &Settings) -> String {
     let limit = settings.max_particles;
-    if settings.size_mode == SizeMode::Count {
+    if settings.size_mode == SizeMode::Count && settings.count > limit {
         let (wanted, room) = (settings.count, (f64::from(settings.count) * COUNT_ROOM).ceil());
         return format!(
             "the {wanted} particles that are wanted are more than the limit of {limit}; ask for a smaller --count, or allow them with \

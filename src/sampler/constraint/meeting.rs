@@ -13,6 +13,11 @@ pub(super) const FADED: f64 = 10.0 * ASIDE;
 /// differ there, which is far above rounding. Half and double change the particles of 4 of 24 random solids, but not their number.
 pub(super) const ASIDE: f64 = 1e-4;
 
+/// Distance outside of a sheet, as a share of the reach, at which it is asked which branch gives f:
+/// far above rounding, and so little that of two branches of which one is 10⁶ times as steep the
+/// other one counts, too, at [`ASIDE`].
+const OUTSIDE: f64 = 1e-11;
+
 /// Cosine of the largest turn of a crease in one step, 30°. A step that turns more is halved. Half of the angle and 45° give the same
 /// particles on 24 random solids.
 pub(super) const MOST_TURN: f64 = 0.5 * SQRT_3;
@@ -104,9 +109,13 @@ impl Meeting {
         if gradient.dot(beside) < MOST_TURN * gradient.length() * beside.length() {
             return None;
         }
-        let outward = gradient.normalize_or_zero() * ASIDE;
-        let is_given = |d| probe.field.branch_at(self.position + (d + outward) * (ASIDE * reach)) == b;
-        Some([aside, -aside].map(is_given))
+        let outward = gradient.normalize_or_zero() * (OUTSIDE * reach);
+        let mut is_given = |way: DVec3| {
+            let place = self.position + way * (ASIDE * reach);
+            let landed = place - step_to_surface(branch(probe, b, place));
+            probe.field.branch_at(if landed.is_finite() { landed } else { place } + outward) == b
+        };
+        Some([aside, -aside].map(&mut is_given))
     }
 
     /// Whether each branch gives f on both sides, so that their sheets cross, and no patch ends.

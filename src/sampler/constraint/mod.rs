@@ -50,6 +50,10 @@ const ONE_END: f64 = 0.1;
 /// 60° in two steps is a seventh of a step away. Half and double give the same particles on 24 random solids.
 const NEAR: f64 = 0.2;
 
+/// Length of a chord, in steps, that none exceeds: a step leads at most as far beyond its end, and
+/// its last one along the box as far again.
+const LONGEST: f64 = 4.0;
+
 /// A point is found when a step is shorter than this share of the reach: Newton's method squares the share, to below any rounding. With
 /// ten times and a tenth of it the particles of 24 random solids are the same.
 const AT_REST: f64 = 1e-9;
@@ -78,6 +82,25 @@ impl Crease {
     fn chords(&self) -> impl Iterator<Item = [DVec3; 2]> {
         let closing = self.is_closed.then(|| [self.points[self.points.len() - 1], self.points[0]]);
         self.points.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing)
+    }
+
+    /// Whether a chord runs within `reach` of a point, where none is longer than `longest`. Those
+    /// that follow on a chord far away are left out: they come nearer by one length each.
+    fn is_near(&self, p: DVec3, reach: f64, longest: f64) -> bool {
+        let points = &self.points;
+        let count = points.len() - usize::from(!self.is_closed);
+        let mut k = 0;
+        while k < count {
+            let (a, b) = (points[k], points[(k + 1) % points.len()]);
+            let way = b - a;
+            let t = ((p - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            let distance = (a + way * t).distance(p);
+            if distance <= reach {
+                return true;
+            }
+            k += (((distance - reach) / longest).ceil() as usize).max(1);
+        }
+        false
     }
 
     fn length(&self) -> f64 {
@@ -187,15 +210,8 @@ impl Creases {
 
     /// Whether a crease of two branches that is known runs through a point.
     fn has_point(&self, p: DVec3, branches: [u32; 2], step: f64) -> bool {
-        let is_on = |curve: &&Crease| {
-            curve.chords().any(|[a, b]| {
-                let way = b - a;
-                let t = ((p - a).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-                (a + way * t).distance_squared(p) <= (NEAR * step) * (NEAR * step)
-            })
-        };
         let has_both = |curve: &&Crease| branches.iter().all(|branch| curve.patches.contains(branch));
-        self.curves.iter().filter(has_both).any(|curve| is_on(&curve))
+        self.curves.iter().filter(has_both).any(|curve| curve.is_near(p, NEAR * step, LONGEST * step))
     }
 
     /// The first corner that lies on a crease of these branches, on the way from one of its points

@@ -193,6 +193,23 @@ fn every_level_of_a_ladder_halves_the_ways_along_the_creases() {
 }
 
 #[test]
+fn a_crease_of_more_steps_than_a_walk_takes_is_divided_and_no_part_is_lost() {
+    // Two helices of which each is 400 long, and the rims of the half disks at their ends.
+    let text = "max(x^2 + y^2 - 1, x*sin(100*z) - y*cos(100*z), abs(z) - 2)";
+    let (_, found) = creases(text, 2.2);
+    let step = 0.5 * Creases::width(&Bounds::cube(2.2));
+    let longest = found.curves.iter().map(|curve| curve.points.len()).max();
+    assert!(longest.is_some_and(|most| most > 2_000 && most <= trace::MOST_STEPS + 1), "{longest:?}");
+    let exact = 2.0 * 400.0 + 2.0 * (core::f64::consts::PI + 2.0);
+    let length: f64 = found.curves.iter().map(Crease::length).sum();
+    assert!((length / exact - 1.0).abs() < 0.01, "{length} for {exact}");
+    for curve in &found.curves {
+        assert!(curve.corners.iter().all(Option::is_some), "an end at {:?}", curve.points.last());
+        assert!(curve.chords().all(|[a, b]| a.distance(b) <= LONGEST * step));
+    }
+}
+
+#[test]
 fn creases_beyond_the_box_are_cut_at_its_faces() {
     for (text, half, [pieces, inside]) in [
         ("abs(x)+z", 1.0, [3, 1]),

@@ -11,8 +11,13 @@ use glam::DVec3;
 const HALVINGS: u32 = 12;
 /// Times that the way to the end of a crease is halved where it ends at no corner: it is found to a billionth of a step.
 const BISECTIONS: u32 = 30;
-/// Largest number of steps on one curve. One that is 80 times as long as the diagonal of the box is cut there.
-const MOST_STEPS: usize = 20_000;
+/// Largest number of steps on one curve: 80 times the diagonal of the box. A longer one is divided,
+/// so that no walk is endless.
+pub(super) const MOST_STEPS: usize = 20_000;
+
+/// Corners that may lie within one step of a walk, one before the other, each of a branch that
+/// gives f at no other.
+const MOST_RETREATS: u32 = 8;
 
 /// How a walk along a crease ended.
 enum WalkEnd {
@@ -20,7 +25,7 @@ enum WalkEnd {
     Closed,
     /// At the box.
     Open,
-    /// At the corner of this number, or where the crease fades out.
+    /// At the corner of this number, or where the crease fades out or is divided.
     Corner(usize),
 }
 
@@ -136,7 +141,7 @@ impl Walk<'_, '_> {
             last = next;
             points.push(next.position);
         }
-        WalkEnd::Open
+        WalkEnd::Corner(creases.corner_at(last.position, self.patches, ONE_CORNER * self.step))
     }
 
     /// The next point of the curve on which both branches are zero, and the length of the step.
@@ -186,28 +191,35 @@ impl Walk<'_, '_> {
         points: &mut Vec<DVec3>,
     ) -> WalkEnd {
         let branches = self.start.branches;
-        let way = beyond.position - here;
-        for third in self.branches_around(beyond) {
-            let corner =
-                common_point(self.probe, branches, Third::Branch(third), here + 0.5 * way, way.length());
-            if let Some(corner) = corner
-                && (corner - here).dot(way) > 0.0
-                && corner.distance(here) <= (1.0 + BESIDE) * way.length()
-            {
-                // Another corner may come before it, of a branch that gives f at neither end of the step.
-                let share = (corner.distance(here) - BESIDE * self.step) / way.length();
-                if share > 0.0
-                    && share < 1.0 - BESIDE
-                    && let Some(before) =
-                        Meeting::of_branches(self.probe, branches, here + way * share, self.step, FADED)
-                    && !self.is_same_crease(&before, self.step)
+        let mut beyond = *beyond;
+        'nearer: for _ in 0..MOST_RETREATS {
+            let way = beyond.position - here;
+            for third in self.branches_around(&beyond) {
+                let corner =
+                    common_point(self.probe, branches, Third::Branch(third), here + 0.5 * way, way.length());
+                if let Some(corner) = corner
+                    && (corner - here).dot(way) > 0.0
+                    && corner.distance(here) <= (1.0 + BESIDE) * way.length()
                 {
-                    return self.end_before(creases, here, &before, points);
+                    // Another corner may come before it, of a branch that gives f at neither end of
+                    // the step.
+                    let share = (corner.distance(here) - BESIDE * self.step) / way.length();
+                    if share > 0.0
+                        && share < 1.0 - BESIDE
+                        && let Some(before) =
+                            Meeting::of_branches(self.probe, branches, here + way * share, self.step, FADED)
+                        && !self.is_same_crease(&before, self.step)
+                    {
+                        beyond = before;
+                        continue 'nearer;
+                    }
+                    let patches = [self.patches, &[third]].concat();
+                    return self.end_at(creases, [here, corner], &patches, ONE_CORNER, points);
                 }
-                let patches = [self.patches, &[third]].concat();
-                return self.end_at(creases, [here, corner], &patches, ONE_CORNER, points);
             }
+            break;
         }
+        let way = beyond.position - here;
         let (mut active, mut inactive) = (here, beyond.position);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (active + inactive);

@@ -324,6 +324,11 @@ impl Components {
         self.components.iter().all(|component| component.refinement.is_done())
     }
 
+    /// Whether no particle had a defect when the last level began.
+    pub(crate) fn are_in_order(&self) -> bool {
+        self.components.iter().all(|component| component.refinement.is_in_order)
+    }
+
     /// Halvings of the component that is refined least.
     pub(crate) fn fewest_halvings(&self) -> u32 {
         self.components.iter().map(|component| component.refinement.target.halvings).min().unwrap_or(0)

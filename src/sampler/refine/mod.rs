@@ -99,6 +99,8 @@ struct Refinement {
     /// Sums over the faces, as far as the pass under way has come.
     tally: Tally,
     task: Task,
+    /// Whether no particle had a defect when the level under way began.
+    is_in_order: bool,
     /// The finished mesh, by the particles at the corners of its faces.
     corners: Vec<u32>,
 }
@@ -221,6 +223,7 @@ impl Refinement {
             memory: Memory { block, ..Memory::default() },
             tally: Tally::default(),
             task: Task::Done,
+            is_in_order: false,
             corners: Vec::new(),
         };
         refinement.task = refinement.begin_pass(0);
@@ -564,6 +567,7 @@ impl Refinement {
         if end < ends.len() {
             return Ok((Task::Lift { coarse, ends, defects }, BLOCK as u32));
         }
+        self.is_in_order = defects == 0;
         self.level = self.finer(self.level.to_come - 1, defects as f32 / ends.len() as f32);
         Ok((self.begin_pass(0), BLOCK as u32))
     }
