@@ -30,15 +30,12 @@ const CLOSE_COUNT: usize = 8;
 /// length; the report has all of them.
 const NAMED: usize = 4;
 
-/// Longest first sentence of a warning, in letters: two lines of the page's report.
-const FIRST_SENTENCE: usize = 110;
-
 /// Largest difference of the areas of a mesh and of the surface fitted to it that is not told, as a share of the mesh's. Of smooth
 /// meshes it is 0.1 %; rounded edges take 2 % of a cylinder, 4 % of a washer and 5 % of a cube.
 const AREA_TOLERANCE: f64 = 0.05;
 
 /// A warning about a run. The first sentence of its `Display` says what happened and what to do, in
-/// at most [`FIRST_SENTENCE`] letters and without the words of the method; the others are details.
+/// at most 110 letters and without the words of the method; the others are details.
 ///
 /// Positions are in the coordinates of the field. `length` is the radius of the run; `Display` rounds positions to a thousandth of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -640,6 +637,9 @@ fn unproven(f: &mut fmt::Formatter<'_>, doubt: &Doubt, length: f64) -> fmt::Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Longest first sentence, in letters: three lines of the page's report.
+    const FIRST_SENTENCE: usize = 110;
 
     #[test]
     fn the_first_sentence_is_short_and_names_no_part_of_the_method() {

@@ -10,9 +10,10 @@ const ADDRESS = './?backend=canvas2d';
 /**
  * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.
  * @param {Page} page
- * @param {{ width?: number, height?: number, hash?: string }} [options]
+ * @param {{ width?: number, height?: number, hash?: string, folded?: boolean }} [options]  `folded`: the panels are as
+ *   on a first visit
  */
-export async function open(page, { width = 1280, height = 800, hash = '' } = {}) {
+export async function open(page, { width = 1280, height = 800, hash = '', folded = false } = {}) {
   /** @type {string[]} */
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
@@ -26,10 +27,12 @@ export async function open(page, { width = 1280, height = 800, hash = '' } = {})
       seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`),
     );
   });
-  // The tests of the panels begin with all of them open.
-  await page.addInitScript(() => {
-    for (const name of ['sampling', 'report']) localStorage.setItem(`marching-particles.fold-${name}`, 'off');
-  });
+  // Most tests begin with all panels open.
+  if (!folded)
+    await page.addInitScript(() => {
+      if (location.protocol === 'about:') return;
+      for (const name of ['sampling', 'report']) localStorage.setItem(`marching-particles.fold-${name}`, 'off');
+    });
   await page.setViewportSize({ width, height });
   await page.goto(`${ADDRESS}${hash}`);
   await settled(page);

@@ -38,7 +38,7 @@ for (const [[width, height], ...others] of WINDOWS) {
         for (const entry of list.getEntries()) /** @type {any} */ (window).shift += /** @type {any} */ (entry).value;
       }).observe({ type: 'layout-shift', buffered: true });
     });
-    const { clean } = await open(page, { width, height });
+    const { clean } = await open(page, { width, height, folded: true });
     expect(await page.evaluate(() => /** @type {any} */ (window).shift)).toBeLessThan(0.05);
     expect(foreign).toEqual([]);
     await expectNoOverflow(page, width, height);

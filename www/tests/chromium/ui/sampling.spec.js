@@ -252,7 +252,7 @@ test('the report, what can be taken away, and what is said where there is no sur
       'Largest error',
       'Completeness',
     ]);
-    await expect(plain.locator('dd')).toHaveText([`${particles} particles`, /%$/, /%$/, 'proven']);
+    await expect(plain.locator('dd')).toHaveText([`${particles}`, /%$/, /%$/, 'proven']);
     await expect(page.locator('.figures')).toBeHidden();
     await openFigures(page);
     await expect(page.locator('.figures .term')).toHaveCount(rows.length);

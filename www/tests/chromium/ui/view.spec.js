@@ -128,3 +128,17 @@ for (const width of [1280, 320]) {
     }
   });
 }
+
+test('on a first visit sampling and report take a line each; what is unfolded stays so', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900, folded: true });
+  await expect(page.locator('#report-body')).toBeHidden();
+  await expect(page.locator('.panel-report .panel-head')).toContainText('4,286 particles');
+  await expect(page.getByRole('group', { name: 'Settings', exact: true })).toBeHidden();
+  await page.getByRole('button', { name: 'Unfold report' }).click();
+  await expect(page.locator('#report-body')).toBeVisible();
+  await page.reload();
+  await settled(page);
+  await expect(page.locator('#report-body')).toBeVisible();
+  await expect(page.getByRole('group', { name: 'Settings', exact: true })).toBeHidden();
+  await clean();
+});
