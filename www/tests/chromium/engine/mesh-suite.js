@@ -26,7 +26,7 @@ function differing(a, b) {
 export const suite = () =>
   test('a mesh closes the gaps between discs, and comes and goes with its particles', async ({ page }) => {
     const { errors } = await open(page);
-    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ size: 0.3 }));
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ size: 0.3, body: false }));
     await atRest(page);
     const discs = (await picture(page)).drawn;
     const plain = /** @type {const} */ ({ draw: 'mesh', colour: 'level', faces: 'smooth', edges: false, marks: false });

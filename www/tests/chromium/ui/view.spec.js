@@ -19,7 +19,9 @@ test('the view', async ({ page }) => {
   await test.step('the legend shows what the chosen colours mean', async () => {
     await afresh(page);
     const choose = page.getByRole('combobox', { name: 'Colour by' });
-    await expect(page.locator('.legend .cycle .swatch')).toHaveCount(12);
+    const { lastLevel } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns);
+    await expect(page.locator('.legend .ramp')).toBeVisible();
+    await expect(page.locator('.legend .ends')).toHaveText(new RegExp(`^0.*${lastLevel}$`));
     await choose.selectOption('valence');
     await expect(page.locator('.categories li').first()).toBeVisible();
     const counted = await page.locator('.categories .count').allTextContents();
