@@ -18,7 +18,7 @@ async function look(page, view) {
 function differing(a, b) {
   let n = 0;
   for (let i = 0; i < a.length; i += 4) {
-    if ([0, 1, 2].some((k) => Math.abs(a[i + k] - b[i + k]) > 8)) n += 1;
+    if ([0, 1, 2].some((k) => Math.abs(a[i + k] - b[i + k]) > 4)) n += 1;
   }
   return (4 * n) / a.length;
 }

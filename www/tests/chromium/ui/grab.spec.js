@@ -103,7 +103,7 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
     const pin = page.getByRole('slider', { name: 'Pin 2' });
     const before = (await state(page)).parameters;
     await pin.focus();
-    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowLeft');
     await settled(page);
     expect((await state(page)).parameters.a).toBeLessThan(before.a);
     await page.keyboard.press('Delete');
