@@ -18,6 +18,10 @@ struct Light {
     sky: vec3<f32>,
     dim_backfaces: f32,
     background: vec4<f32>,
+    occlusion: f32,
+    warmth: f32,
+    rim: f32,
+    light_ground: f32,
 }
 
 struct Appearance {
@@ -31,7 +35,14 @@ struct Look {
     disc_scale: f32,
     flat_faces: f32,
     edge_px: f32,
-    light_ground: f32,
+    padding: f32,
+}
+
+struct Body {
+    colour: vec3<f32>,
+    is_open: f32,
+    lo: vec4<f32>,
+    hi: vec4<f32>,
 }
 
 struct ClipBox {
@@ -45,6 +56,7 @@ struct Frame {
     light: Light,
     appearance: Appearance,
     look: Look,
+    body: Body,
     clip_box: ClipBox,
     plane: vec4<f32>,
 }
@@ -59,11 +71,23 @@ struct Frame {
 const NOTHING = 0.002;
 // Share of linear light by which each component of a linear sRGB colour adds to its luminance (Rec. 709).
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
-// What an inside keeps of its light and of its distance from grey. Chosen by comparing pictures of the gyroid, Klein bottle,
-// Neovius's and Clebsch's surfaces, decocube and bunny as discs and as mesh on both grounds: at a light of 0.3 the patterns on the
-// inside drown, at 0.5 it is hard to tell from the front.
-const INSIDE_LIGHT = 0.40;
-const INSIDE_CHROMA = 0.5;
+// What an inside keeps of its light and of its distance from grey. With more it is hard to tell
+// from the front, with less the patterns on it drown; ambient occlusion darkens it besides.
+const INSIDE_LIGHT = 0.6;
+const INSIDE_CHROMA = 0.75;
+// Light from below and from the sky above, and that of the key light. The sum is 1.34 where a
+// surface faces key light and sky, so that the palettes, whose colours are no lighter than 0.9 in
+// OKLab, seldom clip.
+const GROUND_LIGHT = 0.32;
+const SKY_LIGHT = 0.60;
+const KEY_LIGHT = 0.74;
+// Share of its half circle by which the key light reaches past the terminator, like light from a
+// large source.
+const WRAP = 0.30;
+// Light that the outline loses.
+const OUTLINE_SHADE = 0.14;
+// Brightnesses between which the light goes from cool to warm.
+const COOL_TO_WARM = vec2<f32>(0.35, 1.15);
 
 // See oct_encode in src/render/layout.rs.
 fn oct_encode(n: vec3<f32>) -> vec2<f32> {
@@ -109,13 +133,16 @@ fn toward_eye(position: vec3<f32>) -> vec3<f32> {
     return select(-frame.camera.forward, normalize(frame.camera.eye - position), frame.camera.perspective > 0.5);
 }
 
-// Brightness of a surface by the cosines of its normal with the directions to the key light and to the sky, darker at the
-// silhouette, where `edge_on` is 1.
-fn brightness(toward_key: f32, toward_sky: f32, edge_on: f32) -> f32 {
-    let hemisphere = mix(0.46, 0.66, 0.5 + 0.5 * toward_sky);
-    // Wrapped diffuse light reaches a little past the terminator, like light from a large source.
-    let key = max((toward_key + 0.25) / 1.25, 0.0);
-    return (hemisphere + 0.52 * key * key) * (1.0 - 0.30 * edge_on * edge_on * edge_on);
+// Light on a surface with this unit normal, for each component of its colour. `edge_on` is 1 at the
+// outline, and `open` the share of the light from all around that reaches it.
+fn light_on(n: vec3<f32>, edge_on: f32, open: f32) -> vec3<f32> {
+    let skyward = 0.5 + 0.5 * dot(frame.light.sky, n);
+    let key = max((dot(frame.light.key, n) + WRAP) / (1.0 + WRAP), 0.0);
+    let edge_sq = edge_on * edge_on;
+    let direct = (mix(GROUND_LIGHT, SKY_LIGHT, skyward) + KEY_LIGHT * key * key) * (1.0 - OUTLINE_SHADE * edge_sq * edge_on);
+    let light = (direct + frame.light.rim * edge_sq * edge_sq * skyward) * mix(1.0, open, frame.light.occlusion);
+    let warmth = frame.light.warmth * (smoothstep(COOL_TO_WARM.x, COOL_TO_WARM.y, light) - 0.5);
+    return light * (1.0 + warmth * vec3<f32>(0.6, 0.1, -1.0));
 }
 
 // Share by which a surface of this level fades to the background, because all do or because its level is not the newest.

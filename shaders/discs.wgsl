@@ -1,4 +1,5 @@
-// Draws particles as discs in their tangent planes or as spheres, and a ring around one of them. See src/render/mod.rs.
+// Draws particles as discs in their tangent planes or as spheres, the body beneath them, and a ring
+// around one of them. See src/render/mod.rs.
 
 // A particle, as RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES in src/render/layout.rs describe it.
 struct Particle {
@@ -26,6 +27,8 @@ struct Disc {
     @location(5) @interpolate(flat) faded: f32,
     // Centre and radius of a sphere; the radius of a disc is 0.
     @location(6) @interpolate(flat) ball: vec4<f32>,
+    // Depth by which it is drawn behind its place.
+    @location(7) @interpolate(flat) sunk: f32,
 }
 
 // Padding of the quad beyond the rim, in pixels. Half a pixel holds the antialiased edge; the other half is a reserve,
@@ -37,7 +40,10 @@ const MAX_REACH = 2.0;
 // Size of a disc at the start of its appearance, as a share of its final size.
 const BIRTH_SIZE = 0.6;
 // Tilt of the shading normal at the rim. It gives a large disc the look of a low dome.
-const DOME = 0.34;
+const DOME = 0.26;
+// Light that the rim of a large disc loses, and the share of the radius from which on it does.
+const RIM_SHADE = 0.14;
+const RIM_FROM = 0.72;
 // Radii in pixels between which discs become points. Below the second a disc is enlarged, and at the first the gaps are
 // closed: gaps of about a pixel would cause moiré. CLOSED is the enlargement at which three neighbours meet.
 const SWELL_PX = vec2<f32>(0.8, 2.4);
@@ -115,13 +121,19 @@ fn eye_distance(ball: vec4<f32>) -> f32 {
     return select(1e3, clamp(distance(frame.camera.eye, ball.xyz) / ball.w, 1.0001, 1e3), frame.camera.perspective > 0.5);
 }
 
+// Progress from 0 to 1 of the appearance of a particle.
+fn appeared(birth: f32) -> f32 {
+    let fade = frame.appearance.fade;
+    let age = select(1.0, clamp((frame.appearance.time - birth) / max(fade, 1e-6), 0.0, 1.0), fade > 0.0);
+    return age * age * (3.0 - 2.0 * age);
+}
+
 // `side` is 1 to draw only discs seen from the front, -1 for those seen from behind, 0 for both. With `spheres` a particle is drawn as
 // the disc that its sphere covers, which faces the eye; one without a level is no particle of a surface and stays a disc.
 fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32, spheres: bool) -> Disc {
     var out: Disc;
     out.clip = hidden();
-    let age = select(1.0, clamp((frame.appearance.time - particle.birth) / max(frame.appearance.fade, 1e-6), 0.0, 1.0), frame.appearance.fade > 0.0);
-    let appear = age * age * (3.0 - 2.0 * age);
+    let appear = appeared(particle.birth);
     let opacity = appear * particle.colour.a;
     let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
     if particle.radius == 0.0 || particle.level > frame.appearance.level || opacity <= NOTHING || centre.w <= 0.0
@@ -169,7 +181,9 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32, sph
     out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.camera.viewport * out.clip.w, 0.0, 0.0);
     let push = (point_depth * pointness(axes) - select(0.0, 1.0, is_dot)) * r;
     let deeper = out.clip - push * clip_direction(v);
-    out.clip.z = deeper.z / deeper.w * out.clip.w;
+    let depth = deeper.z / deeper.w;
+    out.sunk = depth - out.clip.z / out.clip.w;
+    out.clip.z = depth * out.clip.w;
     out.ball = vec4<f32>(particle.position - push * v, select(0.0, r / widening, is_ball));
 
     out.uv = corner * reach;
@@ -199,20 +213,21 @@ fn world_of(disc: Disc, local: vec3<f32>) -> vec3<f32> {
     return local.x * disc.t.xyz + local.y * disc.b.xyz + local.z * cross(disc.t.xyz, disc.b.xyz);
 }
 
-fn shade(disc: Disc) -> vec3<f32> {
+// Colour of a disc. `slope` is the change of its depth to the next pixel.
+fn shade(disc: Disc, slope: f32) -> vec3<f32> {
     let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
     let rho = min(length(disc.uv), 1.0);
     // The normal of the dome tilts outward by DOME at the rim.
     let lean = disc.uv / max(length(disc.uv), 1e-6) * rho * rho * DOME * full;
-    // The rim is darker, so that discs stand out from each other.
-    let rim = 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
-    return lit(disc, normalize(world_of(disc, vec3<f32>(lean, 1.0))), disc.b.w, rim);
+    let rim = 1.0 - RIM_SHADE * full * smoothstep(RIM_FROM, 1.0, rho);
+    let open = openness(disc.clip.xy, disc.clip.z - disc.sunk, slope);
+    return lit(disc, normalize(world_of(disc, vec3<f32>(lean, 1.0))), disc.b.w, open) * rim;
 }
 
-// Colour with a unit normal in world coordinates. `open` is the share of the light that is left.
+// Colour with a unit normal in world coordinates. `open` is the share of the light from all around
+// that reaches it.
 fn lit(disc: Disc, n: vec3<f32>, edge_on: f32, open: f32) -> vec3<f32> {
-    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), edge_on) * open;
-    let seen = inside(disc.colour.rgb * light, disc.t.w * frame.light.dim_backfaces);
+    let seen = inside(disc.colour.rgb * light_on(n, edge_on, open), disc.t.w * frame.light.dim_backfaces);
     return fade_to(seen, frame.light.background.rgb, disc.faded);
 }
 
@@ -251,10 +266,11 @@ fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
 }
 
 fn painted(disc: Disc, covered: f32) -> vec4<f32> {
+    let slope = fwidth(disc.clip.z);
     if covered < NOTHING {
         discard;
     }
-    return vec4<f32>(shade(disc) * covered, covered);
+    return vec4<f32>(shade(disc, slope) * covered, covered);
 }
 
 // Normal of a sphere where the ray through the pixel meets it, along the axes of its disc.
@@ -291,11 +307,12 @@ fn fs_ball_rim(disc: Disc) -> Pixel {
 
 fn painted_ball(disc: Disc, rim: bool) -> Pixel {
     let covered = covered_in(disc, rim);
-    if disc.ball.w == 0.0 {
-        return Pixel(painted(disc, covered), disc.clip.z);
-    }
+    let slope_of_disc = fwidth(disc.clip.z);
     if covered < NOTHING {
         discard;
+    }
+    if disc.ball.w == 0.0 {
+        return Pixel(vec4<f32>(shade(disc, slope_of_disc) * covered, covered), disc.clip.z);
     }
     let local = ball_normal(disc);
     let n = world_of(disc, local);
@@ -317,6 +334,131 @@ fn fs_ball_nearest(disc: Disc) -> Nearest {
     let n = world_of(disc, select(ball_normal(disc), vec3<f32>(0.0, 0.0, 1.0), disc.ball.w == 0.0));
     let depth = select(depth_at(disc.ball.xyz + disc.ball.w * n), disc.clip.z, disc.ball.w == 0.0);
     return Nearest(texel_of(depth, n), depth);
+}
+
+// A disc of the body: a particle's disc, larger and a little behind.
+struct Bed {
+    @builtin(position) clip: vec4<f32>,
+    // Position in the plane of the disc. The rim is at length 1.
+    @location(0) uv: vec2<f32>,
+    @location(1) place: vec3<f32>,
+    // Unit normal on the side of the eye, and 1 minus the cosine of the viewing angle.
+    @location(2) @interpolate(flat) n: vec4<f32>,
+    // Shares by which it is drawn as an inside and fades to the background, and the depth by which
+    // it is behind its place.
+    @location(3) @interpolate(flat) seen: vec3<f32>,
+    // Linear colour.
+    @location(4) @interpolate(flat) colour: vec3<f32>,
+}
+
+// Radius of a bed in repulsion radii. In a hexagonal packing no place is farther than 1.15 r from a
+// particle; where fronts meet they leave holes 1.5 times as wide, and the first row beside a crease
+// is 1.7 r away from it. Larger: more pixels are drawn several times.
+const BED_RADIUS = 1.75;
+// Depths in radii by which a bed lies behind its place, along the normal and along the line of
+// sight. A bed that touches the surface at its centre would cut through the neighbours' discs where
+// the surface bends.
+const BED_SUNK = 0.22;
+const BED_BEHIND = 0.40;
+// Radius of a bed seen edge-on, which stays behind the discs at the outline, and the cosine of the
+// viewing angle from which on it has its full radius. On an open surface nothing hides it from
+// behind, so it goes farther back there.
+const OUTLINE_BED = vec2<f32>(0.88, 0.15);
+const OPEN_OUTLINE_BED = vec2<f32>(1.20, 0.60);
+// Cosines of the viewing angle between which a bed seen from behind becomes an inside. At the
+// outline it has the tone of the beds beside it, which are seen from the front.
+const INSIDE_FROM = vec2<f32>(0.15, 0.45);
+// Share by which the body fades to the background where the surface is still to come.
+const TO_COME = 0.72;
+// Depth along the line of sight there: above the beds of the particles that are shown, so that the
+// front ends at its discs.
+const TO_COME_BEHIND = 0.2;
+// Radius in pixels below which there is no bed: discs are enlarged there until they touch.
+const LEAST_BED_PX = 0.8;
+
+@vertex
+fn vs_bed(@builtin(vertex_index) vertex: u32, particle: Particle) -> Bed {
+    return bed_vertex(vertex, particle, 1.0, false);
+}
+
+@vertex
+fn vs_bed_to_come(@builtin(vertex_index) vertex: u32, particle: Particle) -> Bed {
+    return bed_vertex(vertex, particle, 1.0, true);
+}
+
+// In its place, where the discs find the openness that they look up by their depth.
+@vertex
+fn vs_bed_nearest(@builtin(vertex_index) vertex: u32, particle: Particle) -> Bed {
+    return bed_vertex(vertex, particle, 0.0, false);
+}
+
+// `sunk` is the share of its depth below the surface.
+fn bed_vertex(vertex: u32, particle: Particle, sunk: f32, to_come: bool) -> Bed {
+    var out: Bed;
+    out.clip = hidden();
+    let place = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
+    if particle.radius <= 0.0 || particle.level < 0.0 || frame.appearance.time < particle.birth || place.w <= 0.0 {
+        return out;
+    }
+    let v = toward_eye(particle.position);
+    let outward = oct_decode(particle.normal_oct);
+    let facing = dot(outward, v);
+    let is_open = frame.body.is_open > 0.5;
+    if facing < 0.0 && !is_open {
+        return out;
+    }
+    let n = select(outward, -outward, facing < 0.0);
+    let t = facing_axis(n, v);
+    let outline = select(OUTLINE_BED, OPEN_OUTLINE_BED, is_open);
+    let r = particle.radius * mix(outline.x, BED_RADIUS, min(abs(facing) / outline.y, 1.0));
+    if length(particle.radius * moved_px(place, clip_direction(t))) < LEAST_BED_PX {
+        return out;
+    }
+    let uv = quad_corner(vertex);
+    // Seen from both sides, it cannot be sunk to the other one.
+    let down = select(BED_SUNK, 0.0, is_open) * sunk * particle.radius;
+    let corner = particle.position - down * n + r * (uv.x * t + uv.y * cross(n, t));
+    let is_shown = !to_come && particle.level <= frame.appearance.level;
+    let back = select(TO_COME_BEHIND, BED_BEHIND, is_shown) * sunk * particle.radius * v;
+    let clip = frame.camera.clip_from_world * vec4<f32>(corner, 1.0);
+    let deeper = frame.camera.clip_from_world * vec4<f32>(corner - back, 1.0);
+    out.clip = vec4<f32>(clip.xy, deeper.z / deeper.w * clip.w, clip.w);
+    out.uv = uv;
+    out.place = corner;
+    // It has the colour of the disc until that has appeared, so that a surface that takes the place
+    // of another stays coloured.
+    out.colour = fade_to(linear_from_srgb(particle.colour.rgb), frame.body.colour, appeared(particle.birth));
+    out.n = vec4<f32>(n, 1.0 - abs(facing));
+    let behind = smoothstep(INSIDE_FROM.x, INSIDE_FROM.y, -facing) * frame.light.dim_backfaces;
+    let at = particle.position - down * n - back;
+    out.seen = vec3<f32>(behind, select(max(TO_COME, frame.light.dim), faded(particle.level), is_shown), depth_at(at) - place.z / place.w);
+    return out;
+}
+
+// Whether the body ends before this pixel: at the rim of the bed, at the box or at the cutting
+// plane.
+fn is_beside(bed: Bed) -> bool {
+    let is_in_box = all(bed.place >= frame.body.lo.xyz) && all(bed.place <= frame.body.hi.xyz);
+    return dot(bed.uv, bed.uv) > 1.0 || !is_in_box || beyond_plane(bed.place) > 0.0;
+}
+
+@fragment
+fn fs_bed(bed: Bed) -> @location(0) vec4<f32> {
+    let slope = fwidth(bed.clip.z);
+    if is_beside(bed) {
+        discard;
+    }
+    let open = openness(bed.clip.xy, bed.clip.z - bed.seen.z, slope);
+    let seen = inside(bed.colour * light_on(bed.n.xyz, bed.n.w, open), bed.seen.x);
+    return vec4<f32>(fade_to(seen, frame.light.background.rgb, bed.seen.y), 1.0);
+}
+
+@fragment
+fn fs_bed_nearest(bed: Bed) -> @location(0) vec2<u32> {
+    if is_beside(bed) {
+        discard;
+    }
+    return texel_of(bed.clip.z, bed.n.xyz);
 }
 
 struct Ring {
@@ -368,7 +510,7 @@ fn fs_ring(ring: Ring) -> @location(0) vec4<f32> {
     // A line that contrasts with the background has a thin casing like the background, so it is visible on any colour.
     let line = clamp(half + 0.5 - distance, 0.0, 1.0);
     let casing = 0.8 * clamp(half + 0.75 * frame.camera.pixel_ratio + 0.5 - distance, 0.0, 1.0);
-    let ink = vec3<f32>(mix(1.0, 0.01, frame.look.light_ground));
+    let ink = vec3<f32>(mix(1.0, 0.01, frame.light.light_ground));
     let ground = vec3<f32>(1.0) - ink;
     let alpha = max(line, casing);
     if alpha < NOTHING {

@@ -1,4 +1,4 @@
-// Draws the triangles of a mesh, with their edges and marks on vertices, or as a ghost beneath discs. See src/render/mod.rs.
+// Draws the triangles of a mesh, with their edges and marks on vertices. See src/render/mod.rs.
 
 // A triangle, counter-clockwise seen from outside, as FACE_ATTRIBUTES and TINT_ATTRIBUTES in src/render/layout.rs describe it.
 struct Face {
@@ -123,7 +123,7 @@ fn corner_distances_sq(w: vec3<f32>, sides_sq: vec3<f32>) -> vec3<f32> {
 
 // `under`, with the mark of a corner on it, if it has one. The corner's repulsion radius and its distance are in world units, of
 // which a pixel has `per_px`. The face is turned to the eye by the cosine `facing`.
-fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px: f32, facing: f32, light: f32) -> vec3<f32> {
+fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px: f32, facing: f32, light: vec3<f32>) -> vec3<f32> {
     if mark.a < 0.5 {
         return under;
     }
@@ -133,7 +133,7 @@ fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px:
     let inside_px = (rim - distance) / per_px;
     let cased = smoothstep(MARK_CASED_PX.x, MARK_CASED_PX.y, rim / (per_px * ratio));
     let casing = clamp(inside_px + MARK_CASING_PX * ratio + 0.5, 0.0, 1.0) * cased;
-    let dot_shade = mark.rgb * mix(1.0, light, 0.6);
+    let dot_shade = mark.rgb * mix(vec3<f32>(1.0), light, 0.6);
     return mix(mix(under, frame.light.background.rgb, casing), dot_shade, clamp(inside_px + 0.5, 0.0, 1.0));
 }
 
@@ -151,7 +151,7 @@ fn shade_face(point: Point, front: bool) -> vec3<f32> {
     let v = normalize(point.to_eye);
     let facing = clamp(dot(n, v), 0.0, 1.0);
     let open = openness(point.clip.xy, point.clip.z, fwidth(point.clip.z));
-    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing) * open;
+    let light = light_on(n, 1.0 - facing, open);
     var colour = point.colour * light;
 
     // Distances from the sides in pixels, and the heights over them.
@@ -199,51 +199,4 @@ fn fs_nearest(point: Point) -> @location(0) vec2<u32> {
         discard;
     }
     return texel_of(point.clip.z, point.normal);
-}
-
-// The surface as a ghost beneath its discs.
-struct Ghost {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) to_eye: vec3<f32>,
-    // See beyond_plane.
-    @location(2) beyond: f32,
-}
-
-// Depth in repulsion radii by which the ghost lies behind the surface. Between the corners of a face, the surface and the discs on it
-// bend away from the face by less than that.
-const GHOST_DEPTH = 1.0;
-// Linear grey of the ghost, and the share by which it fades to the background.
-const GHOST_GREY = 0.4;
-const GHOST_FADE = 0.72;
-
-@vertex
-fn vs_ghost(@builtin(vertex_index) vertex: u32, face: Face) -> Ghost {
-    var out: Ghost;
-    out.clip = hidden();
-    if is_hidden(face) {
-        return out;
-    }
-    let corner = corner_of(face, vertex);
-    let position = corner.place.xyz;
-    out.to_eye = toward_eye(position);
-    out.normal = oct_decode(corner.normal_oct);
-    out.beyond = beyond_plane(position);
-    out.clip = frame.camera.clip_from_world * vec4<f32>(position, 1.0);
-    let deeper = frame.camera.clip_from_world * vec4<f32>(position - GHOST_DEPTH * corner.place.w * out.to_eye, 1.0);
-    out.clip.z = deeper.z / deeper.w * out.clip.w;
-    return out;
-}
-
-@fragment
-fn fs_ghost(ghost: Ghost, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let shown = shown_share(ghost.beyond);
-    if shown < NOTHING {
-        discard;
-    }
-    let n = normalize(select(-ghost.normal, ghost.normal, front));
-    let facing = clamp(dot(n, normalize(ghost.to_eye)), 0.0, 1.0);
-    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing);
-    let seen = inside(vec3<f32>(GHOST_GREY * light), select(frame.light.dim_backfaces, 0.0, front));
-    return vec4<f32>(fade_to(seen, frame.light.background.rgb, max(GHOST_FADE, frame.light.dim)), shown);
 }

@@ -4,6 +4,7 @@
 
 use super::RecordText;
 use super::vertices::Indexed;
+use crate::math::functions::{cos, pow, sin_cos};
 use crate::particles::Particles;
 use glam::{DVec3, Vec3};
 use std::io::{self, Write};
@@ -18,9 +19,6 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// One material, which lets the colours of the vertices through.
 const MATERIALS: &str =
     r#""materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.7},"doubleSided":true}]"#;
-
-/// Generation levels with a colour of their own; then the colours begin again, as on the page.
-const CYCLE: u32 = 12;
 
 /// A column of the binary buffer, with its accessor.
 struct BufferColumn {
@@ -77,6 +75,7 @@ fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed
     let vectors =
         |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
     let levels = rows.iter().map(|&row| particles.level[row as usize]);
+    let colours = colours(levels.clone().max().unwrap_or(0));
     let attribute = |name, accessor, bytes| BufferColumn { name, target: ARRAY_BUFFER, accessor, bytes };
     let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
     let index_count = 3 * triangles.len();
@@ -86,7 +85,7 @@ fn columns(particles: &Particles, Indexed { rows, normals, triangles }: &Indexed
         attribute(
             "COLOR_0",
             accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
-            levels.clone().flat_map(colour).collect(),
+            levels.clone().flat_map(|level| colours[level as usize]).collect(),
         ),
         // Attributes may not be whole numbers of 32 bits.
         attribute(
@@ -143,28 +142,30 @@ fn document(columns: &[BufferColumn], length: usize, origin: DVec3, record: &Rec
     format!("{{{}}}", members.join(","))
 }
 
-/// Colour of a generation level, linear, with opacity: a rhombus in the a–b plane of OKLab at constant lightness, the page's light
-/// cycle. OKLab is Björn Ottosson's, "A perceptual color space for image processing", 2020.
-fn colour(level: u32) -> [u8; 4] {
-    /// Lightness of the page's cycle on a light ground.
-    const LIGHTNESS: f32 = 0.7;
-    /// Half the length of the rhombus along a: at this lightness sRGB has no colour of a larger a than 0.127, positive and negative.
-    const A: f32 = 0.12;
-    /// Half the length of the rhombus along b: at the lightness 0.75 of the page's cycle on a dark ground, which has the same rhombus, sRGB
-    /// has no colour of a larger b than 0.127, positive and negative.
-    const B: f32 = 0.125;
-    // Triangle wave of period 1: 0 → 1 → 0 → −1.
-    let triangle = |t: f32| match t - t.floor() {
-        u if u < 0.25 => 4.0 * u,
-        u if u < 0.75 => 2.0 - 4.0 * u,
-        u => 4.0 * u - 4.0,
-    };
-    let t = (level % CYCLE) as f32 / CYCLE as f32;
-    let (a, b) = (A * triangle(t), -B * triangle(t + 0.25));
+/// Colours of the generation levels up to `last`, linear, with opacity: those of the page on a light
+/// ground around a seed, from blue to sand with a light ring every eight levels. They are computed
+/// in OKLab (Björn Ottosson, "A perceptual color space for image processing", 2020).
+fn colours(last: u32) -> Vec<[u8; 4]> {
+    /// Levels from one light ring to the next, and exponent of the way from blue to sand.
+    const RING: f32 = 8.0;
+    const WAY: f32 = 1.4;
+    (0..=last)
+        .map(|level| {
+            let ring = 0.5 - 0.5 * cos(core::f32::consts::TAU * level as f32 / RING);
+            let way = pow(level as f32 / last.max(1) as f32, WAY);
+            let (sin, cos) = sin_cos((262.0 - 177.0 * way).to_radians());
+            let chroma = 0.072 - 0.030 * ring;
+            bytes_from_oklab(0.79 + 0.10 * ring, chroma * cos, chroma * sin)
+        })
+        .collect()
+}
+
+/// A colour of OKLab as linear sRGB, with opacity.
+fn bytes_from_oklab(lightness: f32, a: f32, b: f32) -> [u8; 4] {
     let cube = |x: f32| x * x * x;
-    let l = cube(LIGHTNESS + 0.396_337_78 * a + 0.215_803_76 * b);
-    let m = cube(LIGHTNESS - 0.105_561_346 * a - 0.063_854_17 * b);
-    let s = cube(LIGHTNESS - 0.089_484_18 * a - 1.291_485_5 * b);
+    let l = cube(lightness + 0.396_337_78 * a + 0.215_803_76 * b);
+    let m = cube(lightness - 0.105_561_346 * a - 0.063_854_17 * b);
+    let s = cube(lightness - 0.089_484_18 * a - 1.291_485_5 * b);
     let linear = [
         4.076_741_7 * l - 3.307_711_6 * m + 0.230_969_94 * s,
         -1.268_438 * l + 2.609_757_4 * m - 0.341_319_38 * s,

@@ -17,6 +17,8 @@ pub struct Frame {
     pub appearance: Appearance,
     /// Sizes and shading of discs and faces.
     pub look: Look,
+    /// The body beneath the discs.
+    pub body: Body,
     /// The clip box, drawn where a picture has one.
     pub clip_box: ClipBox,
     /// Cutting plane: its normal and its offset. What has normal · p > offset is hidden; without a plane the normal is zero.
@@ -57,6 +59,14 @@ pub struct Light {
     pub dim_backfaces: f32,
     /// Background colour, linear, not premultiplied by its opacity.
     pub background: [f32; 4],
+    /// Fraction of the ambient occlusion that darkens the surface, 0 to 1.
+    pub occlusion: f32,
+    /// Difference in warmth between lit and shaded places, 0 to 1.
+    pub warmth: f32,
+    /// Light added along the outline.
+    pub rim: f32,
+    /// 1 for a light background, 0 for a dark one.
+    pub light_ground: f32,
 }
 
 /// Fade-in of new particles, and the generation levels that are shown.
@@ -83,8 +93,22 @@ pub struct Look {
     pub flat_faces: f32,
     /// Width of the edges of faces in page pixels; 0 for none.
     pub edge_px: f32,
-    /// 1 for a light background, 0 for a dark one.
-    pub light_ground: f32,
+    /// The size of a struct in a uniform block is a multiple of 16 bytes.
+    pub padding: f32,
+}
+
+/// The body beneath the discs.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Body {
+    /// Colour, linear.
+    pub colour: [f32; 3],
+    /// 1 for a surface whose inside can be seen, 0 for a closed one.
+    pub is_open: f32,
+    /// Smallest corner of the box that the body ends at, and a number that is not used.
+    pub lo: [f32; 4],
+    /// Largest corner, and a number that is not used.
+    pub hi: [f32; 4],
 }
 
 /// The clip box.

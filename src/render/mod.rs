@@ -21,6 +21,16 @@
 //!   the rim passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and
 //!   coverage decreases with the size of a point, so that the picture is steady under motion.
 //!
+//! # How the body beneath the discs is drawn
+//!
+//! Between discs the far side of the surface and the background would show. Each particle is
+//! therefore drawn a second time, before the discs: as a *bed*, a larger opaque disc in one quiet
+//! tone. A bed lies a little behind its disc, along the normal and in depth, so that it does not cut
+//! through the discs beside it, and it gets smaller towards the outline, where it would stick out.
+//! Beds need no mesh; the body grows with the run. The body ends at the faces of the box and at the
+//! cutting plane. Of a closed surface, beds seen from behind are left out. Particles that are not
+//! shown yet, because only a part of the run is, have faint beds: the surface to come.
+//!
 //! # How a sphere is drawn
 //!
 //! A sphere is a disc that faces the eye, as large as its outline. The fragment shader finds where the ray of the pixel meets the
@@ -39,11 +49,13 @@
 //!
 //! # How a surface takes light from itself
 //!
-//! A mesh and spheres are darker where less of the light from all around reaches them. What is nearest to the eye is drawn first, at
-//! every other pixel each way: its depth and its normal. A second pass finds the openness of each texel from 16 places around it that
-//! rise above its tangent plane; a third one takes the mean of neighbours on the same surface, in which the pattern of these places
-//! cancels out. Faces and spheres multiply their light by it when they are drawn. Reach and darkness follow from the picture alone,
-//! so that a frame in motion, one at rest and a larger picture are alike.
+//! The surface is darker where less of the light from all around reaches it. What is nearest to the
+//! eye is drawn first, at every other pixel each way: its depth and its normal; discs are stood for
+//! by their beds, in their places. A second pass finds the openness of each texel from 16 places
+//! around it that rise above its tangent plane; a third one takes the mean of neighbours on the same
+//! surface, in which the pattern of these places cancels out. Everything that is lit multiplies its
+//! light by a share of it when it is drawn. Reach and darkness follow from the picture alone, so
+//! that a frame in motion, one at rest and a larger picture are alike.
 //!
 //! # How a plane cuts
 //!

@@ -26,12 +26,14 @@ struct Buffers {
     samples: Option<wgpu::Texture>,
     /// The texture that the samples are resolved to, if it is copied to the target.
     resolved: Option<wgpu::Texture>,
-    occlusion: Option<Occlusion>,
+    occlusion: Occlusion,
 }
 
-/// Textures of the ambient-occlusion passes, at half the resolution of the picture along each axis.
+/// Textures of the ambient-occlusion passes, at half the resolution of the picture along each axis;
+/// of a single texel, which is not drawn, in a picture without occlusion.
 #[derive(Clone)]
 struct Occlusion {
+    is_drawn: bool,
     depth: wgpu::TextureView,
     /// Depths of what is nearest with normals, then with openness: each is read, by its group, to draw on the other.
     nearest: [(wgpu::TextureView, wgpu::BindGroup); 2],
@@ -40,8 +42,11 @@ struct Occlusion {
 /// The particles, faces and pieces of creases that are drawn.
 pub(super) struct Content {
     pub(super) particles: Store,
+    /// Number of particles that make up the body.
+    pub(super) body: u32,
     pub(super) faces: Store,
-    /// Number of particles that the faces stand for. Only the particles after these are drawn as discs, except above a ghost.
+    /// Number of particles that the faces stand for. Only the particles after these are drawn
+    /// themselves.
     pub(super) face_particles: u32,
     pub(super) lines: Store,
 }
@@ -95,7 +100,8 @@ impl Painter {
             self.buffers = Some(buffers.clone());
         }
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        if let Some(Occlusion { depth, nearest }) = &buffers.occlusion {
+        let Occlusion { is_drawn, depth, nearest } = &buffers.occlusion;
+        if *is_drawn {
             let clear = wgpu::Color { r: f64::from(1.0_f32.to_bits()), ..wgpu::Color::TRANSPARENT };
             let target = |k: usize| PassTarget { view: &nearest[k].0, resolve: None, clear, depth: None };
             let mut pass = self.pass(&mut encoder, PassTarget { depth: Some(depth), ..target(0) });
@@ -119,9 +125,7 @@ impl Painter {
                 depth: Some(&view_of(&buffers.depth)),
             },
         );
-        if let Some(Occlusion { nearest: [(_, open), _], .. }) = &buffers.occlusion {
-            pass.set_bind_group(1, open, &[]);
-        }
+        pass.set_bind_group(1, &nearest[0].1, &[]);
         scene.draw(&mut pass, &mut |kind| self.pipelines.get(device, kind, scene.samples()));
         drop(pass);
         if let (Some(resolved), Some(texture)) = (&buffers.resolved, canvas.copied) {
@@ -183,16 +187,17 @@ impl Painter {
             depth: texture(size, DEPTH_FORMAT, samples, plain),
             samples: (samples > 1).then(|| texture(size, self.format, samples, plain)),
             resolved: is_copied.then(|| texture(size, self.format, 1, wgpu::TextureUsages::COPY_SRC)),
-            occlusion: scene.is_occluded().then(|| {
-                let size = size.map(|side| side.div_ceil(2));
+            occlusion: {
+                let is_drawn = scene.is_occluded();
+                let size = if is_drawn { size.map(|side| side.div_ceil(2)) } else { [1, 1] };
                 let nearest = [(), ()].map(|()| {
                     let view =
                         view_of(&texture(size, NEAREST_FORMAT, 1, wgpu::TextureUsages::TEXTURE_BINDING));
                     let group = self.pipelines.group(device, &view);
                     (view, group)
                 });
-                Occlusion { depth: view_of(&texture(size, DEPTH_FORMAT, 1, plain)), nearest }
-            }),
+                Occlusion { is_drawn, depth: view_of(&texture(size, DEPTH_FORMAT, 1, plain)), nearest }
+            },
         }
     }
 }
@@ -220,26 +225,27 @@ impl Scene<'_> {
         self.style.drawing != Drawing::Discs && self.content.faces.count > 0
     }
 
-    /// Whether the faces are a ghost beneath the discs.
-    fn is_ghost(&self) -> bool {
-        self.style.drawing == Drawing::Ghost
-    }
-
     /// Samples per pixel.
     fn samples(&self) -> u32 {
         if self.has_faces() { FACE_SAMPLES } else { 1 }
     }
 
-    /// Whether the surface takes light from itself: a mesh or spheres do, discs and a ghost do not.
+    /// Whether the surface takes light from itself. Discs without a body do not: each would take it
+    /// from those behind its gaps.
     fn is_occluded(&self) -> bool {
-        self.style.spheres || self.has_faces() && !self.is_ghost()
+        let Style { occlusion, spheres, body, .. } = self.style;
+        *occlusion > 0.0 && (*spheres || body.is_some() || self.has_faces())
     }
 
-    /// Draws the particles that are drawn themselves: all, or those that no face stands for.
-    fn draw_particles(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let Content { particles, face_particles, .. } = self.content;
-        let first = if self.has_faces() && !self.is_ghost() { *face_particles } else { 0 };
-        draw_instances(pass, particles, 4, first..particles.count);
+    /// The first particle that is drawn itself: the faces stand for those before.
+    fn first(&self) -> u32 {
+        if self.has_faces() { self.content.face_particles } else { 0 }
+    }
+
+    /// Draws the particles of these that no face stands for.
+    fn draw_particles(&self, pass: &mut wgpu::RenderPass<'_>, range: core::ops::Range<u32>) {
+        let first = range.start.max(self.first());
+        draw_instances(pass, &self.content.particles, 4, first..range.end.max(first));
     }
 
     fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -248,25 +254,35 @@ impl Scene<'_> {
     }
 
     fn draw_nearest(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
-        if self.has_faces() && !self.is_ghost() {
+        let Content { particles, body, .. } = self.content;
+        if self.has_faces() {
             pass.set_pipeline(&get(Kind::FaceNearest));
             self.draw_faces(pass);
         }
+        if self.style.body.is_some() {
+            pass.set_pipeline(&get(Kind::BedNearest));
+            self.draw_particles(pass, 0..*body);
+        }
         if self.style.spheres {
             pass.set_pipeline(&get(Kind::BallNearest));
-            self.draw_particles(pass);
+            self.draw_particles(pass, 0..particles.count);
         }
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, get: &mut Get<'_>) {
-        let Self { content: Content { particles, lines, .. }, style, .. } = self;
+        let Self { content: Content { particles, body, lines, .. }, style, .. } = self;
         if self.has_faces() {
-            pass.set_pipeline(&get(match (self.is_ghost(), style.plane) {
-                (true, _) => Kind::Ghost,
-                (false, Some(_)) => Kind::CutFace,
-                (false, None) => Kind::Face,
-            }));
+            pass.set_pipeline(&get(if style.plane.is_some() { Kind::CutFace } else { Kind::Face }));
             self.draw_faces(pass);
+        }
+        if style.body.is_some() {
+            let shown = particles.count.min(*body);
+            for (kind, range) in [(Kind::Bed, 0..shown), (Kind::BedToCome, shown..*body)] {
+                if !range.is_empty() {
+                    pass.set_pipeline(&get(kind));
+                    self.draw_particles(pass, range);
+                }
+            }
         }
         let kinds: &[Kind] = if style.spheres {
             &[Kind::BallCore, Kind::BallRim]
@@ -275,7 +291,7 @@ impl Scene<'_> {
         };
         for &kind in kinds {
             pass.set_pipeline(&get(kind));
-            self.draw_particles(pass);
+            self.draw_particles(pass, 0..particles.count);
         }
         if lines.count > 0 {
             pass.set_pipeline(&get(Kind::Crease));
@@ -314,7 +330,7 @@ impl Buffers {
         [depth.width(), depth.height()] == canvas.size
             && depth.sample_count() == scene.samples()
             && (scene.samples() == 1 || resolved.is_some() == canvas.copied.is_some())
-            && occlusion.is_some() == scene.is_occluded()
+            && occlusion.is_drawn == scene.is_occluded()
     }
 }
 

@@ -22,6 +22,13 @@ const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 /// Kind of a pipeline: the shapes that it draws, and into which pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
+    /// The body beneath discs, with depth writes.
+    Bed,
+    /// The same, of particles that are still to come.
+    BedToCome,
+    /// The body into the nearest-surface texture: depth and normal of what is nearest at each
+    /// pixel.
+    BedNearest,
     /// Fully covered pixels of discs, with depth writes.
     DiscCore,
     /// Partly covered pixels of discs seen from behind.
@@ -40,8 +47,6 @@ pub(super) enum Kind {
     CutFace,
     /// Faces into the nearest-surface texture: depth and normal of the face that is nearest at each pixel.
     FaceNearest,
-    /// Faces as a ghost beneath discs, with depth writes.
-    Ghost,
     /// Ambient occlusion: the openness of the nearest surface at each pixel.
     Occlusion,
     /// The ambient occlusion, smoothed by the mean over neighbouring pixels.
@@ -85,6 +90,9 @@ impl Kind {
     fn spec(self) -> Spec {
         use Way::{Above, Blended, Covering, Nearest, Screen, Solid};
         let (shader, vertex, fragment, buffers, way) = match self {
+            Self::Bed => (DISCS, "vs_bed", "fs_bed", &PARTICLE[..], Solid),
+            Self::BedToCome => (DISCS, "vs_bed_to_come", "fs_bed", &PARTICLE[..], Solid),
+            Self::BedNearest => (DISCS, "vs_bed_nearest", "fs_bed_nearest", &PARTICLE[..], Nearest),
             Self::DiscCore => (DISCS, "vs_core", "fs_core", &PARTICLE[..], Solid),
             Self::RimBehind => (DISCS, "vs_rim_behind", "fs_rim", &PARTICLE[..], Blended),
             Self::RimFront => (DISCS, "vs_rim_front", "fs_rim", &PARTICLE[..], Blended),
@@ -95,7 +103,6 @@ impl Kind {
             Self::Face => (FACES, "vs_face", "fs_face", &FACE[..], Solid),
             Self::CutFace => (FACES, "vs_face", "fs_cut_face", &FACE[..], Covering),
             Self::FaceNearest => (FACES, "vs_face", "fs_nearest", &FACE[..], Nearest),
-            Self::Ghost => (FACES, "vs_ghost", "fs_ghost", &FACE[..], Covering),
             Self::ClipBox => (LINES, "vs_box", "fs_line", &[][..], Blended),
             Self::Crease => (LINES, "vs_crease", "fs_line", &PIECE[..], Blended),
             Self::Occlusion => (OCCLUSION, "vs_cover", "fs_occlusion", &[][..], Screen),
@@ -108,7 +115,17 @@ impl Kind {
     fn reads_nearest(self) -> bool {
         matches!(
             self,
-            Self::BallCore | Self::BallRim | Self::Face | Self::CutFace | Self::Occlusion | Self::Mean
+            Self::Bed
+                | Self::BedToCome
+                | Self::DiscCore
+                | Self::RimBehind
+                | Self::RimFront
+                | Self::BallCore
+                | Self::BallRim
+                | Self::Face
+                | Self::CutFace
+                | Self::Occlusion
+                | Self::Mean
         )
     }
 }

@@ -101,6 +101,7 @@ impl Renderer {
         let painter = Painter::new(&gpu.device, screen.view_format);
         let content = Content {
             particles: Store::new(PARTICLE),
+            body: 0,
             faces: Store::new(FACE),
             face_particles: 0,
             lines: Store::new(PIECE),
@@ -206,9 +207,11 @@ impl Renderer {
         }
     }
 
-    /// Sets the number of particles that are drawn. The buffers keep their size.
-    pub fn set_count(&mut self, count: u32) {
+    /// Sets the number of particles that are drawn, and of those that make up the body; particles
+    /// of the body that are not drawn are still to come. The buffers keep their size.
+    pub fn set_count(&mut self, count: u32, body: u32) {
         self.content.particles.count = count.min(MOST_RECORDS);
+        self.content.body = body.min(MOST_RECORDS);
     }
 
     /// Writes faces from `first` on: three entries of the columns each, counter-clockwise seen from outside. `marks` has the

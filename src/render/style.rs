@@ -1,6 +1,6 @@
 //! Style of a picture, and the uniform block that follows from style and camera.
 
-use super::frame::{self, Appearance, Camera, Frame, Light, Look};
+use super::frame::{self, Appearance, Body, Camera, Frame, Light, Look};
 use super::pixels::decode;
 use super::view::View;
 
@@ -14,6 +14,8 @@ pub struct Style {
     pub background: [f32; 4],
     /// Shape in which particles are drawn.
     pub drawing: Drawing,
+    /// Body beneath discs and spheres, which closes the gaps between them.
+    pub body: Option<BodyStyle>,
     /// Whether particles are drawn as spheres where they would be drawn as discs.
     pub spheres: bool,
     /// Radius of a disc or sphere in repulsion radii. At 1 the discs of a hexagonal packing touch; the default is a choice, which leaves
@@ -26,6 +28,11 @@ pub struct Style {
     pub dim: f32,
     /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and greyer, 0 to 1.
     pub dim_backfaces: f32,
+    /// Fraction of the ambient occlusion that darkens the surface, 0 to 1. With 0 it is not
+    /// computed.
+    pub occlusion: f32,
+    /// Difference in warmth between lit and shaded places, 0 to 1. With 0 the light is white.
+    pub warmth: f32,
     /// Duration in seconds of the appearance of a new particle; 0 shows it at once. The default is a choice: some frames, in which the eye
     /// catches that something appears.
     pub fade_s: f32,
@@ -50,8 +57,6 @@ pub enum Drawing {
     /// Particles are drawn as discs.
     #[default]
     Discs,
-    /// Particles are drawn as discs above a ghost of the surface: the faces between them, in a faint grey.
-    Ghost,
     /// The faces between the particles are drawn, and discs for newer particles, which no face joins yet.
     Faces {
         /// Whether each face has one normal and one colour.
@@ -59,6 +64,26 @@ pub enum Drawing {
         /// Width of the edges in page pixels; 0 for none.
         edge_px: f32,
     },
+}
+
+/// The body: each particle as a larger disc, a little behind its own. Particles that are not shown
+/// yet are part of it, faintly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyStyle {
+    /// Colour: sRGB, components from 0 to 1.
+    pub colour: [f32; 3],
+    /// Whether the inside of the surface can be seen. If not, nothing of the body is drawn from
+    /// behind.
+    pub is_open: bool,
+    /// Smallest and largest corner of the box of the surface, in world coordinates. The body ends
+    /// at its faces.
+    pub bounds: [[f32; 3]; 2],
+}
+
+impl Default for BodyStyle {
+    fn default() -> Self {
+        Self { colour: [0.6; 3], is_open: true, bounds: [[f32::MIN; 3], [f32::MAX; 3]] }
+    }
 }
 
 /// A box whose edges are drawn. The default is invisible.
@@ -86,14 +111,17 @@ impl Default for Style {
         Self {
             background: [0.98, 0.98, 0.98, 1.0],
             drawing: Drawing::Discs,
+            body: None,
             spheres: false,
             disc_scale: 0.92,
-            key_light_view: [-0.45, 0.65, 0.62],
+            key_light_view: [-0.50, 0.72, 0.55],
             dim: 0.0,
             dim_backfaces: 1.0,
+            occlusion: 0.0,
+            warmth: 0.0,
             fade_s: 0.12,
             level: None,
-            mute: 0.5,
+            mute: 0.35,
             outline: None,
             clip_box: None,
             plane: None,
@@ -123,10 +151,15 @@ impl Style {
         let clip_box = self.clip_box.unwrap_or_default();
         let scale = target.size[1].max(1) as f32 / target.canvas[1].max(1) as f32;
         let (flat, edge_px) = match self.drawing {
-            Drawing::Discs | Drawing::Ghost => (false, 0.0),
+            Drawing::Discs => (false, 0.0),
             Drawing::Faces { flat, edge_px } => (flat, edge_px),
         };
         let corner = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        let is_light = luminance(background) > LIGHT_GROUND;
+        let body = self.body.unwrap_or_default();
+        let [r, g, b] = body.colour;
+        let [r, g, b, _] = linear([r, g, b, 1.0]);
+        let finite = |corner: [f32; 3], or: f32| corner.map(|c| if c.is_finite() { c } else { or });
         Frame {
             camera: Camera {
                 clip_from_world: view.clip_from_world_for(target.canvas, target.size),
@@ -143,6 +176,10 @@ impl Style {
                 sky: view.world_from_view([0.0, 1.0, 0.35]),
                 dim_backfaces: share(self.dim_backfaces),
                 background,
+                occlusion: share(self.occlusion),
+                warmth: share(self.warmth),
+                rim: if is_light { 0.0 } else { RIM_LIGHT },
+                light_ground: if is_light { 1.0 } else { 0.0 },
             },
             appearance: Appearance {
                 time: target.time,
@@ -154,7 +191,13 @@ impl Style {
                 disc_scale: clamp(self.disc_scale, 0.01, 4.0),
                 flat_faces: if flat { 1.0 } else { 0.0 },
                 edge_px: clamp(edge_px, 0.0, 8.0),
-                light_ground: if luminance(background) > LIGHT_GROUND { 1.0 } else { 0.0 },
+                padding: 0.0,
+            },
+            body: Body {
+                colour: [r, g, b],
+                is_open: if body.is_open || self.plane.is_some() { 1.0 } else { 0.0 },
+                lo: corner(finite(body.bounds[0], f32::MIN)),
+                hi: corner(finite(body.bounds[1], f32::MAX)),
             },
             clip_box: frame::ClipBox {
                 lo: corner(clip_box.min),
@@ -184,6 +227,10 @@ const ALL_LEVELS: f32 = 1e10;
 /// Luminance of a background to which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) − 0.05).
 const LIGHT_GROUND: f32 = 0.179;
 
+/// Light along the outline on a dark ground, which sets it off. On a light one the shade of the
+/// outline does.
+const RIM_LIGHT: f32 = 0.10;
+
 /// Relative luminance of a linear colour.
 fn luminance(linear: [f32; 4]) -> f32 {
     0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
@@ -206,11 +253,18 @@ mod tests {
         let style = Style {
             background: [nan, -1.0, 2.0, nan],
             drawing: Drawing::Faces { flat: true, edge_px: nan },
+            body: Some(BodyStyle {
+                colour: [nan, -1.0, 2.0],
+                is_open: true,
+                bounds: [[nan; 3], [f32::INFINITY; 3]],
+            }),
             spheres: false,
             disc_scale: nan,
             key_light_view: [nan; 3],
             dim: nan,
             dim_backfaces: -3.0,
+            occlusion: nan,
+            warmth: 7.0,
             fade_s: nan,
             level: Some(7),
             mute: nan,
@@ -269,7 +323,7 @@ mod tests {
         let target = PictureTarget { canvas: [1, 1], size: [1, 1], time: 0.0 };
         for (grey, light) in [(0.0, 0.0), (0.3, 0.0), (0.5, 1.0), (1.0, 1.0)] {
             let style = Style { background: [grey, grey, grey, 1.0], ..Style::default() };
-            assert_eq!(style.frame(&View::default(), target).look.light_ground, light, "grey {grey}");
+            assert_eq!(style.frame(&View::default(), target).light.light_ground, light, "grey {grey}");
         }
     }
 }

@@ -4,7 +4,7 @@
 //! picture may be on its way while the next frame is drawn.
 
 use crate::render::chunks::MOST_RECORDS;
-use crate::render::style::{ClipBoxStyle, CuttingPlane, Drawing, Style};
+use crate::render::style::{BodyStyle, ClipBoxStyle, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
 use crate::render::{Callbacks, Columns, DrawOutcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
@@ -170,9 +170,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws the first `count` particles from now on.
-    pub fn set_count(&self, count: u32) {
-        self.inner.borrow_mut().set_count(count);
+    /// Draws the first `count` particles from now on, and the first `body` ones as the body beneath
+    /// them: fainter those that are not drawn.
+    pub fn set_count(&self, count: u32, body: u32) {
+        self.inner.borrow_mut().set_count(count, body);
     }
 
     /// Largest number of faces that `write_faces` takes.
@@ -263,11 +264,13 @@ impl Renderer {
 
     /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
     ///
-    /// `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for
-    /// discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s`
-    /// · `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative
-    /// for none · `box` {min, max, colour} or null · `plane` {normal, offset} that hides what its normal points to, or null ·
-    /// `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
+    /// `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `body` {colour,
+    /// is_open, bounds: {min, max}} beneath them or null · `spheres` in the place of discs ·
+    /// `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `occlusion` · `warmth`
+    /// · `fade_s` · `level` newest generation level drawn, null for all · `outline` index of the
+    /// particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
+    /// `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`.
+    /// Meaning, units and defaults: `render::style::Style`.
     ///
     /// # Errors
     ///
@@ -420,6 +423,8 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     read(&value, "key_light_view", &mut style.key_light_view)?;
     read(&value, "dim", core::array::from_mut(&mut style.dim))?;
     read(&value, "dim_backfaces", core::array::from_mut(&mut style.dim_backfaces))?;
+    read(&value, "occlusion", core::array::from_mut(&mut style.occlusion))?;
+    read(&value, "warmth", core::array::from_mut(&mut style.warmth))?;
     read(&value, "fade_s", core::array::from_mut(&mut style.fade_s))?;
     read(&value, "pixel_ratio", core::array::from_mut(&mut style.pixel_ratio))?;
     let faces = get(&value, "faces")?;
@@ -427,8 +432,18 @@ fn read_style(json: &str) -> Result<Style, JsError> {
         let mut edge_px = 0.0;
         read(&faces, "edge_px", core::array::from_mut(&mut edge_px))?;
         let flat = get(&faces, "flat")?.is_truthy();
-        let is_ghost = get(&faces, "ghost")?.is_truthy();
-        style.drawing = if is_ghost { Drawing::Ghost } else { Drawing::Faces { flat, edge_px } };
+        style.drawing = Drawing::Faces { flat, edge_px };
+    }
+    let body = get(&value, "body")?;
+    if body.is_object() {
+        let mut read_body = BodyStyle { is_open: get(&body, "is_open")?.is_truthy(), ..BodyStyle::default() };
+        read(&body, "colour", &mut read_body.colour)?;
+        let bounds = get(&body, "bounds")?;
+        if bounds.is_object() {
+            read(&bounds, "min", &mut read_body.bounds[0])?;
+            read(&bounds, "max", &mut read_body.bounds[1])?;
+        }
+        style.body = Some(read_body);
     }
     style.spheres = get(&value, "spheres")?.is_truthy();
     style.level = get(&value, "level")?.as_f64().map(|level| level as u32);

@@ -90,15 +90,24 @@ fn glb_holds_triangles_normals_and_levels() {
         assert_eq!(triples(column(&document, buffer, &primitive["indices"])), mesh.triangles);
         let levels: Vec<f32> = particles.level.iter().map(|&level| level as f32).collect();
         assert_eq!(floats(attribute("_LEVEL")), levels);
-        // Twelve colours, one after the other from level to level.
+        // Each level has a colour, from blue at the seed to sand at the last one.
         let colours = attribute("COLOR_0");
         let colour = |i: usize| &colours[4 * i..4 * i + 4];
         let distinct: BTreeSet<&[u8]> = (0..particles.len()).map(colour).collect();
-        assert_eq!(distinct.len(), 12);
+        let last = particles.level.iter().copied().max().expect("a particle");
+        assert_eq!(distinct.len(), last as usize + 1, "{id}");
         for i in 1..particles.len() {
-            let same = particles.level[i] % 12 == particles.level[i - 1] % 12;
+            let same = particles.level[i] == particles.level[i - 1];
             assert_eq!(colour(i) == colour(i - 1), same, "{id}, particle {i}");
         }
+        let end = particles.level.iter().position(|&level| level == last).expect("its last level");
+        let is_blue = |c: &[u8]| c[2] > c[0] && c[2] > c[1];
+        assert!(
+            is_blue(colour(0)) && colour(end)[0] > colour(end)[2],
+            "{id}: {:?}, {:?}",
+            colour(0),
+            colour(end)
+        );
     }
 }
 

@@ -3,7 +3,7 @@
 
 use marching_particles::Settings;
 use marching_particles::render::chunks::{CHUNK, MOST_RECORDS};
-use marching_particles::render::frame::{Appearance, Camera, ClipBox, Frame, Light, Look};
+use marching_particles::render::frame::{Appearance, Body, Camera, ClipBox, Frame, Light, Look};
 use marching_particles::render::layout::{
     AttributeFormat, FACE, FaceRecord, FaceTint, PARTICLE, PIECE, Record,
 };
@@ -127,12 +127,13 @@ macro_rules! fields {
 }
 
 /// Every struct of the uniform block with its fields.
-const STRUCTS: [(&str, &[(&str, usize)]); 6] = [
-    ("Frame", fields!(Frame: camera, light, appearance, look, clip_box, plane)),
+const STRUCTS: [(&str, &[(&str, usize)]); 7] = [
+    ("Frame", fields!(Frame: camera, light, appearance, look, body, clip_box, plane)),
     ("Camera", fields!(Camera: clip_from_world, eye, perspective, forward, pixel_ratio, viewport, padding)),
-    ("Light", fields!(Light: key, dim, sky, dim_backfaces, background)),
+    ("Light", fields!(Light: key, dim, sky, dim_backfaces, background, occlusion, warmth, rim, light_ground)),
     ("Appearance", fields!(Appearance: time, fade, level, mute)),
-    ("Look", fields!(Look: disc_scale, flat_faces, edge_px, light_ground)),
+    ("Look", fields!(Look: disc_scale, flat_faces, edge_px, padding)),
+    ("Body", fields!(Body: colour, is_open, lo, hi)),
     ("ClipBox", fields!(ClipBox: lo, hi, colour)),
 ];
 

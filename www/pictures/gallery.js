@@ -3,7 +3,7 @@
  * `npm run pictures [-- address [surface …]]`; with surfaces only theirs.
  *
  * Writes public/gallery/*.webp (one per surface and model, transparent) and public/poster.svg (the default surface as
- * dots, what the page shows while it loads).
+ * dots on a body, what the page shows while it loads).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -42,7 +42,7 @@ for (const id of ids) {
       await mp.set({
         surface: id,
         settings: { radius_share: 0.0065 },
-        view: { colour: 'level', size: 1.02, points: false, camera: initial },
+        view: { colour: 'level', points: false, camera: initial },
       });
       mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
       // The fit leaves room to turn; a still picture can fill its frame.
@@ -118,11 +118,32 @@ const dots = await page.evaluate(
   { share: POSTER_SHARE, size: POSTER_PX, viewRad: FIELD_OF_VIEW_RAD, initial },
 );
 
+/**
+ * The convex outline of places, by Andrew's monotone chain.
+ * @param {{x: number, y: number}[]} places
+ */
+function outlineOf(places) {
+  const sorted = [...places].sort((p, q) => p.x - q.x || p.y - q.y);
+  const half = (/** @type {{x: number, y: number}[]} */ along) => {
+    /** @type {{x: number, y: number}[]} */
+    const hull = [];
+    for (const p of along) {
+      for (let [a, b] = hull.slice(-2); b; [a, b] = hull.slice(-2)) {
+        if ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0) break;
+        hull.pop();
+      }
+      hull.push(p);
+    }
+    return hull.slice(0, -1);
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
 // One path per class of foreshortening: a dot is a line of no length with a round cap.
 const classes = 6;
 const paths = Array.from({ length: classes }, (_, k) => {
   const members = dots.front.filter(({ facing }) => Math.min(classes - 1, Math.floor(facing * classes)) === k);
-  const width = 2 * 0.88 * dots.front[0].radius * Math.sqrt((k + 0.5) / classes);
+  const width = 2 * 0.92 * dots.front[0].radius * Math.sqrt((k + 0.5) / classes);
   let at = [0, 0];
   const d = members
     .map(({ x, y }) => {
@@ -132,9 +153,14 @@ const paths = Array.from({ length: classes }, (_, k) => {
       return step;
     })
     .join('');
-  return `<path stroke-width="${width.toFixed(1)}" opacity="${(0.5 + (0.5 * (k + 1)) / classes).toFixed(2)}" d="${d}"/>`;
+  return `<path stroke-width="${width.toFixed(1)}" d="${d}"/>`;
 }).join('');
-const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${POSTER_PX} ${POSTER_PX}"><style>g{stroke:#b9c1cc}@media(prefers-color-scheme:dark){g{stroke:#5c6470}}</style><g fill="none" stroke-linecap="round">${paths}</g></svg>`;
+// The stroke reaches to the rims of the outermost dots.
+const outline = outlineOf(dots.front)
+  .map(({ x, y }) => `${Math.round(x)} ${Math.round(y)}`)
+  .join(' ');
+const body = `<path class="body" stroke-linejoin="round" stroke-width="${(1.6 * dots.front[0].radius).toFixed(1)}" d="M${outline}z"/>`;
+const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${POSTER_PX} ${POSTER_PX}"><style>.body{fill:#c8d1d9;stroke:#c8d1d9}g{stroke:#e0e8ee}@media(prefers-color-scheme:dark){.body{fill:#252c32;stroke:#252c32}g{stroke:#37424b}}</style>${body}<g fill="none" stroke-linecap="round">${paths}</g></svg>`;
 await writeFile(`${folder}poster.svg`, svg);
 console.log(`poster ${svg.length} bytes, ${dots.front.length} dots`);
 await browser.close();

@@ -18,26 +18,23 @@ const PAGE_PX = { width: 1440, height: 840 };
 const PAGE_SCALE = 1.25;
 const PAGE_SURFACE = 'tanglecube';
 
-/** What the strip of sizes shows, from left to right; `zoom` fills the frame, for which the fit leaves room to turn. */
+/** What the strip of sizes shows, from left to right; `zoom` brings it nearer than the fit. */
 const SIZES = [
   {
     surface: 'ellipsoid',
     settings: { sampling: 'adaptive', chord_error: 1.5e-4 },
     view: { colour: 'radius' },
-    zoom: 1.2,
   },
-  { surface: 'bunny', settings: { radius_share: 0.009 }, view: { colour: 'level', points: true }, zoom: 1.1 },
+  { surface: 'bunny', settings: { radius_share: 0.009 }, view: { colour: 'level', points: true } },
   {
     surface: 'bunny',
     settings: { sampling: 'adaptive', chord_error: 3e-4 },
     view: { colour: 'radius', points: false },
-    zoom: 1.1,
   },
   {
     surface: 'sack-and-hat',
     settings: { sampling: 'adaptive', chord_error: 3e-4 },
     view: { colour: 'curvature', points: false },
-    zoom: 1,
   },
 ];
 
@@ -48,26 +45,24 @@ const SIZES = [
 const MESH_VIEW = { colour: 'valence', draw: 'mesh', faces: 'smooth', edges: true, marks: true, points: false };
 const MESH_SETTINGS = { size_mode: 'count', count: 3000 };
 const MESHES = [
-  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'front' }, view: MESH_VIEW, zoom: 1.2 },
-  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'refined' }, view: MESH_VIEW, zoom: 1.2 },
-  { surface: 'tanglecube', settings: { ...MESH_SETTINGS, count: 6000, method: 'refined' }, view: MESH_VIEW, zoom: 1.1 },
-  { surface: 'gyroid', settings: { ...MESH_SETTINGS, count: 9000, method: 'refined' }, view: MESH_VIEW, zoom: 1.1 },
+  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'front' }, view: MESH_VIEW },
+  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'refined' }, view: MESH_VIEW },
+  { surface: 'tanglecube', settings: { ...MESH_SETTINGS, count: 6000, method: 'refined' }, view: MESH_VIEW },
+  { surface: 'gyroid', settings: { ...MESH_SETTINGS, count: 9000, method: 'refined' }, view: MESH_VIEW },
 ];
 
 /** What the two rows of solids show: as discs above, over the faint surface, and as meshes below. */
 const SOLIDS = [
-  { formula: 'max(abs(x), abs(y), abs(z)) = 1', zoom: 1 },
+  { formula: 'max(abs(x), abs(y), abs(z)) = 1' },
   {
     formula: 'max(max(abs(x), abs(y), abs(z)) - 1, 0.55 - hypot(x, y), 0.55 - hypot(y, z), 0.55 - hypot(z, x))',
-    zoom: 1,
   },
-  { formula: 'min(hypot(x, y - 0.6, z), hypot(x, y + 0.6, z)) = 1', zoom: 1.05 },
-  { formula: 'max(hypot(x, y) + z - 1, -z)', zoom: 1.05 },
-  { formula: 'max(abs(x) - 1, abs(y) - 1.4, abs(z) - 0.25, 0.3 - hypot(abs(x) - 0.5, abs(y) - 0.85))', zoom: 1.15 },
+  { formula: 'min(hypot(x, y - 0.6, z), hypot(x, y + 0.6, z)) = 1' },
+  { formula: 'max(hypot(x, y) + z - 1, -z)' },
+  { formula: 'max(abs(x) - 1, abs(y) - 1.4, abs(z) - 0.25, 0.3 - hypot(abs(x) - 0.5, abs(y) - 0.85))' },
   { formula: 'max(hypot(x, y), hypot(y, z), hypot(z, x)) = 1', zoom: 0.9 },
   {
     formula: 'max(abs(y), abs(0.866025 x + y / 2), abs(0.866025 x - y / 2), abs(z) + 0.5, 1.5 - hypot(x, y)) = 1',
-    zoom: 1.05,
   },
   {
     surface: 'gyroid',
@@ -79,7 +74,7 @@ const SOLIDS = [
   ...shown,
   settings: { size_mode: 'count', count: 1200, method: 'refined', ...settings },
   view: {
-    ...(k < 4 ? { colour: 'level', draw: 'discs', ghost: true } : { ...MESH_VIEW, colour: 'normal', marks: false }),
+    ...(k < 4 ? { colour: 'level', draw: 'discs' } : { ...MESH_VIEW, colour: 'normal', marks: false }),
     camera: { yaw: 0.5, pitch: 0.55, fit: true },
   },
 }));
@@ -162,7 +157,7 @@ const onlyThePicture = (page) =>
  * Draws surfaces side by side in both themes.
  * @param {string} name of the files
  * @param {{
- *   zoom: number, surface?: string, formula?: string, settings: object, view: { colour: string, camera?: object },
+ *   zoom?: number, surface?: string, formula?: string, settings: object, view: { colour: string, camera?: object },
  * }[]} states
  * @param {number} [columns]  surfaces in a row
  */
@@ -173,7 +168,7 @@ async function strip(name, states, columns) {
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
     await onlyThePicture(page);
     const frames = [];
-    for (const { zoom, ...state } of states) {
+    for (const { zoom = 1, ...state } of states) {
       await page.evaluate(
         async ({ wanted, zoom }) => {
           const mp = /** @type {any} */ (window).marchingParticles;
@@ -228,7 +223,7 @@ async function opened(page, surface, zoom) {
 /** The tanglecube falls into eight pieces, and they join again. @param {Page} page */
 async function tanglecubeSplits(page) {
   const [from, to] = [11, 13.6];
-  await opened(page, { surface: 'tanglecube', parameters: { c: from } }, 1);
+  await opened(page, { surface: 'tanglecube', parameters: { c: from } }, 0.9);
   return (/** @type {number} */ share) =>
     page.evaluate(
       (c) => /** @type {any} */ (window).marchingParticles.engine.setParameter('c', c),
@@ -238,7 +233,7 @@ async function tanglecubeSplits(page) {
 
 /** The ellipsoid is pulled by one of its particles, with the pointer. @param {Page} page */
 async function ellipsoidIsPulled(page) {
-  await opened(page, { surface: 'ellipsoid' }, 0.8);
+  await opened(page, { surface: 'ellipsoid' }, 0.7);
   const at = await page.evaluate(() => {
     const mp = /** @type {any} */ (window).marchingParticles;
     const { columns } = mp.engine;
@@ -309,7 +304,6 @@ await strip('solids', SOLIDS, 4);
 await film('moved', [tanglecubeSplits, ellipsoidIsPulled]);
 
 const LEVEL_STATES = [...LEVELS, null].map((level) => ({
-  zoom: 1.15,
   surface: LEVEL_SURFACE,
   // The front as it was placed; at the end, as it was relaxed.
   settings: level === null ? LEVEL_SETTINGS : { ...LEVEL_SETTINGS, relax_steps: 0 },

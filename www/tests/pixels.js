@@ -43,8 +43,8 @@ export function pictureOf({ pixels, width, height }) {
 }
 
 /**
- * Returns the separate spots in a picture, their areas in pixels and how far their middles lie from the picture's, largest
- * first; and how many pixels are nearly black and nearly white.
+ * Returns the separate spots in a picture, their areas in pixels and how far their middles lie from
+ * the picture's, largest first; and how many pixels are dark and nearly white.
  * @param {Pixels} picture
  */
 export function spotsOf({ pixels, width, height }) {
@@ -54,7 +54,7 @@ export function spotsOf({ pixels, width, height }) {
   for (let i = 0; i < drawn.length; i += 1) {
     const [r, g, b] = pixels.subarray(4 * i, 4 * i + 3);
     drawn[i] = Number(Math.abs(r - r0) + Math.abs(g - g0) + Math.abs(b - b0) > 60);
-    black += Number(Math.max(r, g, b) < 40);
+    black += Number(Math.max(r, g, b) < 80);
     white += Number(Math.min(r, g, b) > 215);
   }
   const found = [];
@@ -131,7 +131,7 @@ export const SIDES = ['x+y+z=0', '0=x+y+z'].map((formula) => ({
  * @param {Pixels[]} pictures  of the {@link SIDES}
  * @param {number} lightest  most light of an inside, as a share of that of the outside
  */
-export function isInsideTold(pictures, lightest = 0.75) {
+export function isInsideTold(pictures, lightest = 0.82) {
   const [front, behind] = pictures.map(shadeOf);
   return {
     isDarker: behind.light < lightest * front.light,

@@ -5,7 +5,7 @@
  * @module
  */
 
-import { SLOT_BITS } from './core-numbers.js';
+import { FATE, MOST_SLOTS, SLOT_BITS } from './core-numbers.js';
 import { vec } from './vector.js';
 
 /** @import { Bounds, ColumnRange, Figures, FileRecord, Mesh } from './types.js' */
@@ -53,6 +53,8 @@ export class Columns {
     this.stale = false;
     /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
+    /** Whether the surface goes on outside the clip box, as far as the slots are known. */
+    this.isOpen = false;
     this.positions = new Float32Array(0);
     /**
      * The positions in double precision, in a box so far from the origin that single precision rounds them; else empty.
@@ -114,6 +116,7 @@ export class Columns {
     this.stale = false;
     this.curved = 0;
     this.adaptive = adaptive;
+    this.isOpen = false;
     this.past = [];
     this.exact = new Float64Array(0);
     this.forget();
@@ -224,6 +227,8 @@ export class Columns {
   writeSlots(from, slots) {
     if (from + slots.length > this.count) return;
     this.slots.set(slots, from);
+    for (let i = 0; i < slots.length && !this.isOpen; i += 1)
+      for (let k = 0; k < MOST_SLOTS; k += 1) if (fateOf(slots[i], k) === FATE.outside) this.isOpen = true;
   }
 
   /**

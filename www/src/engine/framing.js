@@ -7,6 +7,7 @@
  */
 import { effect } from '@preact/signals-core';
 import { TYPING_MS } from './constants.js';
+import { homeCamera } from './view/camera.js';
 
 /**
  * @import { Store } from './store.js'
@@ -21,6 +22,9 @@ export class Framing {
 
   /** Whether the formula changed or a link was read, and the camera has not fitted the surface since. */
   #isWritten;
+
+  /** The yaw that the page gave the camera last. */
+  #yaw;
 
   /** Whether the formula was typed. That keeps the camera where it is as long as the formula has no surface. */
   #isTyped;
@@ -37,6 +41,7 @@ export class Framing {
     this.#viewer = viewer;
     this.#isWritten = false;
     this.#isTyped = false;
+    this.#yaw = homeCamera().yaw;
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
     /** Where the camera was when the first trial began. @type {CameraState | null} */
@@ -86,7 +91,16 @@ export class Framing {
   #come() {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
+    if (this.#isTyped) this.#turn();
     this.#fit();
+  }
+
+  /** Shows a typed surface from where its outline is largest, unless the hand has turned the camera. */
+  #turn() {
+    const { camera } = this.#viewer;
+    if (!camera.state.fit || this.#columns.count === 0 || Math.abs(camera.end.yaw - this.#yaw) > 1e-3) return;
+    this.#viewer.turnWide();
+    this.#yaw = camera.end.yaw;
   }
 
   /** Goes back to where the camera was, turned as the hand has turned it since. @param {CameraState} before */

@@ -13,12 +13,6 @@ import { seenOf } from './view/style.js';
  */
 
 /**
- * Largest number of particles at which the surface to come is drawn. They are joined to a mesh for it, which takes
- * about 0.1 s.
- */
-const MOST_TO_COME = 200_000;
-
-/**
  * @param {{ store: Store, viewer: Viewer, runs: Runs }} parts
  * @returns ends it
  */
@@ -46,12 +40,8 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     const field = store.field.value;
     // A box that the surface misses is drawn, so that it can be moved; if there is no surface anywhere, it is not.
     const isMissed = store.empty.value && field?.reach !== 'nowhere';
-    // While only a part of the run is shown, the surface to come is drawn faintly. The mesh over all particles stands
-    // for it: it is exact where the particles will be, and there is no second way of drawing.
-    const isToCome = (view.level !== null || view.follow !== null) && viewer.columns.count <= MOST_TO_COME;
     return {
       ...seenOf(view),
-      ghost: view.ghost || isToCome,
       theme,
       box: view.box || isMissed ? (bounds ?? field?.bounds ?? null) : null,
       plane,
@@ -69,14 +59,11 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     }),
     effect(() => {
       const now = look();
-      // The 2-D canvas draws only discs. Of a mesh the page tells what it adds up to all the same.
-      const isDrawn = ['webgpu', 'webgl2'].includes(store.backend.value);
-      const isMesh = now.draw === 'mesh' || (isDrawn && now.ghost);
       untracked(() => {
         store.theme.value = now.theme;
         viewer.set(now);
         sampling.client.wish('curvature', now.colour === 'curvature');
-        sampling.client.wish('mesh', isMesh);
+        sampling.client.wish('mesh', now.draw === 'mesh');
       });
     }),
     () => system.removeEventListener('change', follow),

@@ -207,7 +207,7 @@ export type LegendEntry = { label: string; colour: string; count?: number };
 export interface Legend {
   title: string;
   unit: string;
-  kind: 'cyclic' | 'categories' | 'sequential' | 'diverging' | 'plain' | 'normal';
+  kind: 'categories' | 'sequential' | 'diverging' | 'plain' | 'normal';
   entries?: LegendEntry[];
   range?: [number, number];
   /** a value with a tick on the ramp, such as the ideal distance 2r */

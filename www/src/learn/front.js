@@ -1,6 +1,5 @@
-/** Where the front is, for the camera, and the pale body that hides the backs of the discs behind. */
+/** Where the front is, for the camera. */
 
-import { NO_LEVEL } from '../engine/columns.js';
 import { along, dot, size, triple, unit } from '../engine/vector.js';
 import { axes } from '../engine/view/camera.js';
 import { anglesOf } from '../engine/view/facing.js';
@@ -11,12 +10,6 @@ import { anglesOf } from '../engine/view/facing.js';
 
 /** The first view shows the discs of so many levels around the seed. */
 export const FIRST_LEVELS = 5;
-/**
- * Size and depth of the discs of the body, in radii. They close holes up to 1.6 times those of a lattice, as placing
- * leaves them, so that the body gives none away. At this depth they stay below the particles up to a bend · r of 0.19.
- */
-const COVERING = 1.9;
-const DEPTH = 0.35;
 /** So many directions are 5° apart. */
 const DIRECTIONS = 1500;
 
@@ -70,20 +63,4 @@ const facingOf = ({ normals }, forward, chosen) => chosen.filter((i) => dot(forw
 export function shareFacing(particles, forward, from, to) {
   const all = onLevels(particles, from, to);
   return all.length > 0 ? facingOf(particles, forward, all) / all.length : 1;
-}
-
-/** @type {WeakMap<LessonParticles, Pick<LessonParticles, 'positions' | 'normals' | 'radii' | 'levels'>>} */
-const bodies = new WeakMap();
-
-/** The discs of a body below particles, without gaps. @param {LessonParticles} particles */
-export function bodyOf(particles) {
-  const { positions, normals, radii } = particles;
-  const body = bodies.get(particles) ?? {
-    positions: positions.map((value, k) => value - DEPTH * radii[Math.floor(k / 3)] * normals[k]),
-    normals,
-    radii: radii.map((radius) => COVERING * radius),
-    levels: new Uint32Array(radii.length).fill(NO_LEVEL),
-  };
-  bodies.set(particles, body);
-  return body;
 }

@@ -8,10 +8,10 @@ import { axes, Camera, projected, viewOf } from '../engine/view/camera.js';
 import { anglesOf } from '../engine/view/facing.js';
 import { rgbFromPacked } from '../engine/view/oklab.js';
 import { Painter } from '../engine/view/painter.js';
-import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
+import { PALETTES, RAMP } from '../engine/view/palettes.js';
 import { endsWith, h, live, reducedMotion } from '../ui/dom.js';
 import { Fit } from './fit.js';
-import { bodyOf, frontNormal, shareFacing } from './front.js';
+import { frontNormal, shareFacing } from './front.js';
 
 /**
  * @import { LessonParticles, Signal } from '../engine/types.js'
@@ -219,12 +219,17 @@ export class Picture {
     const [w, high] = [width * FINENESS, height * FINENESS];
     if (painter.width !== w || painter.height !== high) painter.resize(w, high);
     const { positions, normals, radii, levels } = particles;
-    const body = bodyOf(scene.body ?? particles);
-    const under = body.radii.length;
-    painter.write(0, body.positions, body.normals, body.radii, body.levels, paleOf(palette, under), -Infinity);
-    painter.write(under, positions, normals, radii, levels, scene.colours(palette), -Infinity);
-    painter.set_count(under + (scene.count ?? radii.length));
-    painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
+    painter.write(0, positions, normals, radii, levels, scene.colours(palette), -Infinity);
+    const count = scene.count ?? radii.length;
+    let body = radii.length;
+    if (scene.body) {
+      const { positions, normals, radii, levels } = scene.body;
+      painter.write(count, positions, normals, radii, levels, new Uint32Array(radii.length), -Infinity);
+      body = count + radii.length;
+    }
+    painter.set_count(count, body);
+    const colour = rgbFromPacked(palette.body);
+    painter.set_style(JSON.stringify({ background, dim_backfaces: 1, body: { colour, is_open: true } }));
     const view = this.#view();
     painter.set_view(view.packed);
     // The ground is left out, so that the picture stands on that of the page or of the paper.
@@ -363,18 +368,15 @@ export function sideBySide(orbit, names) {
 const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye[k] - place[k]) * normal[k], 0) > 0;
 
 /**
- * Colours of the body below the discs: halfway from a plain one to the ground.
- * @param {Palette} palette @param {number} count
+ * Colours by generation level.
+ * @param {LessonParticles} particles
+ * @param {number} [last]  last level of the run, if the particles are a part of it
  */
-function paleOf({ plain, ground }, count) {
-  const [from, to] = [rgbFromPacked(plain), rgbFromPacked(ground)];
-  const bytes = from.map((value, k) => Math.round(127.5 * (value + to[k])));
-  return new Uint32Array(count).fill(((255 << 24) | (bytes[2] << 16) | (bytes[1] << 8) | bytes[0]) >>> 0);
-}
-
-/** Colours by generation level. @param {LessonParticles} particles */
-export const byLevel = ({ levels }) =>
-  once((palette) => Uint32Array.from(levels, (level) => palette.levels[level % CYCLE]));
+export const byLevel = ({ levels }, last = levels.reduce((most, level) => Math.max(most, level), 0)) =>
+  once((palette) => {
+    const colours = palette.levels(last);
+    return Uint32Array.from(levels, (level) => colours[level]);
+  });
 
 /**
  * Colours by a number for each particle, from `low` to `high`.

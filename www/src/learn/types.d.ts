@@ -82,7 +82,7 @@ export interface Cost {
 /** The content of a picture. `count`: the first so many particles; `colours`: one for each, of this theme's palette. */
 export interface Scene {
   particles: LessonParticles;
-  /** those that the pale body below the discs is made of; else the same */
+  /** those that the surface to come is made of; else the particles that are not drawn */
   body?: LessonParticles;
   count?: number;
   colours: (palette: Palette) => Uint32Array;

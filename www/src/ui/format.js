@@ -37,13 +37,6 @@ export const lastSteps = (steps) => (steps === 1 ? 'the last step' : `the last $
 export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
 
 /**
- * Returns what the first and the last of so many colours stand for, which repeat.
- * @param {number} length
- * @returns {[string, string]}
- */
-export const cycleEnds = (length) => [`0, ${length}, …`, `${length - 1}, ${2 * length - 1}, …`];
-
-/**
  * Formats a number with exactly `digits` decimals. A value that would round to zero is written as a power of ten.
  * @param {unknown} value
  * @param {number} [digits]

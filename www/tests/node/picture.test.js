@@ -165,6 +165,43 @@ test('creases are lines, on which dots are picked once', async () => {
   expect(p.engine.pick(...MIDDLE)).toBe(rows[0]);
 });
 
+describe('the body', () => {
+  /** Share of a picture in which something is drawn, however faintly. @param {Console} p */
+  async function covered(p) {
+    const words = new Uint32Array((await p.pixels(320, 240)).pixels.buffer);
+    return words.filter((word) => word !== words[0]).length / words.length;
+  }
+
+  test('closes the gaps between discs, of whatever size they are', async () => {
+    const p = await open();
+    const shares = [];
+    for (const look of [
+      { size: 0.92, body: true },
+      { size: 0.4, body: true },
+      { size: 0.4, body: false },
+    ]) {
+      p.engine.setView(look);
+      shares.push(await covered(p));
+    }
+    const [usual, small, bare] = shares;
+    expect(small).toBeCloseTo(usual, 2);
+    expect(bare).toBeLessThan(0.9 * usual);
+  });
+
+  test('of a level shows the surface to come, fainter than what is there', async () => {
+    const p = await open();
+    p.engine.setView({ camera: { ...p.state.view.camera, fit: false } });
+    const whole = await covered(p);
+    p.engine.setView({ level: 2, colour: 'plain' });
+    expect(await covered(p)).toBeCloseTo(whole, 2);
+    // Of the whole the middle is a disc or the body beneath it.
+    const { ground, light: faint } = shadeOf(await p.pixels(160, 120));
+    p.engine.setView({ level: null });
+    const { light } = shadeOf(await p.pixels(160, 120));
+    expect(Math.abs(faint - ground)).toBeLessThan(0.6 * Math.abs(light - ground));
+  });
+});
+
 test('with parallel rays, too, what is in front hides what is behind', async () => {
   const p = await open();
   await p.set({ formula: 'x^2 + y^2 + z^2 = 1', settings: { radius_share: 0.02 } });

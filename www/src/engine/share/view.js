@@ -83,8 +83,8 @@ export const VIEW = {
   /** Whether lines are drawn along the creases of a surface. */
   creases: flag(true, 'creases'),
   theme: choice('theme', ['auto', 'light', 'dark']),
-  /** Whether the surface is drawn faintly beneath the discs. */
-  ghost: flag(false, 'surface beneath the discs'),
+  /** Whether a body beneath the discs closes the gaps between them. */
+  body: flag(true, 'body beneath the discs'),
   /** Whether the clip box is drawn, with its dimensions. */
   box: flag(false, 'box'),
   /** Whether axes with ticks are drawn around the clip box. */

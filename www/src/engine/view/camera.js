@@ -73,16 +73,13 @@ const NO_INSETS = { left: 0, right: 0, top: 0, bottom: 0 };
 export function viewOf(camera, widthPx, heightPx, scene, insets = NO_INSETS, parallel = false) {
   const w = Math.max(1, widthPx);
   const h = Math.max(1, heightPx);
-  const [left, rightPx] = fair(insets.left, insets.right, w);
-  const [top, bottom] = fair(insets.top, insets.bottom, h);
-  const freeW = w - left - rightPx;
-  const freeH = h - top - bottom;
+  const free = freePart(w, h, insets);
   const away = parallel ? PARALLEL_DISTANCES : 1;
-  const worldPerPx = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(freeW, freeH) / away;
+  const worldPerPx = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(free.width, free.height) / away;
   const tanX = (worldPerPx * w) / 2;
   const tanY = (worldPerPx * h) / 2;
-  const shiftX = (left - rightPx) / w;
-  const shiftY = (bottom - top) / h;
+  const shiftX = free.x / w;
+  const shiftY = -free.y / h;
   const { right, up, forward } = axes(camera);
   const { target } = camera;
   const distance = camera.distance * away;
@@ -135,6 +132,17 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = NO_INSETS, par
   };
 }
 
+/**
+ * Returns the size of the part of a picture that no panel covers, and twice the way from the middle
+ * of the picture to its middle, to the right and down.
+ * @param {number} widthPx @param {number} heightPx @param {Insets} insets
+ */
+export function freePart(widthPx, heightPx, insets) {
+  const [left, right] = fair(insets.left, insets.right, widthPx);
+  const [top, bottom] = fair(insets.top, insets.bottom, heightPx);
+  return { width: widthPx - left - right, height: heightPx - top - bottom, x: left - right, y: top - bottom };
+}
+
 /** Smallest share of a side that counts as free, however much the panels cover. */
 const LEAST_FREE = 0.2;
 
@@ -181,6 +189,38 @@ export function projected({ clipFromWorld: m, worldPerPx, widthPx, heightPx, spa
  * @param {number} radius
  */
 export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_RAD / 2);
+
+/** Share of a side of the free part that a surface takes at most where it is fitted by its outline. */
+const OUTLINE_SHARE = 0.93;
+/** Least distance of that fit, over the one that shows the whole ball: turned, the surface may reach beyond a side. */
+const NEAREST_FIT = 0.8;
+
+/**
+ * Returns the distance at which the outline of discs fills the free part of the picture, seen from
+ * these angles: at most that at which the ball around them does.
+ * @param {Angles} angles
+ * @param {Ball} ball
+ * @param {{width: number, height: number}} free  size of that part
+ * @param {{positions: ArrayLike<number>, radii: ArrayLike<number>, count: number}} discs
+ * @param {(disc: number) => boolean} [isShown]  the discs that are drawn, if not all are
+ */
+export function outlineDistance(angles, ball, { width, height }, { positions, radii, count }, isShown = () => true) {
+  const { right, up, forward } = axes(angles);
+  const [cx, cy, cz] = ball.centre;
+  const perPx = (OUTLINE_SHARE * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(width, height);
+  const [tanX, tanY] = [perPx * width, perPx * height];
+  let distance = 0;
+  for (let i = 0; i < count; i += 1) {
+    if (!isShown(i)) continue;
+    const [x, y, z] = [positions[3 * i] - cx, positions[3 * i + 1] - cy, positions[3 * i + 2] - cz];
+    const across = Math.abs(right[0] * x + right[1] * y + right[2] * z) + radii[i];
+    const high = Math.abs(up[0] * x + up[1] * y + up[2] * z) + radii[i];
+    const near = -(forward[0] * x + forward[1] * y + forward[2] * z);
+    distance = Math.max(distance, near + across / tanX, near + high / tanY);
+  }
+  const whole = fitDistance(ball.radius);
+  return clamp(distance, NEAREST_FIT * whole, whole);
+}
 
 /** Returns the ball around a box. @param {{min: ArrayLike<number>, max: ArrayLike<number>}} bounds */
 export function ballOf({ min, max }) {
@@ -311,14 +351,21 @@ export class Camera {
     this.turn = null;
   }
 
+  /** The angles at which a motion under way ends, else the present ones. @returns {Angles} */
+  get end() {
+    const { yaw = this.state.yaw, pitch = this.state.pitch } = this.turn?.to ?? this.#glide ?? {};
+    return { yaw, pitch };
+  }
+
   /**
-   * Moves the camera so that the whole ball is visible, with an animation unless `jump` is set.
+   * Moves the camera so that the whole ball is visible, or from a distance, with an animation
+   * unless `jump` is set.
    * @param {Ball} ball
-   * @param {boolean} [jump]
+   * @param {{jump?: boolean, distance?: number}} [how]
    */
-  fit(ball, jump = false) {
+  fit(ball, { jump = false, distance = fitDistance(ball.radius) } = {}) {
     this.limits(ball.radius);
-    const goal = { target: ball.centre, distance: fitDistance(ball.radius) };
+    const goal = { target: ball.centre, distance };
     this.state = { ...this.state, fit: true };
     if (jump || this.calm) {
       this.state = { ...this.state, ...goal };
@@ -329,11 +376,11 @@ export class Camera {
   }
 
   /**
-   * Eases to where the whole ball is visible, and goes on with a turn under way.
-   * @param {Ball} ball
+   * Eases to a distance from the centre of a ball, and goes on with a turn under way.
+   * @param {Ball} ball @param {number} distance
    */
-  glideTo({ centre, radius }) {
-    const goal = { target: centre, distance: Math.max(this.#nearLimit, fitDistance(radius)) };
+  glideTo({ centre }, distance) {
+    const goal = { target: centre, distance: Math.max(this.#nearLimit, distance) };
     if (this.calm) this.state = { ...this.state, ...goal };
     else this.#glide = { ...this.#glide, ...goal };
   }

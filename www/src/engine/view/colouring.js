@@ -6,7 +6,7 @@
 import { fateOf } from '../columns.js';
 import { FATE, MOST_SLOTS, NO_COMPONENT, SLOT_BITS } from '../core-numbers.js';
 import { hexFromPacked } from './oklab.js';
-import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
+import { COMPONENT_COLOURS, PALETTES } from './palettes.js';
 
 /**
  * @import { ColourMode, Columns, Legend, LegendEntry } from '../types.js'
@@ -206,15 +206,19 @@ const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
 /** @type {Record<ColourMode, Colouring>} */
 export const COLOURINGS = {
   level: {
-    colour({ palette, columns: { levels } }) {
-      return (i) => palette.levels[levels[i] % CYCLE];
+    isTinted: true,
+    range: ({ lastLevel }) => [0, lastLevel],
+    colour({ palette, columns: { levels, twins }, range }) {
+      const last = range?.[1] ?? 0;
+      const colours = palette.levels(last, twins.length > 0);
+      return (i) => colours[Math.min(levels[i], last)];
     },
     legend: ({ palette, columns }) => ({
       title: 'Generation level',
       unit: columns.twins.length > 0 ? 'rings from the creases' : 'rings around the seed',
-      kind: 'cyclic',
+      kind: 'sequential',
       range: [0, columns.lastLevel],
-      colours: hexes(palette.levels),
+      colours: hexes(palette.levels(columns.lastLevel, columns.twins.length > 0)),
     }),
   },
   fate: classes(
@@ -289,6 +293,7 @@ export const COLOURINGS = {
     }),
   },
   plain: {
+    isTinted: true,
     colour({ palette }) {
       return () => palette.plain;
     },

@@ -1,12 +1,50 @@
 /**
- * Computes the camera angles from which a point of the surface is visible.
+ * Computes the camera angles from which a point or much of the surface is visible.
  *
  * @module
  */
 
 import { clamp } from '../vector.js';
+import { axes } from './camera.js';
 
 /** @import { Angles } from '../types.js' */
+
+/** Yaws that are compared, over half a turn: from the other side the outline is the same. */
+const YAWS = 12;
+/** Cells of the picture along each side, in which the outline is measured, and the most particles looked at. */
+const CELLS = 24;
+const MOST_SEEN = 20_000;
+/** Times by which another outline must be larger to be worth a turn. */
+const WORTH_A_TURN = 1.1;
+
+/**
+ * Returns the yaw from which the outline of the particles has the largest area, or the present one if that is nearly as
+ * good.
+ * @param {Angles} camera
+ * @param {{positions: ArrayLike<number>, count: number}} particles
+ * @param {import('./types.js').Ball} ball  around them
+ */
+export function widestYaw({ yaw, pitch }, { positions, count }, { centre, radius }) {
+  const every = Math.max(1, Math.ceil(count / MOST_SEEN));
+  const area = (/** @type {number} */ turned) => {
+    const { right, up } = axes({ yaw: turned, pitch });
+    const cells = new Uint8Array(CELLS * CELLS);
+    for (let i = 0; i < count; i += every) {
+      const [x, y, z] = [0, 1, 2].map((k) => (positions[3 * i + k] - centre[k]) / radius);
+      const [across, high] = [right, up].map((axis) => axis[0] * x + axis[1] * y + axis[2] * z);
+      cells[Math.floor((0.499 * high + 0.5) * CELLS) * CELLS + Math.floor((0.499 * across + 0.5) * CELLS)] = 1;
+    }
+    return cells.reduce((sum, cell) => sum + cell, 0);
+  };
+  let best = { yaw, area: WORTH_A_TURN * area(yaw) };
+  for (let k = 1; k < YAWS; k += 1) {
+    // The nearest ones first, to either side in turn.
+    const turned = yaw + ((k % 2 ? 1 : -1) * Math.ceil(k / 2) * Math.PI) / YAWS;
+    const seen = area(turned);
+    if (seen > best.area) best = { yaw: turned, area: seen };
+  }
+  return best.yaw;
+}
 
 /** Cosine of the angle to the normal below which a point counts as hidden. */
 const FACING = 0.3;

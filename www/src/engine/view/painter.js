@@ -1,22 +1,23 @@
 /**
- * Draws discs on a 2-D canvas without a graphics API, as the last fallback. Each disc is an ellipse on the screen,
- * filled pixel by pixel with the depth of its plane. Creases and the clip box are lines one pixel wide. The picture is
- * like that of a graphics card, but without antialiasing, domes, fading in, spheres, a mesh, and shade of a surface on
- * itself.
+ * Draws discs and the body beneath them on a 2-D canvas without a graphics API, as the last
+ * fallback. Each disc is an ellipse on the screen, filled pixel by pixel with the depth of its
+ * plane. Creases and the clip box are lines one pixel wide. The picture is like that of a graphics
+ * card, but without antialiasing, domes, fading in, spheres, a mesh, shade of a surface on itself,
+ * and an edge of the body at the box.
  *
  * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *
  * @module
  */
 import { grown, NO_LEVEL } from '../columns.js';
-import { dot } from '../vector.js';
+import { clamp, dot } from '../vector.js';
 import { END } from './creases.js';
 import { encoded, linear } from './oklab.js';
 import { isBeyond } from './picking.js';
 
 /**
  * @import { Renderer } from '../../wasm/render-webgpu/render.js'
- * @import { PaintedDisc, Style, Target } from './types.js'
+ * @import { PaintedDisc, PaintedScene, Style, Target } from './types.js'
  */
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
@@ -32,11 +33,43 @@ const POINT_PX = 0.7;
 
 /** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;
-/** Share by which discs of earlier levels fade towards the background. */
-const MUTE = 0.5;
-/** Shares of its light and of its chroma that the inside of a surface keeps, as in shaders/common.wgsl. */
-const INSIDE_LIGHT = 0.4;
-const INSIDE_CHROMA = 0.5;
+/** Light that the rim loses. */
+const RIM_SHADE = 0.14;
+/** Share by which discs of earlier levels fade towards the background, as in src/render/style.rs. */
+const MUTE = 0.35;
+/** Luminance of a ground above which it is light, and the light along the outline on a dark one, as there. */
+const LIGHT_GROUND = 0.179;
+const RIM_LIGHT = 0.1;
+
+// As in shaders/common.wgsl.
+/** Shares of its light and of its chroma that the inside of a surface keeps. */
+const INSIDE_LIGHT = 0.6;
+const INSIDE_CHROMA = 0.75;
+const GROUND_LIGHT = 0.32;
+const SKY_LIGHT = 0.6;
+const KEY_LIGHT = 0.74;
+const WRAP = 0.3;
+const OUTLINE_SHADE = 0.14;
+const COOL_TO_WARM = /** @type {const} */ ([0.35, 1.15]);
+
+// As in shaders/discs.wgsl.
+const BED_RADIUS = 1.75;
+const BED_SUNK = 0.22;
+const BED_BEHIND = 0.4;
+const OUTLINE_BED = /** @type {const} */ ([0.88, 0.15]);
+const OPEN_OUTLINE_BED = /** @type {const} */ ([1.2, 0.6]);
+const INSIDE_FROM = /** @type {const} */ ([0.15, 0.45]);
+const TO_COME = 0.72;
+const TO_COME_BEHIND = 0.2;
+const LEAST_BED_PX = 0.8;
+
+/** @param {readonly number[]} edges @param {number} x */
+function smoothstep([from, to], x) {
+  const t = clamp((x - from) / (to - from), 0, 1);
+  return t * t * (3 - 2 * t);
+}
+/** @param {number[]} linear */
+const luminanceOf = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
 const packed = (r, g, b) =>
@@ -79,14 +112,36 @@ function seenFromFar(m) {
 }
 
 /**
- * Returns the brightness as `brightness` in shaders/common.wgsl does, with the sky straight up: a wrapped key light and
- * a hemisphere light, darker at the silhouette.
- * @param {number} keyward  component of the normal towards the light @param {number} skyward component upwards
- * @param {number} edgeOn  1 at the silhouette
+ * Returns the light on a surface for each component of its colour, as `light_on` in
+ * shaders/common.wgsl does.
+ * @param {{keyward: number, skyward: number, edgeOn: number}} cosines  of its normal with the
+ *   directions to the key light and to the sky; `edgeOn`: 1 at the outline
+ * @param {{rim: number, warmth: number}} how
  */
-function shadeOf(keyward, skyward, edgeOn) {
-  const wrapped = Math.max(0, (keyward + 0.25) / 1.25);
-  return (0.56 + 0.1 * skyward + 0.52 * wrapped * wrapped) * (1 - 0.3 * edgeOn ** 3);
+function lightOn({ keyward, skyward, edgeOn }, { rim, warmth }) {
+  const sky = 0.5 + 0.5 * skyward;
+  const key = Math.max(0, (keyward + WRAP) / (1 + WRAP));
+  const direct =
+    (GROUND_LIGHT + (SKY_LIGHT - GROUND_LIGHT) * sky + KEY_LIGHT * key * key) * (1 - OUTLINE_SHADE * edgeOn ** 3);
+  const light = direct + rim * edgeOn ** 4 * sky;
+  const warm = warmth * (smoothstep(COOL_TO_WARM, light) - 0.5);
+  return [light * (1 + 0.6 * warm), light * (1 + 0.1 * warm), light * (1 - warm)];
+}
+
+/**
+ * Returns a colour in linear light under a light, as an inside by a share, faded to the ground by
+ * another.
+ * @param {number[]} colour @param {{light: number[], behind: number, away: number, ground:
+ *   number[]}} seen
+ */
+function litBy(colour, { light, behind, away, ground }) {
+  const lit = colour.map((value, k) => value * light[k]);
+  const luminance = luminanceOf(lit);
+  const [r, g, b] = lit.map((value, k) => {
+    const inside = INSIDE_LIGHT * (luminance + (value - luminance) * INSIDE_CHROMA);
+    return Math.min(1, value + (inside - value) * behind) * (1 - away) + ground[k] * away;
+  });
+  return packed(r, g, b);
 }
 
 /**
@@ -142,7 +197,10 @@ function paintLine({ out, depth, width, height }, { ends: [p, q], steps, value }
 
 export class Painter {
   #canvas;
+
+  /** Numbers of discs, and of particles of the body. */
   #count;
+  #body;
 
   /** Time in seconds at which each particle appears. */
   #births;
@@ -164,6 +222,7 @@ export class Painter {
     this.#canvas = canvas;
     this.context = context;
     this.#count = 0;
+    this.#body = 0;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
@@ -178,7 +237,7 @@ export class Painter {
     this.#style = {
       background: [1, 1, 1, 1],
       disc_scale: 0.92,
-      key_light_view: [-0.45, 0.65, 0.62],
+      key_light_view: [-0.5, 0.72, 0.55],
       dim: 0,
       dim_backfaces: 0,
       outline: -1,
@@ -242,8 +301,9 @@ export class Painter {
   }
 
   /** @type {Renderer['set_count']} */
-  set_count(n) {
+  set_count(n, body) {
     this.#count = Math.min(n, this.radii.length);
+    this.#body = Math.min(body, this.radii.length);
   }
 
   /** @type {Renderer['set_view']} */
@@ -290,6 +350,7 @@ export class Painter {
 
   destroy() {
     this.#count = 0;
+    this.#body = 0;
     this.#image = new ImageData(1, 1);
     this.#depth = new Float32Array(1);
   }
@@ -309,7 +370,10 @@ export class Painter {
     const { right, up, forward } = axes;
     const light = Math.hypot(toward[0], toward[1], toward[2]) || 1;
     const key = [0, 1, 2].map((k) => (right[k] * toward[0] + up[k] * toward[1] - forward[k] * toward[2]) / light);
-    const scene = { target: { out, depth, width, height }, axes, key, ground };
+    const rim = luminanceOf(ground) > LIGHT_GROUND ? 0 : RIM_LIGHT;
+    const scene = { target: { out, depth, width, height }, axes, key, ground, rim };
+    if (this.#style.body)
+      for (let i = 0; i < this.#body; i += 1) if (this.#births[i] <= timeS) this.#paintBed(i, scene);
     for (let i = 0; i < this.#count; i += 1) if (this.#births[i] <= timeS) this.#paintDisc(i, scene);
     this.#paintCreases(scene.target, ground);
     if (box) this.#paintBox(scene.target, box);
@@ -348,81 +412,151 @@ export class Painter {
   }
 
   /**
-   * Draws a particle, unless the style hides it or it is out of sight.
-   * @param {number} i
-   * @param {{ target: Target, axes: ReturnType<typeof eyeAxes>, key: number[], ground: number[] }} scene  `key`: the
-   *   direction to the light; `ground`: the background in linear light
+   * Returns where a place is in the picture; null behind the eye.
+   * @param {number[]} place @param {PaintedScene} scene
    */
-  #paintDisc(i, { target, axes, key, ground }) {
-    const { out, depth, width, height } = target;
-    const { right, up, forward, clipXPerWorld } = axes;
-    const { dim, dim_backfaces, disc_scale, outline, level = null, plane = null } = this.#style;
-    const { positions, normals, radii, levels, colours, view: m } = this;
-    const older = level !== null && levels[i] < level;
-    if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) return;
-    if (plane && isBeyond(plane, positions, 3 * i)) return;
-    const x = positions[3 * i];
-    const y = positions[3 * i + 1];
-    const z = positions[3 * i + 2];
+  #project([x, y, z], { target: { width, height }, axes }) {
+    const { view: m } = this;
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
-    if (!(w > 1e-9)) return;
-    const inv = 1 / w;
-    const cx = (m[0] * x + m[4] * y + m[8] * z + m[12]) * inv;
-    const cy = (m[1] * x + m[5] * y + m[9] * z + m[13]) * inv;
-    const sx = (0.5 + 0.5 * cx) * width;
-    const sy = (0.5 - 0.5 * cy) * height;
+    if (!(w > 1e-9)) return null;
+    const sx = (0.5 + (0.5 * (m[0] * x + m[4] * y + m[8] * z + m[12])) / w) * width;
+    const sy = (0.5 - (0.5 * (m[1] * x + m[5] * y + m[9] * z + m[13])) / w) * height;
+    return { sx, sy, w, pxPerWorld: (axes.clipXPerWorld * 0.5 * width) / w };
+  }
+
+  /**
+   * Returns the normal of a particle on the side of the eye, the cosine of the viewing angle,
+   * negative for one seen from behind, and the light on it.
+   * @param {number[]} place @param {number[]} outward @param {PaintedScene} scene
+   */
+  #seen([x, y, z], outward, { axes: { up }, key, rim }) {
+    const { view: m } = this;
+    const toEye = [m[16] - x, m[17] - y, m[18] - z];
+    const facing = dot(toEye, outward) / Math.hypot(toEye[0], toEye[1], toEye[2]);
+    const normal = facing < 0 ? outward.map((c) => -c) : outward;
+    const cosines = { keyward: dot(normal, key), skyward: dot(normal, up), edgeOn: 1 - Math.abs(facing) };
+    return { normal, facing, light: lightOn(cosines, { rim, warmth: this.#style.warmth ?? 0 }) };
+  }
+
+  /** Whether the style shows the level of a particle. @param {number} i */
+  #isShown(i) {
+    const { level = null } = this.#style;
+    return level === null || this.levels[i] <= level || this.levels[i] === NO_LEVEL;
+  }
+
+  /** Returns the share by which a particle fades to the background. @param {number} i */
+  #fadeOf(i) {
+    const { dim, level = null } = this.#style;
+    return level !== null && this.levels[i] < level ? Math.max(dim, MUTE) : dim;
+  }
+
+  /** Returns the place and the normal of a particle; null beyond the cutting plane. @param {number} i */
+  #particle(i) {
+    const { positions: p, normals: n } = this;
+    const { plane } = this.#style;
+    if (plane && isBeyond(plane, p, 3 * i)) return null;
+    return { place: [p[3 * i], p[3 * i + 1], p[3 * i + 2]], outward: [n[3 * i], n[3 * i + 1], n[3 * i + 2]] };
+  }
+
+  /**
+   * Draws a particle's part of the body, as `bed_vertex` in shaders/discs.wgsl describes it.
+   * @param {number} i @param {PaintedScene} scene
+   */
+  #paintBed(i, scene) {
+    const { body, dim_backfaces, dim, plane } = this.#style;
+    const radius = this.radii[i];
+    if (!body || !(radius > 0) || this.levels[i] === NO_LEVEL) return;
+    const particle = this.#particle(i);
+    if (!particle) return;
+    const { place, outward } = particle;
+    const { normal, facing, light } = this.#seen(place, outward, scene);
+    const isOpen = body.is_open || !!plane;
+    if (facing < 0 && !isOpen) return;
+    const down = isOpen ? 0 : BED_SUNK * radius;
+    const at = this.#project(
+      place.map((c, k) => c - down * normal[k]),
+      scene,
+    );
+    if (!at || at.pxPerWorld * radius < LEAST_BED_PX) return;
+    const [least, full] = isOpen ? OPEN_OUTLINE_BED : OUTLINE_BED;
+    const share = least + (BED_RADIUS - least) * Math.min(1, Math.abs(facing) / full);
+    const isToCome = i >= this.#count || !this.#isShown(i);
+    const value = litBy(
+      body.colour.map((v) => linear(v)),
+      {
+        light,
+        behind: smoothstep(INSIDE_FROM, -facing) * dim_backfaces,
+        away: isToCome ? Math.max(TO_COME, dim) : this.#fadeOf(i),
+        ground: scene.ground,
+      },
+    );
+    const back = (isToCome ? TO_COME_BEHIND : BED_BEHIND) * radius;
+    this.#fill(scene, {
+      at,
+      normal,
+      radius: share * radius,
+      near: 1 / (at.w + back),
+      value,
+      rim: value,
+      hasRim: false,
+    });
+  }
+
+  /**
+   * Draws a particle, unless the style hides it or it is out of sight.
+   * @param {number} i @param {PaintedScene} scene
+   */
+  #paintDisc(i, scene) {
+    const { dim_backfaces, disc_scale, outline } = this.#style;
+    const { axes, ground } = scene;
+    const particle = this.#isShown(i) ? this.#particle(i) : null;
     // A negative radius is that of a dot that faces the eye, as in shaders/discs.wgsl.
-    const isDot = radii[i] < 0;
-    const r = Math.abs(radii[i]) * disc_scale * (isDot ? DOT : 1);
-    if (r === 0) return;
-    // It is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
-    const near = isDot ? 1 / (w - r) : inv;
-    const px = clipXPerWorld * r * inv * 0.5 * width;
+    const isDot = this.radii[i] < 0;
+    const radius = Math.abs(this.radii[i]) * disc_scale * (isDot ? DOT : 1);
+    const at = particle && this.#project(particle.place, scene);
+    if (!particle || !at || radius === 0) return;
+    const outward = isDot ? axes.forward.map((c) => -c) : particle.outward;
+    const { normal, facing, light } = this.#seen(particle.place, outward, scene);
+    const packedColour = this.colours[i];
+    const colour = [0, 8, 16].map((shift) => LINEAR[(packedColour >> shift) & 255]);
+    const seen = { behind: facing < 0 ? dim_backfaces : 0, away: this.#fadeOf(i), ground };
+    const isOutlined = i === outline;
+    const value = isOutlined ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : litBy(colour, { light, ...seen });
+    const rim = isOutlined ? value : litBy(colour, { light: light.map((v) => v * (1 - RIM_SHADE)), ...seen });
+    // A rim of a tenth of the radius separates overlapping discs.
+    const hasRim = isDot || this.levels[i] !== NO_LEVEL;
+    // A dot is drawn nearer to the eye by its radius, so that the discs beside it do not cut it.
+    const near = 1 / (isDot ? at.w - radius : at.w);
+    this.#fill(scene, { at, normal, radius, near, value, rim, hasRim });
+  }
+
+  /**
+   * Fills a disc in its plane.
+   * @param {PaintedScene} scene
+   * @param {{at: {sx: number, sy: number, w: number, pxPerWorld: number}, normal: number[], radius:
+   *   number, near: number, value: number, rim: number, hasRim: boolean}} disc
+   */
+  #fill({ target, axes }, { at, normal, radius, near, value, rim, hasRim }) {
+    const { out, depth, width, height } = target;
+    const { sx, sy, w, pxPerWorld } = at;
+    const px = pxPerWorld * radius;
     if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) return;
-    let nx = isDot ? -forward[0] : normals[3 * i];
-    let ny = isDot ? -forward[1] : normals[3 * i + 1];
-    let nz = isDot ? -forward[2] : normals[3 * i + 2];
-    const facing = (m[16] - x) * nx + (m[17] - y) * ny + (m[18] - z) * nz;
-    const back = facing < 0;
-    if (back) {
-      nx = -nx;
-      ny = -ny;
-      nz = -nz;
-    }
-    const keyward = nx * key[0] + ny * key[1] + nz * key[2];
-    const skyward = nx * up[0] + ny * up[1] + nz * up[2];
-    const edgeOn = 1 - Math.abs(facing) / Math.hypot(m[16] - x, m[17] - y, m[18] - z);
-    const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 1 - dim_backfaces * (1 - INSIDE_LIGHT) : 1);
-    const away = older ? Math.max(dim, MUTE) : dim;
-    const grey = back ? dim_backfaces * (1 - INSIDE_CHROMA) : 0;
-    const colour = colours[i];
-    const [red, green, blue] = [LINEAR[colour & 255], LINEAR[(colour >> 8) & 255], LINEAR[(colour >> 16) & 255]];
-    const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-    const mix = (/** @type {number} */ value, /** @type {number} */ k, /** @type {number} */ lightHere) =>
-      Math.min(1, (value + (luminance - value) * grey) * lightHere) * (1 - away) + ground[k] * away;
-    const lit = (/** @type {number} */ lightHere) =>
-      packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
-    const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
-    const rim = i === outline ? value : lit(shade * 0.78);
-    // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise, and a disc
-    // without a level is a piece of a body below particles.
-    const hasRim = px > RIM_FROM_PX && (isDot || levels[i] !== NO_LEVEL);
-    const coreSq = hasRim ? 0.81 * px * px : Infinity;
     if (px < POINT_PX) {
-      const at = (sy | 0) * width + (sx | 0);
-      if (sx >= 0 && sx < width && sy >= 0 && sy < height && near > depth[at]) {
-        depth[at] = near;
-        out[at] = value;
+      const pixel = (sy | 0) * width + (sx | 0);
+      if (sx >= 0 && sx < width && sy >= 0 && sy < height && near > depth[pixel]) {
+        depth[pixel] = near;
+        out[pixel] = value;
       }
       return;
     }
     // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
     // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
-    const a = nx * right[0] + ny * right[1] + nz * right[2];
-    const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
+    const a = dot(normal, axes.right);
+    const b = -dot(normal, axes.up);
     // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
-    const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
-    const depthPerPx = (r / px) * inv * inv;
+    const c = Math.max(1 / 12, -dot(normal, axes.forward));
+    const coreSq = hasRim && px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
+    const depthPerPx = 1 / (pxPerWorld * w * w);
     fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, near, depthPerPx, value, rim, coreSq });
   }
 

@@ -1,10 +1,6 @@
 /**
  * The colour palettes of the picture, for light and dark backgrounds.
  *
- * The cycle of level colours is a rhombus in OKLab's a–b plane at constant lightness. Along it both a and b are
- * triangle waves, so neighbouring levels differ by the same step even for a viewer who distinguishes only one of the
- * two axes. On a hue circle such a viewer would see no change at two places.
- *
  * @module
  */
 import { vec } from '../vector.js';
@@ -12,28 +8,45 @@ import { oklch, packedFromOklab } from './oklab.js';
 
 /** @import { Palette, Theme } from './types.js' */
 
-/** Number of colours in the level cycle. */
-export const CYCLE = 12;
-
-/** Triangle wave of period 1: 0 → 1 → 0 → −1. @param {number} t */
-function triangle(t) {
-  const u = t - Math.floor(t);
-  return u < 0.25 ? 4 * u : u < 0.75 ? 2 - 4 * u : 4 * u - 4;
-}
+/** Number of levels from one light ring to the next. */
+export const RING = 8;
+/**
+ * Exponents of the way from blue to sand. Around a seed most particles are on later levels; from
+ * creases, where rings begin everywhere, on early ones. So the middle of the surface is teal either
+ * way.
+ */
+const WAY = { seed: 1.4, creases: 0.7 };
+/**
+ * Lightness, chroma and hue in degrees at the seed, and how they change: lightness and chroma up to
+ * a ring, hue up to the last level. Rings differ by lightness, which every kind of sight has.
+ * @type {Record<Theme, {L: [number, number], C: [number, number], h: [number, number]}>}
+ */
+const SEA = {
+  light: { L: [0.79, 0.1], C: [0.072, -0.03], h: [262, -177] },
+  dark: { L: [0.64, 0.15], C: [0.092, -0.022], h: [266, -181] },
+};
 
 /**
- * Returns the widest rhombus in the sRGB gamut at these lightnesses. The a axis ends in green-cyan and pink, the b axis
- * in blue and yellow. The cycle starts at blue, the colour of a seed.
+ * Returns what gives the colours of the levels 0 to `last`: blue where the rings begin, then teal,
+ * green and sand at the end, with a soft light ring every {@link RING} levels. The table asked for
+ * last is kept.
  * @param {Theme} theme
  */
-function levelCycle(theme) {
-  const L = theme === 'light' ? 0.7 : 0.75;
-  const a = 0.12;
-  const b = 0.125;
-  return Uint32Array.from({ length: CYCLE }, (_, k) => {
-    const t = k / CYCLE;
-    return packedFromOklab([L, a * triangle(t), -b * triangle(t + 0.25)]);
-  });
+function seaOf(theme) {
+  const { L, C, h } = SEA[theme];
+  let made = { last: -1, exponent: 0, table: new Uint32Array(0) };
+  return (/** @type {number} */ last, isFromCreases = false) => {
+    const exponent = isFromCreases ? WAY.creases : WAY.seed;
+    if (made.last !== last || made.exponent !== exponent) {
+      const table = Uint32Array.from({ length: last + 1 }, (_, level) => {
+        const ring = 0.5 - 0.5 * Math.cos((2 * Math.PI * level) / RING);
+        const way = (level / Math.max(1, last)) ** exponent;
+        return packedFromOklab(oklch(L[0] + L[1] * ring, C[0] + C[1] * ring, h[0] + h[1] * way));
+      });
+      made = { last, exponent, table };
+    }
+    return made.table;
+  };
 }
 
 /** Samples a ramp through OKLCH stops at `n` points. @param {[number, number, number][]} stops @param {number} n */
@@ -115,7 +128,7 @@ const COMPONENT_LCH = {
 function palette(theme) {
   const light = theme === 'light';
   return {
-    levels: levelCycle(theme),
+    levels: seaOf(theme),
     // Small distances are dark violet, the ideal one is green-blue, large ones are bright yellow. The lightness
     // increases throughout, so that the order is visible in every colour vision deficiency and in greyscale.
     sequential: ramp(
@@ -146,10 +159,15 @@ function palette(theme) {
       front: packedFromOklab(oklch(light ? 0.52 : 0.58, 0.16, 310)),
     },
     plain: packedFromOklab(oklch(light ? 0.78 : 0.74, 0.025, 235)),
+    // The body beneath the discs: darker than they are, and so grey that it is no colour of the
+    // data.
+    body: packedFromOklab(light ? oklch(0.71, 0.025, 240) : oklch(0.5, 0.03, 245)),
+    // Share of the ambient occlusion. All of it looks sooty on a light ground.
+    occlusion: light ? 0.65 : 0.8,
     // The background is nearly neutral and equals that of the page.
     ground: packedFromOklab(oklch(light ? 0.975 : 0.185, light ? 0.002 : 0.006, 260)),
     // A model's points are ink on a casing of the background's lightness, so that they are visible on any colour.
-    ink: packedFromOklab(oklch(light ? 0.2 : 0.98, 0, 0)),
+    ink: packedFromOklab(oklch(light ? 0.36 : 0.98, 0, 0)),
     casing: packedFromOklab(oklch(light ? 0.99 : 0.15, 0, 0)),
     box: packedFromOklab(oklch(light ? 0.62 : 0.55, 0.01, 260)),
   };

@@ -45,11 +45,13 @@ export class Reveal {
 
   /**
    * Returns the ranges of particles that appear together: one range without a reveal, otherwise one for each level.
-   * @param {Uint32Array} levels @param {number} first @param {number} last @param {number} nowS
+   * @param {Uint32Array} levels @param {number} first @param {number} last
+   * @param {{nowS: number, birthS?: number}} when  `birthS`: the time of appearance without a
+   *   reveal
    * @returns {[number, number, number][]} first, last and time of appearance of each
    */
-  runs(levels, first, last, nowS) {
-    if (!this.active) return [[first, last, -Infinity]];
+  runs(levels, first, last, { nowS, birthS = -Infinity }) {
+    if (!this.active) return [[first, last, birthS]];
     /** @type {[number, number, number][]} */
     const out = [];
     for (let i = first; i < last; ) {

@@ -3,11 +3,12 @@
  *
  * @module
  */
+import { COLOURINGS } from './colouring.js';
 import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
 
 /**
- * @import { ViewState } from '../types.js'
+ * @import { Bounds, ViewState } from '../types.js'
  * @import { Look } from './types.js'
  */
 
@@ -16,6 +17,8 @@ export const scaleOf = ({ draw, size }) => (draw === 'spheres' ? 1 : size);
 
 /** Duration in which a new particle fades in. */
 export const FADE_S = 0.12;
+/** Difference in warmth between lit and shaded places, where light may tint the colours. */
+const WARMTH = 0.12;
 /** Width of the edges of faces, in page pixels. */
 const EDGE_PX = 1;
 /**
@@ -62,13 +65,18 @@ export function shownStep({ level, step, upto, draw }) {
 /**
  * Returns the renderers' style record.
  * @param {Look} look
- * @param {{lastLevel: number, dim: number, calm: boolean, pixelRatio: number}} present
+ * @param {{lastLevel: number, isOpen: boolean, bounds: Bounds, dim: number, calm: boolean,
+ *   pixelRatio: number}} present `isOpen`: whether the inside of the surface can be seen; `bounds`:
+ *   the box that the surface ends at
  */
-export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
+export function styleOf(look, { lastLevel, isOpen, bounds, dim, calm, pixelRatio }) {
   const palette = PALETTES[look.theme];
   return {
     background: [...rgbFromPacked(palette.ground), 1],
-    faces: facesOf(look),
+    faces: look.draw === 'mesh' ? { flat: look.faces === 'flat', edge_px: look.edges ? EDGE_PX : 0 } : null,
+    body: look.body ? { colour: rgbFromPacked(palette.body), is_open: isOpen, bounds } : null,
+    occlusion: palette.occlusion,
+    warmth: COLOURINGS[look.colour].isTinted ? WARMTH : 0,
     spheres: look.draw === 'spheres',
     disc_scale: scaleOf(look),
     dim,
@@ -80,10 +88,4 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
     plane: look.plane,
     pixel_ratio: pixelRatio,
   };
-}
-
-/** Returns how the renderers draw faces; null for discs alone. @param {Look} look */
-function facesOf({ draw, faces, edges, ghost }) {
-  if (draw === 'mesh') return { flat: faces === 'flat', edge_px: edges ? EDGE_PX : 0 };
-  return ghost ? { ghost } : null;
 }

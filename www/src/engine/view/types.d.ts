@@ -48,6 +48,8 @@ export type View = {
 };
 /** A way to colour the particles. A colour is packed as `0xAABBGGRR`. */
 export interface Colouring {
+  /** whether light may tint the colours, because no value is read from them */
+  isTinted?: boolean;
   /** the values at both ends of a ramp, where they depend on the particles; null before there is a value */
   range?: (columns: Columns) => [number, number] | null;
   /** null while what it shows is not known */
@@ -67,6 +69,10 @@ export interface Style {
   dim: number;
   /** share by which discs seen from behind are drawn as an inside, darker and greyer */
   dim_backfaces: number;
+  /** the body beneath the discs, null for none */
+  body?: { colour: number[]; is_open: boolean; bounds: Bounds } | null;
+  /** difference in warmth between lit and shaded places, 0 … 1 */
+  warmth?: number;
   fade_s?: number;
   /** newest generation level drawn, null for all */
   level?: number | null;
@@ -95,6 +101,17 @@ export interface PaintedDisc {
 }
 /** The pixels of a picture and how near each is. */
 export type Target = { out: Uint32Array; depth: Float32Array; width: number; height: number };
+/** What the discs of a picture have in common. */
+export interface PaintedScene {
+  target: Target;
+  axes: { right: number[]; up: number[]; forward: number[]; clipXPerWorld: number };
+  /** direction to the light */
+  key: number[];
+  /** the background in linear light */
+  ground: number[];
+  /** light along the outline */
+  rim: number;
+}
 export type Theme = 'light' | 'dark';
 export type Palette = ReturnType<typeof palette>;
 /** in CSS pixels of the host */

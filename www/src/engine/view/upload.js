@@ -10,7 +10,7 @@ import { radiiOf } from './creases.js';
 import { dotsOf } from './dots.js';
 import { Glide } from './glide.js';
 import { PALETTES } from './palettes.js';
-import { scaleOf } from './style.js';
+import { FADE_S, scaleOf } from './style.js';
 
 /**
  * @import { Columns } from '../types.js'
@@ -20,8 +20,6 @@ import { scaleOf } from './style.js';
 
 /** @typedef {Device['renderer']} Renderer */
 
-/** Distance, in radii, from which a particle comes to its place in a new run: beyond the nearest of the ones before. */
-const MEET_RADII = 4;
 /** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;
 
@@ -49,6 +47,12 @@ export class ParticleUpload {
   constructor(columns) {
     this.columns = columns;
     this.glide = new Glide();
+    /**
+     * Whether the next particles take the places of others of the same surface, and the time from
+     * which on those that did are drawn.
+     */
+    this.meets = false;
+    this.metS = -Infinity;
     /** Particles that have not been uploaded. */
     this.dirty = new Span();
     this.#recoloured = new Span();
@@ -56,6 +60,11 @@ export class ParticleUpload {
     this.range = null;
     /** Number of uploads of particles. */
     this.writes = 0;
+  }
+
+  /** Returns whether particles fade in at this time. @param {number} nowS */
+  fading(nowS) {
+    return nowS < this.metS + FADE_S;
   }
 
   /** Marks particles as new or moved. @param {number} first @param {number} last */
@@ -74,13 +83,15 @@ export class ParticleUpload {
   }
 
   /**
-   * Starts over for another surface or a new device, without an animation from the earlier positions, unless the next
-   * particles are to start from there.
+   * Starts over for another surface or a new device, without an animation from the earlier
+   * positions. Particles that are to take the places of others fade in over the body, which is
+   * there at once.
    * @param {boolean} [meets]
    */
   restart(meets = false) {
-    if (meets) this.glide.meets = true;
-    else this.glide.forget();
+    this.glide.forget();
+    this.meets = meets;
+    this.metS = -Infinity;
     this.dirty = new Span();
     this.all();
   }
@@ -97,15 +108,16 @@ export class ParticleUpload {
     const { count } = columns;
     if (!dirty.empty || !this.#recoloured.empty) this.#followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
-    if (moved && count <= MOST_STEPPED && !reveal.active && !calm) {
-      if (glide.meets) glide.meet(columns.shown, count, MEET_RADII * columns.radii[0], nowS);
-      else glide.begin(nowS);
+    if (moved && count <= MOST_STEPPED && !reveal.active && !calm) glide.begin(nowS);
+    if (this.meets && !dirty.empty) {
+      this.meets = false;
+      this.metS = nowS;
     }
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;
       const colours = this.#colours(look, first, last);
-      for (const [from, end, birth] of reveal.runs(columns.levels, first, last, nowS)) {
+      for (const [from, end, birth] of reveal.runs(columns.levels, first, last, { nowS, birthS: this.metS })) {
         renderer.write(
           from,
           positions.subarray(3 * from, 3 * end),
@@ -120,7 +132,8 @@ export class ParticleUpload {
       glide.note(positions, first, last);
     }
     const recoloured = { first: this.#recoloured.first, last: Math.min(this.#recoloured.last, count) };
-    if (recoloured.first < recoloured.last) {
+    const isWritten = first <= recoloured.first && recoloured.last <= last;
+    if (recoloured.first < recoloured.last && !isWritten) {
       renderer.write_colours(recoloured.first, this.#colours(look, recoloured.first, recoloured.last));
       this.writes += 1;
     }

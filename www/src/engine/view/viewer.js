@@ -4,13 +4,23 @@
  * @module
  */
 import { vec } from '../vector.js';
-import { ballOf, Camera, projected, rayThrough, STANDARD_VIEWS, viewOf } from './camera.js';
+import {
+  ballOf,
+  Camera,
+  fitDistance,
+  freePart,
+  outlineDistance,
+  projected,
+  rayThrough,
+  STANDARD_VIEWS,
+  viewOf,
+} from './camera.js';
 import { legendOf } from './colouring.js';
 import { CreaseUpload } from './creases.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
 import { FaceUpload } from './faces.js';
-import { facing } from './facing.js';
+import { facing, widestYaw } from './facing.js';
 import { FrameLoop, nowS } from './frames.js';
 import { pick } from './picking.js';
 import { Reveal } from './reveal.js';
@@ -42,6 +52,9 @@ export class Viewer {
   /** Whether the system requests reduced motion. */
   #calm;
   #sight;
+
+  /** Distance from which the last fit would have shown the whole ball. */
+  #wholeDistance = 0;
 
   /**
    * @param {ViewerOptions} options
@@ -100,7 +113,8 @@ export class Viewer {
   // ------------------------------------------------------------------------------------------------
 
   /**
-   * Replaces the old surface by a new one. If it `meets` the old one, its particles come from those nearest there.
+   * Replaces the old surface by a new one. If it `meets` the old one, its particles fade in over
+   * the body.
    * @param {{grow: boolean, fit: boolean, bounds: Bounds | null, meets?: boolean}} options
    */
   begin({ grow, fit, bounds, meets = false }) {
@@ -173,7 +187,8 @@ export class Viewer {
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.#faces.recolour();
     this.remembered();
-    if (level !== before.level || this.look.upto !== before.upto) this.#frameFront();
+    const { upto, insets } = this.look;
+    if (level !== before.level || upto !== before.upto || insets !== before.insets) this.#frameFront();
     // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
       this.#endReveal();
@@ -189,6 +204,7 @@ export class Viewer {
 
   #resized() {
     this.due.size = true;
+    this.#frameFront();
     this.#restyle();
   }
 
@@ -201,8 +217,8 @@ export class Viewer {
   #endReveal() {
     this.reveal.end();
     this.#events.onReveal(null);
-    // A mesh is drawn from now on.
-    this.frames.ask();
+    // A mesh is drawn from now on, and a closed surface from outside alone.
+    this.#restyle();
   }
 
   // ---- where it is seen from
@@ -223,8 +239,19 @@ export class Viewer {
    *   until then
    */
   fit(jump = false) {
-    const ball = jump ? this.#scene.boxBall(this.look.box !== null) : this.#fitBall();
-    this.camera.fit(ball, jump);
+    if (jump) this.camera.fit(this.#scene.boxBall(this.look.box !== null), { jump });
+    else {
+      const { ball, distance } = this.#fit();
+      this.camera.fit(ball, { distance });
+    }
+    this.moved();
+  }
+
+  /** Turns about the vertical to where most of the surface is seen. */
+  turnWide() {
+    const { columns, camera } = this;
+    const yaw = widestYaw(camera.end, columns, this.#fitBall());
+    camera.turnTo({ yaw, pitch: camera.end.pitch });
     this.moved();
   }
 
@@ -243,22 +270,48 @@ export class Viewer {
     this.moved();
   }
 
-  /** Frames the part of the front that is drawn, unless the hand has taken the camera. */
+  /** Frames the surface, or the part of the front that is drawn, unless the hand has taken the camera. */
   #frameFront() {
     const { camera, columns } = this;
     if (!camera.state.fit || columns.count === 0 || columns.stale || this.reveal.active) return;
-    camera.glideTo(this.#fitBall());
+    const { ball, distance } = this.#fit();
+    camera.glideTo(ball, distance);
     this.moved();
   }
 
   /** Returns the ball that a fit shows. */
   #fitBall() {
     const { columns, look } = this;
+    return this.#scene.fitBall(columns, look.box !== null, look.axes, this.#shownOnly());
+  }
+
+  /** Returns which particles are drawn; undefined if all are. */
+  #shownOnly() {
+    const { columns, look } = this;
     const { upto } = look;
     const newest = shownLevel(look, columns.lastLevel);
-    const isWhole = upto === null && (newest === null || newest >= columns.lastLevel);
-    const isShown = (/** @type {number} */ i) => i < (upto ?? Infinity) && columns.levels[i] <= (newest ?? Infinity);
-    return this.#scene.fitBall(columns, look.box !== null, look.axes, isWhole ? undefined : isShown);
+    if (upto === null && (newest === null || newest >= columns.lastLevel)) return undefined;
+    return (/** @type {number} */ i) => i < (upto ?? Infinity) && columns.levels[i] <= (newest ?? Infinity);
+  }
+
+  /**
+   * Returns the ball that a fit shows, and the distance for it: of a surface without box and axes
+   * the outline fills the picture, else the ball does.
+   */
+  #fit() {
+    const { columns, look, screen } = this;
+    const ball = this.#fitBall();
+    this.#wholeDistance = fitDistance(ball.radius);
+    if (look.box || look.axes || columns.count === 0 || screen.cssWidth === 0)
+      return { ball, distance: this.#wholeDistance };
+    const { placed: positions, radii, count } = columns;
+    const discs = { positions, radii, count };
+    return { ball, distance: outlineDistance(this.camera.end, ball, this.#free(), discs, this.#shownOnly()) };
+  }
+
+  /** Returns the size of the part of the picture that no panel covers. */
+  #free() {
+    return freePart(this.screen.cssWidth, this.screen.cssHeight, this.look.insets);
   }
 
   /** Brings a place before the camera, seen along its normal. @param {Place} place */
@@ -353,7 +406,7 @@ export class Viewer {
     const revealing = this.#tellReveal(nowS);
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
-    if (moving || revealing || dimming || this.upload.glide.active) this.frames.ask();
+    if (moving || revealing || dimming || this.upload.glide.active || this.upload.fading(nowS)) this.frames.ask();
     if (outcome === 'drawn') {
       this.keeper.drew();
       this.#events.onFrame();
@@ -369,11 +422,9 @@ export class Viewer {
       renderer.resize(screen.width, screen.height);
       due.size = false;
     }
-    const held = upload.write(renderer, look, { reveal, calm: this.#calm.matches, nowS });
-    const count = Math.min(held, look.upto ?? Infinity);
+    const count = upload.write(renderer, look, { reveal, calm: this.#calm.matches, nowS });
     if (kind !== 'canvas2d') {
-      // The ghost of a surface shows where it will grow.
-      const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
+      const drawn = look.draw === 'mesh' && !reveal.active;
       this.#faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
     }
     this.#creases.write(renderer, look);
@@ -387,8 +438,10 @@ export class Viewer {
   /** @param {Device['renderer']} renderer @param {View} view @param {number} count  particles that the device holds */
   #tellView(renderer, view, count) {
     renderer.set_view(view.packed);
-    if (this.look.upto !== null) return renderer.set_count(count);
-    renderer.set_count(count + this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio }));
+    const { upto } = this.look;
+    if (upto !== null) return renderer.set_count(Math.min(upto, count), count);
+    const points = this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio });
+    renderer.set_count(count + points, count);
   }
 
   #tellLegend() {
@@ -416,8 +469,30 @@ export class Viewer {
   /** @param {number} nowS */
   #style(nowS) {
     const calm = this.#calm.matches;
-    const dim = this.dimmer.at(nowS, calm);
-    return styleOf(this.look, { lastLevel: this.columns.lastLevel, dim, calm, pixelRatio: this.screen.ratio });
+    const { columns, reveal } = this;
+    return styleOf(this.look, {
+      lastLevel: columns.lastLevel,
+      // What has not closed yet can be looked into.
+      isOpen: columns.isOpen || reveal.active,
+      bounds: this.#scene.shown,
+      dim: this.dimmer.at(nowS, calm),
+      calm,
+      pixelRatio: this.screen.ratio,
+    });
+  }
+
+  /**
+   * Returns the camera of a picture of this size: as on the screen, or, where the outline was fitted
+   * to a longer side, from where the whole surface is in the picture.
+   * @param {{width: number, height: number}} size
+   */
+  #cameraOf(size) {
+    const { state } = this.camera;
+    const longer = (/** @type {{width: number, height: number}} */ { width, height }) =>
+      [width, height].map((side) => side / Math.min(width, height));
+    const [wanted, shown] = [longer(size), longer(this.#free())];
+    if (!state.fit || wanted.every((side, k) => side > shown[k] - 0.01)) return state;
+    return { ...state, distance: Math.max(state.distance, this.#wholeDistance) };
   }
 
   /**
@@ -437,7 +512,8 @@ export class Viewer {
     const { cssWidth, cssHeight } = this.screen;
     const isParallel = this.look.projection === 'orthographic';
     const size = /** @type {const} */ ([cssWidth || width, cssHeight || height]);
-    const view = viewOf(this.camera.state, ...size, this.#scene.ball(), undefined, isParallel);
+    const camera = this.#cameraOf({ width, height });
+    const view = viewOf(camera, ...size, this.#scene.ball(), undefined, isParallel);
     fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
     this.#tellView(renderer, view, this.columns.count);
     renderer.set_style(JSON.stringify({ ...this.#style(now), dim: 0, outline: -1 }));

@@ -19,9 +19,9 @@ function countsOf({ levels }) {
   return Array.from({ length: last + 1 }, (_, level) => levels.reduce((sum, own) => sum + (own <= level ? 1 : 0), 0));
 }
 
-/** The particles up to a level. @param {LessonParticles} all @param {number} level */
-function upTo(all, level) {
-  const kept = [...all.levels.keys()].filter((i) => all.levels[i] <= level);
+/** The particles of some levels. @param {LessonParticles} all @param {(level: number) => boolean} isKept */
+function onLevels(all, isKept) {
+  const kept = [...all.levels.keys()].filter((i) => isKept(all.levels[i]));
   const vectors = (/** @type {Float32Array} */ column) =>
     Float32Array.from(kept.flatMap((i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]]));
   return {
@@ -50,8 +50,9 @@ async function growth({ lab }, /** @type {string} */ name) {
   });
   /** @param {number} level */
   function show(level) {
-    const particles = upTo(placed, level);
-    picture.show({ particles, body: placed, colours: byLevel(particles) });
+    const particles = onLevels(placed, (own) => own <= level);
+    const body = onLevels(placed, (own) => own > level);
+    picture.show({ particles, body, colours: byLevel(particles, counts.length - 1) });
     if (isMounted) orbit.follow(placed, level);
   }
   let isMounted = false;

@@ -1,5 +1,5 @@
 /** Draws the legend and a caption on a picture of the surface. */
-import { cycleEnds, formatCount, formatSignificant, plural } from '../format.js';
+import { formatCount, formatSignificant, plural } from '../format.js';
 
 /**
  * @import { Engine, Legend } from '../../engine/types.js'
@@ -79,20 +79,13 @@ function drawLegend(sheet, legend) {
 }
 
 /**
- * Draws the colours of a scale: side by side if they are a cycle, else blended.
+ * Draws the colours of a scale, blended.
  * @param {Sheet} sheet
  * @param {Legend} legend
  * @param {number} y
  * @param {number} width
  */
-function strip({ context, em, left }, { kind, colours, range, mark }, y, width) {
-  if (kind === 'cyclic' || kind === 'normal') {
-    colours.forEach((colour, i) => {
-      context.fillStyle = colour;
-      context.fillRect(left + (i * width) / colours.length, y, width / colours.length + 0.5, 0.8 * em);
-    });
-    return;
-  }
+function strip({ context, em, left }, { colours, range, mark }, y, width) {
   const ramp = context.createLinearGradient(left, 0, left + width, 0);
   colours.forEach((colour, i) => void ramp.addColorStop(i / Math.max(1, colours.length - 1), colour));
   context.fillStyle = ramp;
@@ -113,8 +106,7 @@ function dot({ context, em }, colour, x, y) {
 }
 
 /** Returns what stands at the ends of a scale. @param {Legend} legend @returns {[string, string]} */
-export function endsOf({ kind, colours, range }) {
-  if (kind === 'cyclic') return cycleEnds(colours.length);
+export function endsOf({ kind, range }) {
   if (!range) return ['', ''];
   if (range[0] === range[1]) return [`${formatSignificant(range[0])} everywhere`, ''];
   return kind === 'diverging'

@@ -1,7 +1,7 @@
 /** Shows the choice of the colouring and its legend, with range and unit. */
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
-import { cycleEnds, formatCount, formatSignificant } from '../format.js';
+import { formatCount, formatSignificant } from '../format.js';
 import { createSelect } from '../select.js';
 
 /**
@@ -45,19 +45,6 @@ const swatch = (colour) => h('span', { class: 'swatch', 'aria-hidden': 'true', s
 /** @type {Record<Legend['kind'], (legend: Legend) => Child[]>} */
 const SCALES = {
   plain: () => [],
-  cyclic: ({ colours, unit }) => [
-    h(
-      'div',
-      { class: 'cycle', role: 'img', 'aria-label': `${colours.length} colours, repeating` },
-      colours.map(swatch),
-    ),
-    h(
-      'div',
-      { class: 'ends' },
-      cycleEnds(colours.length).map((end) => h('span', null, end)),
-    ),
-    unit ? h('span', { class: 'unit' }, unit) : null,
-  ],
   categories: ({ entries }) => [
     h(
       'ul',
@@ -73,7 +60,7 @@ const SCALES = {
       ),
     ),
   ],
-  normal: (legend) => (legend.entries?.length ? SCALES.categories(legend) : SCALES.cyclic(legend)),
+  normal: (legend) => SCALES.categories(legend),
   sequential: (legend) => rampOf(legend, ([low, high]) => [formatSignificant(low), formatSignificant(high)]),
   // Values outside the range have the colour of its end.
   diverging: (legend) =>

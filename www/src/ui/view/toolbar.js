@@ -189,8 +189,8 @@ function choices(engine, name, key, values, hidden) {
  * Creates a line of buttons that switch parts of the view on and off.
  * @param {Engine} engine
  * @param {string} name
- * @param {['edges' | 'marks' | 'creases' | 'ghost' | 'axes' | 'box' | 'bar' | 'flow', string, string][]} parts  key,
- *   label, explanation
+ * @param {['edges' | 'marks' | 'creases' | 'body' | 'axes' | 'box' | 'bar' | 'flow', string,
+ *   string][]} parts  key, label, explanation
  * @param {() => boolean} [hidden]
  */
 function switches(engine, name, parts, hidden) {
@@ -226,7 +226,7 @@ function drawing(engine) {
   const noMesh = () => drawn.value !== 'mesh';
   const defects =
     'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.';
-  const beneath = 'The surface beneath the discs, faintly. Joining the particles takes a moment.';
+  const beneath = 'A body beneath the discs closes the gaps between them. Without it the far side shows through.';
   /** @type {Parameters<typeof switches>[2]} */
   const shown = [
     ['edges', 'Edges', 'The edges of the faces.'],
@@ -239,7 +239,7 @@ function drawing(engine) {
       ['mesh', 'Mesh'],
     ]),
     h('div', { class: 'menu-line', hidden: noDiscs }, h('span', null, 'Disc size'), discSize(engine)),
-    switches(engine, 'Beneath', [['ghost', 'Surface', beneath]], noParticles),
+    switches(engine, 'Beneath', [['body', 'Body', beneath]], noParticles),
     choices(
       engine,
       'Faces',

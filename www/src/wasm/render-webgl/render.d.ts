@@ -60,9 +60,10 @@ export class Renderer {
      */
     resize(width_px: number, height_px: number): void;
     /**
-     * Draws the first `count` particles from now on.
+     * Draws the first `count` particles from now on, and the first `body` ones as the body beneath
+     * them: fainter those that are not drawn.
      */
-    set_count(count: number): void;
+    set_count(count: number, body: number): void;
     /**
      * Draws the first `count` faces from now on, where the style asks for faces, in the place of the first `particles` particles.
      * Without faces there are discs.
@@ -71,11 +72,13 @@ export class Renderer {
     /**
      * Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
      *
-     * `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for
-     * discs · `spheres` in the place of discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s`
-     * · `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative
-     * for none · `box` {min, max, colour} or null · `plane` {normal, offset} that hides what its normal points to, or null ·
-     * `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
+     * `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `body` {colour,
+     * is_open, bounds: {min, max}} beneath them or null · `spheres` in the place of discs ·
+     * `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `occlusion` · `warmth`
+     * · `fade_s` · `level` newest generation level drawn, null for all · `outline` index of the
+     * particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
+     * `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`.
+     * Meaning, units and defaults: `render::style::Style`.
      *
      * # Errors
      *

@@ -17,7 +17,7 @@ test('an adaptive run draws discs of different size: small where the surface ben
   await open(page);
   // Seen from its side: the discs of its belly, and those on the way to its tips.
   const seen = async (/** @type {object} */ settings) => {
-    const report = await set(page, { ...spindle, settings, view: { colour: 'plain', size: 0.6, camera } });
+    const report = await set(page, { ...spindle, settings, view: { colour: 'plain', size: 0.6, body: false, camera } });
     expect(report.stop_reason).toBe('complete');
     const { found } = await spots(page);
     const median = (/** @type {number[]} */ areas) => areas[Math.floor(areas.length / 2)];

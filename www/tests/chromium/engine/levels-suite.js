@@ -4,17 +4,9 @@ import { counts, open, picture } from './browser.js';
 
 /** @import { Page } from '@playwright/test' */
 
-/**
- * Shows a level, and waits for what is drawn of the surface to come.
- * @param {Page} page @param {number | null} level
- */
-async function show(page, level) {
-  await page.evaluate((k) => /** @type {any} */ (window).marchingParticles.engine.setView({ level: k }), level);
-  await page.waitForFunction(() => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    return p.state.view.level === null || p.status().mesh !== null;
-  });
-}
+/** Shows a level. @param {Page} page @param {number | null} level */
+const show = (page, level) =>
+  page.evaluate((k) => /** @type {any} */ (window).marchingParticles.engine.setView({ level: k }), level);
 
 /**
  * Faces the seed, so that the first levels are in front, and holds the camera, which would frame them. Near to it the

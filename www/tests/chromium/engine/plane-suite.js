@@ -1,4 +1,4 @@
-/** The cutting plane in the picture: which side it hides, of discs, of the mesh and of the surface beneath small discs. */
+/** The cutting plane in the picture: which side it hides, of discs, of the mesh and of the body beneath small discs. */
 import { expect, test } from '@playwright/test';
 import { halvesOf } from '../../pixels.js';
 import { atRest, open, pixels, status } from './browser.js';
@@ -46,9 +46,9 @@ export const suite = () =>
       expect(await halves()).toEqual(whole);
     }
 
-    // The surface is seen faintly beneath small discs, and is cut with them.
+    // The body closes the gaps between small discs, and is cut with them.
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ settings: { radius_share: 0.03 } }));
-    await look(page, { camera: { ...camera, distance: 4 }, draw: 'discs', size: 0.3 });
+    await look(page, { camera: { ...camera, distance: 4 }, draw: 'discs', size: 0.3, body: false });
     /** Share of pixels that are not quite the background. */
     const covered = async () => {
       const { pixels: bytes } = await pixels(page, 320, 240);
@@ -57,11 +57,12 @@ export const suite = () =>
       return (4 * n) / bytes.length;
     };
     const bare = await covered();
-    await look(page, { ghost: true });
-    await hasMesh(page);
-    await atRest(page);
+    await look(page, { body: true });
     const above = await covered();
     expect(above).toBeGreaterThan(1.2 * bare);
+    await look(page, { size: 0.92 });
+    expect(above).toBeCloseTo(await covered(), 1.5);
+    await look(page, { size: 0.3 });
     await cut(page, { normal: [0, 1, 0], offset: 0 });
     expect(await covered()).toBeLessThan(0.6 * above);
     expect(errors).toEqual([]);

@@ -101,11 +101,13 @@ test('the surface is pulled, and the parameters follow', async ({ page }) => {
 
   await test.step('by keyboard', async () => {
     const pin = page.getByRole('slider', { name: 'Pin 2' });
-    const before = (await state(page)).parameters;
+    const before = await grip(page);
     await pin.focus();
     await page.keyboard.press('ArrowDown');
     await settled(page);
-    expect((await state(page)).parameters.a).toBeLessThan(before.a);
+    const after = await grip(page);
+    expect(after.holds).toBe(true);
+    expect(after.spots[1].x).toBeLessThan(before.spots[1].x - 3);
     await page.keyboard.press('Delete');
     await expect(page.getByRole('slider', { name: /^Pin/ })).toHaveCount(1);
     // What a slider changes the pins no longer lie on.

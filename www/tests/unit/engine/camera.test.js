@@ -4,6 +4,7 @@ import {
   ballOf,
   Camera,
   fitDistance,
+  outlineDistance,
   PITCH_LIMIT_RAD,
   projected,
   rayThrough,
@@ -284,6 +285,57 @@ describe('the camera', () => {
     expect(c.x).toBeCloseTo(400, 3);
     expect(outlinePx).toBeLessThan(300);
     expect(outlinePx).toBeGreaterThan(270);
+  });
+
+  describe('a fit by the outline', () => {
+    const free = { width: 800, height: 600 };
+    /** Discs along an axis through the origin. @param {(t: number) => number[]} place */
+    const along = (place, count = 41) => ({
+      positions: Array.from({ length: count }, (_, i) => place((2 * i) / (count - 1) - 1)).flat(),
+      radii: new Float32Array(count).fill(0.01),
+      count,
+    });
+    const ball = { centre: /** @type {[number, number, number]} */ ([0, 0, 0]), radius: 1.01 };
+
+    test('fills its share of the picture, whichever side is the shorter one for the surface', () => {
+      for (const [yaw, pitch] of [
+        [0, 0],
+        [0.62, 0.42],
+        [2, -1],
+      ]) {
+        // Nearly as wide as the ball, and far from as high.
+        const [s, c] = [Math.sin(yaw), Math.cos(yaw)];
+        const discs = along((t) => [-0.9 * t * s, 0.9 * t * c, 0]);
+        const distance = outlineDistance({ yaw, pitch }, ball, free, discs);
+        const view = viewOf({ ...state, yaw, pitch, target: [0, 0, 0], distance }, ...size, ball);
+        const xs = [0, 40].map((i) => project(view, discs.positions.slice(3 * i, 3 * i + 3)).x);
+        const share = Math.abs(xs[1] - xs[0]) / free.width;
+        expect(distance).toBeCloseTo(0.8 * fitDistance(ball.radius), 9);
+        expect(share).toBeLessThan(0.93);
+      }
+    });
+
+    test('is between the distance that shows the whole ball and 0.8 of it, and exact in between', () => {
+      const angles = { yaw: 0, pitch: 0 };
+      const whole = fitDistance(ball.radius);
+      for (const size of [0.2, 0.5, 0.85, 0.95, 1]) {
+        const discs = along((t) => [0, 0, size * t]);
+        const distance = outlineDistance(angles, ball, free, discs);
+        expect(distance).toBeGreaterThanOrEqual(0.8 * whole);
+        expect(distance).toBeLessThanOrEqual(whole);
+        const view = viewOf({ ...state, ...angles, target: [0, 0, 0], distance }, free.width, free.height, ball);
+        const [top, bottom] = [project(view, [0, 0, size + 0.01]).y, project(view, [0, 0, -size - 0.01]).y];
+        if (distance > 0.8 * whole && distance < whole) expect((bottom - top) / free.height).toBeCloseTo(0.93, 6);
+        expect(bottom - top).toBeLessThan(0.96 * free.height);
+      }
+    });
+
+    test('takes the discs alone that are shown', () => {
+      const discs = along((t) => [0, 0, t]);
+      const all = outlineDistance({ yaw: 0, pitch: 0 }, ball, free, discs);
+      const some = outlineDistance({ yaw: 0, pitch: 0 }, ball, free, discs, (i) => Math.abs(i - 20) < 10);
+      expect(some).toBeLessThan(all);
+    });
   });
 
   test('refuses to zoom to nothing, through the target or away for ever', () => {

@@ -29,7 +29,7 @@ const elaborate = () => ({
     marks: false,
     theme: 'dark',
     flow: true,
-    ghost: true,
+    body: false,
     box: true,
     axes: true,
     bar: true,

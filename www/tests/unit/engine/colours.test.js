@@ -9,7 +9,7 @@ import {
   packedFromOklab,
   rgbFromPacked,
 } from '../../../src/engine/view/oklab.js';
-import { COMPONENT_COLOURS, CYCLE, DIVERGING, PALETTES } from '../../../src/engine/view/palettes.js';
+import { COMPONENT_COLOURS, DIVERGING, PALETTES, RING } from '../../../src/engine/view/palettes.js';
 
 // Machado, Oliveira and Fernandes (2009), severity 1, on linear sRGB.
 const EYES = {
@@ -58,28 +58,41 @@ const themes = /** @type {const} */ (['light', 'dark']);
 describe.each(themes)('the palettes, %s', (theme) => {
   const palette = PALETTES[theme];
 
-  test('the level cycle has constant lightness', () => {
-    const lightness = [...palette.levels].map((c) => oklabFromPacked(c)[0]);
-    expect(palette.levels).toHaveLength(CYCLE);
-    expect(Math.max(...lightness) - Math.min(...lightness)).toBeLessThan(0.006);
+  test.each([8, 55, 400])('the levels up to %i go from blue to sand, in rings by lightness', (last) => {
+    const colours = palette.levels(last);
+    expect(colours).toHaveLength(last + 1);
+    const [, , seed] = oklabFromPacked(colours[0]);
+    const [, , end] = oklabFromPacked(colours[last]);
+    expect(seed).toBeLessThan(-0.05);
+    expect(end).toBeGreaterThan(0.03);
+    for (let level = RING; level + RING / 2 <= last; level += RING) {
+      const [trough, crest] = [level, level + RING / 2].map((k) => oklabFromPacked(colours[k])[0]);
+      expect(crest - trough, `level ${level}`).toBeGreaterThan(0.08);
+    }
   });
 
-  // A just noticeable difference in OKLab is about 0.02 for patches side by side. Tritanopia, one eye in 10,000, is
-  // near it.
-  test.each(
-    /** @type {const} */ ([
-      ['ordinary', 0.055],
-      ['protanopia', 0.037],
-      ['deuteranopia', 0.037],
-      ['tritanopia', 0.013],
-    ]),
-  )('neighbouring levels can be told apart with %s', (eye, least) => {
-    for (let k = 0; k < CYCLE; k += 1) {
-      expect(
-        apart(palette.levels[k], palette.levels[(k + 1) % CYCLE], EYES[eye]),
-        `levels ${k} and ${k + 1}`,
-      ).toBeGreaterThan(least);
-    }
+  // A just noticeable difference in OKLab is about 0.02 for patches side by side.
+  test.each(Object.entries(EYES))('the crest and the trough of a ring can be told apart with %s', (eye, matrix) => {
+    const colours = palette.levels(80);
+    for (let level = 0; level + RING / 2 <= 80; level += RING / 2)
+      expect(apart(colours[level], colours[level + RING / 2], matrix), `level ${level}, ${eye}`).toBeGreaterThan(0.08);
+  });
+
+  test('half of the way from the creases is farther from blue than half of that from a seed', () => {
+    const hue = (/** @type {number} */ packed) => {
+      const [, a, b] = oklabFromPacked(packed);
+      return (Math.atan2(b, a) * 180) / Math.PI;
+    };
+    expect(hue(palette.levels(16, true)[8])).toBeGreaterThan(0);
+    expect(Math.abs(hue(palette.levels(16)[8]))).toBeGreaterThan(130);
+    expect(palette.levels(16, true)[16]).toBe(palette.levels(16)[16]);
+  });
+
+  test('the body is darker than the discs on it, and greyer', () => {
+    const [L, a, b] = oklabFromPacked(palette.body);
+    for (const colour of [...palette.levels(80), palette.plain])
+      expect(oklabFromPacked(colour)[0]).toBeGreaterThan(L + 0.05);
+    expect(Math.hypot(a, b)).toBeLessThan(0.035);
   });
 
   test.each(Object.entries(EYES))('categories can be told apart with %s', (eye, matrix) => {
@@ -137,13 +150,13 @@ describe.each(themes)('the palettes, %s', (theme) => {
 
   test('every colour of the data stands out from the ground', () => {
     for (const colour of [
-      ...palette.levels,
+      ...palette.levels(80),
       palette.plain,
       palette.valence.five,
       palette.valence.seven,
       palette.fate.trouble,
     ]) {
-      expect(contrast(colour, palette.ground)).toBeGreaterThan(theme === 'light' ? 1.6 : 4);
+      expect(contrast(colour, palette.ground)).toBeGreaterThan(theme === 'light' ? 1.25 : 4);
     }
     // Twelve colours that are far apart, and two signs, take more of the range of lightness.
     for (const colour of [...palette.components, ...palette.diverging])
@@ -171,14 +184,20 @@ describe('colours of particles', () => {
   const fate = (/** @type {number[]} */ ...slots) => slots.reduce((sum, f, k) => sum | (f << (3 * k)), 0);
   columns.writeSlots(0, Uint32Array.of(fate(1, 2, 3, 3, 3, 3), fate(1, 5, 3, 3, 3, 3), fate(1, 5, 4, 3, 3, 3)));
 
-  test('by level go round the cycle', () => {
-    const { levels } = PALETTES.light;
-    expect([...coloursOf('level', 'light', columns, 0, 3)]).toEqual([levels[0], levels[1], levels[1]]);
+  test('by level are those of the table up to the last level, and so is the legend', () => {
+    const table = PALETTES.light.levels(13);
+    expect([...coloursOf('level', 'light', columns, 0, 3)]).toEqual([table[0], table[1], table[13]]);
     expect(legendOf('level', 'light', columns)).toMatchObject({
-      kind: 'cyclic',
+      kind: 'sequential',
       range: [0, 13],
       unit: 'rings around the seed',
+      colours: [...table].map(hexFromPacked),
     });
+  });
+
+  test('by level use the last colour for levels that are newer than the range', () => {
+    const table = PALETTES.dark.levels(1);
+    expect([...coloursOf('level', 'dark', columns, 0, 3, [0, 1])]).toEqual([table[0], table[1], table[1]]);
   });
 
   test('by fate show the worst of the six slots', () => {
