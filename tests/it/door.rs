@@ -221,9 +221,7 @@ fn a_gradient_that_is_not_that_of_the_values_is_told() {
         Ok(sample) => {
             sample.report().warnings.iter().any(|warning| matches!(warning, Warning::Gradient { .. }))
         }
-        Err(error) => {
-            error.to_string().contains("the gradient that the field gives is not that of its values")
-        }
+        Err(error) => error.to_string().contains("The gradient does not fit the values of f"),
     };
     assert!(is_told(&mut FnField::new(sphere).with_gradient(|p| -outward(p))));
     assert!(is_told(&mut FnField::new(sphere).with_gradient(|p| 3.0 * outward(p))));

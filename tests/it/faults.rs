@@ -201,12 +201,12 @@ fn a_surface_that_crosses_or_touches_itself_is_told() {
         (
             text("((x - 1)^2 + y^2 + z^2 - 1)((x + 1)^2 + y^2 + z^2 - 1)"),
             2.2,
-            Some("touches itself at 1 point,"),
+            Some("touches itself at 1 point."),
         ),
         (text("((x - 1)^2 + y^2 + z^2 - 1)((x - 0.3)^2 + y^2 + z^2 - 0.09)"), 2.2, Some("touches itself")),
-        (text("(z - 0.1)(z - 0.1 - x^2 - 2y^2)"), 1.0, Some("touches itself at 1 point,")),
+        (text("(z - 0.1)(z - 0.1 - x^2 - 2y^2)"), 1.0, Some("touches itself at 1 point.")),
         (gallery("roman"), 0.55, Some("crosses itself")),
-        (gallery("klein-bottle"), 6.0, Some("crosses itself along 1 curve,")),
+        (gallery("klein-bottle"), 6.0, Some("crosses itself along 1 curve.")),
         // The tip of a cone, a cusp along a line, a curve on which the gradient vanishes and the surface is smooth.
         (text("x^2 + y^2 = z^2"), 1.0, None),
         (text("x^4 + y^4 = z^4"), 1.0, None),

@@ -342,10 +342,7 @@ fn a_mesh_of_another_form_than_its_surface_is_told() {
     // A hole that is finer than the distance between centres is closed.
     let [closed] = said_of_mesh(fit_of("washer.obj", washer(0.05))).try_into().expect("one warning");
     let said = "The mesh has 1 component, Euler number 0 and area 8.8";
-    assert!(
-        closed.starts_with(said) && closed.contains("1 component, Euler number 2 and area 8."),
-        "{closed}"
-    );
+    assert!(closed.contains(said) && closed.contains("1 component, Euler number 2 and area 8."), "{closed}");
     assert!(
         closed.contains("The farthest point of the file is near (") && !closed.contains("open"),
         "{closed}"
@@ -355,7 +352,7 @@ fn a_mesh_of_another_form_than_its_surface_is_told() {
     let open: Vec<&str> = faces.lines().filter(|line| *line != "f 98 99 147 146").collect();
     let [open] = said_of_mesh(fit_of("open.obj", open.join("\n"))).try_into().expect("one warning");
     assert!(
-        open.contains("Euler number -1") && open.ends_with("beyond its borders the surface goes on."),
+        open.contains("Euler number -1") && open.ends_with("the surface continues beyond its borders."),
         "{open}"
     );
 }

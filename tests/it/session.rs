@@ -242,7 +242,7 @@ fn a_count_that_cannot_be_met_gives_a_warning() {
         let is_said = report
             .warnings
             .iter()
-            .any(|warning| warning.to_string().contains(&format!("not the {count} wanted")));
+            .any(|warning| warning.to_string().contains(&format!("instead of {count}.")));
         assert_eq!(
             is_said,
             miss > 0.03,

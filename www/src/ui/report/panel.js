@@ -44,16 +44,11 @@ export function mountReport(body, engine, description, title) {
 
   const told = computed(() => report.value?.warnings ?? []);
   // What a folded report says.
-  const line = h('span', { class: 'quiet now' }, () =>
-    report.value
-      ? [
-          plural(counted.value || report.value.count, 'particle'),
-          told.value.length && plural(told.value.length, 'warning'),
-        ]
-          .filter(Boolean)
-          .join(' · ')
-      : '',
-  );
+  const line = h('span', { class: 'quiet now' }, () => {
+    if (!report.value) return '';
+    const particles = plural(counted.value || report.value.count, 'particle');
+    return told.value.length > 0 ? `${particles}\n${plural(told.value.length, 'warning')}` : particles;
+  });
   title.after(line);
   const warnings = h('ul', { class: 'section warnings', hidden: () => told.value.length === 0 }, () =>
     told.value.map((text) => createWarning(withCounts(text))),
