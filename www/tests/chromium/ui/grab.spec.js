@@ -258,7 +258,7 @@ test('particles that have followed stay, if they are to', async ({ page }) => {
   await drag(page, right, { x: right.x + 16, y: right.y });
   await page.keyboard.up('Shift');
   const told = async () => (await report(page))?.warnings.join();
-  await expect.poll(told).toContain('followed the surface while it moved');
+  await expect.poll(told).toContain('have moved with the surface');
   await settled(page);
   expect((await report(page)).count).toBeGreaterThan(1000);
   // What a run has made is in order again, and its link makes it again.
