@@ -1,28 +1,53 @@
 /**
  * Sets the times at which the generation levels of a new surface appear. A fast sampler would finish before its front
- * can be seen, so the levels appear one after another within about a second. A slow run is shown as it progresses.
+ * can be seen, so the levels appear one after another. A slow run is shown as it progresses.
  *
  * @module
  */
 
 /** Time between two levels: a surface of 90 levels, usual at the paper's radius, appears in 1.1 s. */
 const STEP_S = 1.1 / 90;
+/** The same on a first visit: the 55 levels of the first surface appear in 2.6 s. */
+const OPENING_STEP_S = 2.6 / 55;
+/** Levels that a frame may add, and the longest time that a reveal waits for frames that take longer. */
+const LEVELS_A_FRAME = 2;
+const MOST_WAIT_S = 2;
 
 export class Reveal {
   #startS;
+  #stepS;
+
+  /** Time that it has waited for frames. */
+  #waitedS;
 
   constructor() {
     this.active = false;
     this.#startS = 0;
+    this.#stepS = STEP_S;
+    this.#waitedS = 0;
     /** Time in seconds at which each level appears. @type {number[]} */
     this.births = [];
   }
 
-  /** @param {number} nowS */
-  begin(nowS) {
+  /** @param {number} nowS @param {boolean} [isOpening]  whether it is the first surface of a visit */
+  begin(nowS, isOpening = false) {
     this.active = true;
     this.#startS = nowS;
+    this.#stepS = isOpening ? OPENING_STEP_S : STEP_S;
+    this.#waitedS = 0;
     this.births = [];
+  }
+
+  /**
+   * Returns the time for which the reveal waits, so that a frame adds few levels.
+   * @param {number} passedS  since the last frame
+   */
+  wait(passedS) {
+    if (!this.active) return 0;
+    const late = Math.max(0, passedS - LEVELS_A_FRAME * this.#stepS);
+    const wait = Math.min(late, MOST_WAIT_S - this.#waitedS);
+    this.#waitedS += wait;
+    return wait;
   }
 
   end() {
@@ -37,7 +62,7 @@ export class Reveal {
   birthOf(level, nowS) {
     if (!this.active) return -Infinity;
     for (let k = this.births.length; k <= level; k += 1) {
-      const after = k === 0 ? nowS : this.births[k - 1] + STEP_S;
+      const after = k === 0 ? nowS : this.births[k - 1] + this.#stepS;
       this.births.push(Math.max(after, nowS));
     }
     return this.births[level];

@@ -51,6 +51,10 @@ export class Viewer {
 
   /** Whether the system requests reduced motion. */
   #calm;
+
+  /** Time by which the picture is behind the clock, since reveals wait for frames; and the time of the last frame. */
+  #lagS;
+  #lastS;
   #sight;
 
   /** Distance from which the last fit would have shown the whole ball. */
@@ -68,6 +72,8 @@ export class Viewer {
     this.look = firstLook(look);
     this.#scene = new Scene();
     this.reveal = new Reveal();
+    this.#lagS = 0;
+    this.#lastS = 0;
     /** Whether the next surface that grows is first seen from the side of its seed. */
     this.opening = false;
     /** Whether the front is still placing particles. A reveal does not end before the front. */
@@ -122,7 +128,8 @@ export class Viewer {
     // A surface of another size could otherwise grow around the camera or far from it.
     if (fit) this.fit(true);
     if (grow && this.look.level === null && !this.#calm.matches && !document.hidden) {
-      this.reveal.begin(nowS());
+      this.#lastS = nowS();
+      this.reveal.begin(this.#now(), this.opening);
       this.#events.onReveal({ level: 0, levels: 0, particles: 0 });
     } else {
       this.#endReveal();
@@ -175,7 +182,7 @@ export class Viewer {
 
   /** @param {boolean} on */
   dim(on) {
-    if (this.dimmer.set(on, nowS(), this.#calm.matches)) this.#restyle();
+    if (this.dimmer.set(on, this.#now(), this.#calm.matches)) this.#restyle();
   }
 
   /** @param {Partial<Look>} patch */
@@ -386,10 +393,18 @@ export class Viewer {
     if (!isStandIn) this.#events.onDevice(device);
   }
 
-  /** @param {number} nowS @param {number} dtS @returns {FrameResult} */
-  #frame(nowS, dtS) {
+  /** The time of the picture, in seconds. */
+  #now() {
+    return nowS() - this.#lagS;
+  }
+
+  /** @param {number} clockS @param {number} dtS @returns {FrameResult} */
+  #frame(clockS, dtS) {
     const { device } = this.keeper;
     if (!device) return 'none';
+    this.#lagS += this.reveal.wait(clockS - this.#lastS);
+    this.#lastS = clockS;
+    const nowS = clockS - this.#lagS;
     const before = this.camera.state;
     const moving = this.camera.step(dtS);
     if (this.camera.state !== before) this.#events.onCamera(this.camera.state);
@@ -504,7 +519,7 @@ export class Viewer {
     const { device } = this.keeper;
     if (!device) throw new Error('There is no picture yet.');
     const { renderer } = device;
-    const now = nowS();
+    const now = this.#now();
     // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
     this.#tell(device, now);

@@ -391,4 +391,18 @@ describe('motion', () => {
     expect(reveal.levelAt(99)).toBe(-1);
     expect(reveal.endS()).toBe(500);
   });
+
+  test('the first surface of a visit grows for two to three seconds, and waits for slow frames, but not for ever', () => {
+    const reveal = new Reveal();
+    expect(reveal.wait(1)).toBe(0);
+    reveal.begin(100, true);
+    const step = reveal.birthOf(1, 100) - 100;
+    expect(reveal.birthOf(55, 100) - 100).toBeGreaterThan(2.5);
+    expect(reveal.birthOf(55, 100) - 100).toBeLessThan(3);
+    expect(reveal.wait(1 / 60)).toBe(0);
+    expect(reveal.wait(0.5)).toBeCloseTo(0.5 - 2 * step, 9);
+    let waited = 0;
+    for (let k = 0; k < 100; k += 1) waited += reveal.wait(0.5);
+    expect(waited).toBeLessThan(2);
+  });
 });
