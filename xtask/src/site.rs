@@ -18,7 +18,7 @@ use crate::project::Project;
 ///
 /// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a commit of its own, which
 /// says why; no code is contorted to stay under one.
-const FIRST_PAINT_BUDGET_KB: f64 = 83.0;
+const FIRST_PAINT_BUDGET_KB: f64 = 86.0;
 
 /// The largest gzip size, in kB, of what the lesson's page shows before any WebAssembly; its figures come to life after that.
 const LESSON_PAGE_BUDGET_KB: f64 = 61.0;
@@ -27,9 +27,9 @@ const LESSON_PAGE_BUDGET_KB: f64 = 61.0;
 /// holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        Bundle::Core => 656.0,
-        Bundle::Points => 139.0,
-        Bundle::Lesson => 173.0,
+        Bundle::Core => 726.0,
+        Bundle::Points => 153.0,
+        Bundle::Lesson => 198.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
     }
