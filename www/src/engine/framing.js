@@ -91,23 +91,33 @@ export class Framing {
   #come() {
     if (!this.#rests() || this.#waits()) return;
     this.#isWritten = false;
-    if (this.#isTyped) this.#turn();
+    // Beside a mistake stands the surface before, as it was seen.
+    if (this.#isTyped && this.#store.fieldError.value === null) this.#turn();
     this.#fit();
   }
 
   /** Shows a typed surface from where its outline is largest, unless the hand has turned the camera. */
   #turn() {
     const { camera } = this.#viewer;
-    if (!camera.state.fit || this.#columns.count === 0 || Math.abs(camera.end.yaw - this.#yaw) > 1e-3) return;
+    if (!camera.state.fit || this.#columns.count === 0 || this.#isTurned()) return;
     this.#viewer.turnWide();
     this.#yaw = camera.end.yaw;
   }
 
+  /** Whether the hand has turned the camera since the page did. */
+  #isTurned() {
+    return Math.abs(this.#viewer.camera.end.yaw - this.#yaw) > 1e-3;
+  }
+
   /** Goes back to where the camera was, turned as the hand has turned it since. @param {CameraState} before */
-  #back({ target, distance }) {
+  #back({ target, distance, yaw }) {
     const { camera } = this.#viewer;
     if (!camera.state.fit) return;
-    camera.set({ ...camera.state, target, distance });
+    if (this.#isTurned()) camera.set({ ...camera.state, target, distance });
+    else {
+      camera.set({ ...camera.state, target, distance, yaw });
+      this.#yaw = yaw;
+    }
     this.#viewer.moved();
   }
 

@@ -27,8 +27,8 @@ export function spawnSampler() {
 }
 
 /**
- * Asks for the core, and resolves once it has loaded or could not be loaded. The renderer comes after it, since the two do
- * not share the connection: the first picture needs the core alone.
+ * Asks for the core, and resolves once it has loaded or could not be loaded. The renderer comes after it: the first
+ * picture needs the core alone.
  */
 export async function fetchCore() {
   core ??= loadModule(coreUrl);
