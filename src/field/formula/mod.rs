@@ -17,9 +17,9 @@
 //! `if(c, a, b)` and `c ? a : b` choose by a condition: comparisons by `<`, `<=`, `>`, `>=`, joined
 //! by `and`, `or` and `not` (`&&`, `||`, `!`). `a % b` is `mod(a, b)`, with the sign of b.
 //!
-//! [Definitions](statements) come before the surface, each ended by a `;` or its line: `r =
-//! hypot(x, y); (r - 1)^2 + z^2 =
-//! 0.1`, `f(a, b) = a^2 + b^2; f(x, y) = z`. Comments are `// …`, `# …`, `/* … */` and `(* … *)`.
+//! Definitions come before the surface, each ended by a `;` or its line:
+//! `r = hypot(x, y); (r - 1)^2 + z^2 = 0.1`, `f(a, b) = a^2 + b^2; f(x, y) = z`. Comments are
+//! `// …`, `# …`, `/* … */` and `(* … *)`.
 //!
 //! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a
 //! function without brackets where there is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x
