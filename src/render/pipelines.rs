@@ -24,7 +24,7 @@ const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 pub(super) enum Kind {
     /// The body beneath discs, with depth writes.
     Bed,
-    /// The same, of particles that are still to come.
+    /// The body of particles that a later level will place, with depth writes.
     BedToCome,
     /// The body into the nearest-surface texture: depth and normal of what is nearest at each
     /// pixel.

@@ -118,9 +118,9 @@ impl<'a> Probe<'a> {
     /// Whether f changes its sign near the zero to which Newton's method leads from a point: a
     /// surface that is small beside `size` looks like a point or a curve.
     fn changes_sign_near(&mut self, mut point: DVec3, size: f64) -> bool {
-        /// Number of Newton steps, and of distances that are tried. Each step halves the distance
-        /// to a double zero, and each distance is half of the one before: 40 of them reach from
-        /// `size` down to rounding.
+        /// Number of Newton steps, and of distances tried. At a double zero a Newton step halves
+        /// the distance, and each distance tried is half of the one before, so that both come
+        /// from `size` down to 2⁻⁴⁰ of it.
         const STEPS: usize = 40;
         for _ in 0..STEPS {
             let (value, gradient) = self.field.value_and_gradient(point);

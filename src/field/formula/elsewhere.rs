@@ -42,8 +42,8 @@ pub(super) enum Called {
     AngleOf,
 }
 
-/// What a call of `name`, with a bracket of this kind, stands for. Without brackets, most of these
-/// names may be those of parameters.
+/// Returns the meaning of a call of `name` with this opening bracket, as other programs write it.
+/// Without a bracket most of these names may be parameters.
 pub(super) fn called(name: &str, bracket: char) -> Option<Called> {
     // Mathematica writes `Sin[x]`.
     if bracket == '[' {
@@ -148,7 +148,7 @@ pub(super) fn is_vector(name: &str) -> bool {
     matches!(name, "vec2" | "vec3" | "vec4" | "float2" | "float3" | "float4" | "Vector" | "Vector3" | "array")
 }
 
-/// What is said where a vector stands.
+/// The error message for a formula that contains a vector.
 pub(super) const NO_VECTORS: &str =
     "There are no vectors: write coordinates, such as `hypot(x, z)` for the length of (x, z)";
 

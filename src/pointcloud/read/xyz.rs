@@ -14,7 +14,8 @@ use glam::DVec3;
 const ALIKE: Range<f64> = 0.9..1.1;
 
 /// Share of the rows with such a vector from which on three columns are normals: a normal is
-/// missing or zero here and there. With half of it twelve random clouds are read the same.
+/// missing or zero here and there. Larger: fewer such gaps are tolerated. Smaller: columns of
+/// another meaning are more easily taken for normals.
 const ALIKE_SHARE: f64 = 0.9;
 
 /// Number of points up to which no more is asked of normals than their length. More do not all face
