@@ -181,7 +181,7 @@ function tellPush(event, radius) {
         ? `The child of slot ${event.slot} is pushed along the circle. It still overlaps another by ${formatFixed(100 * event.overlap, 1)} %.`
         : `The child of slot ${event.slot} is pushed along the circle. It overlaps none any more.`;
     case 'room': {
-      const angles = `The child of slot ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free.`;
+      const angles = `The child of slot ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free, ${formatFixed((100 * event.tau_rad) / event.phi_rad, 0)} % of that.`;
       return event.fits ? `${angles} There is room.` : `${angles} There is no room: this space is done.`;
     }
   }

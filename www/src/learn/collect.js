@@ -9,7 +9,7 @@ import { download } from '../ui/share.js';
 import { loadSheet } from '../ui/sheet.js';
 import sheet from './collect.css?url';
 import { PREDICTIONS } from './predictions.js';
-import { COUNT_WORDS, ROWS } from './score.js';
+import { ROWS } from './score.js';
 import { readWork, tableOfAll } from './task.js';
 
 /** @import { Guessed, Work } from './types.js' */
@@ -213,5 +213,5 @@ function runTable(works) {
       ),
     ),
   );
-  return [scrolled('What their runs give', table), h('p', { class: 'quiet' }, COUNT_WORDS)];
+  return scrolled('What their runs give', table);
 }

@@ -147,6 +147,8 @@ export interface Drawn {
   ends?: string[];
   /** values of a dashed line, from the first place on */
   guide?: readonly number[];
+  /** where the scale begins, if not at 0 */
+  floor?: number;
   /** where the ideal is, as a share of the width */
   ideal?: number;
 }

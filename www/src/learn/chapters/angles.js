@@ -90,7 +90,7 @@ export async function angles() {
       const placed = events.value.filter((event) => event.type === 'fate' && event.fate === 'added').length;
       return facts([
         ['360° / φ', formatFixed((2 * Math.PI) / takenAngle(own.value, other.value), 2)],
-        ['Placed, with the first one', formatCount(placed + 1)],
+        ['Placed, where half of φ is enough', formatCount(placed + 1)],
       ]);
     }),
   );
