@@ -106,15 +106,14 @@ export function createBench(host, lab, { setup: first = setupOf(COMMON[0].id), l
     setup: () => setup,
     /** Fulfilled once what is shown is measured. */
     settled: () => shown,
-    /** The runs that are shown and those that are kept, each with its name, once they are measured. */
+    /** The runs that are shown and those that are kept, each once and with its name, once they are measured. */
     runs() {
       const { runs, scores } = pair;
-      const sides = (runs ?? []).map((run, k) => ({
-        label: [setup.left, setup.right][k],
-        run,
-        score: scores?.[k],
-      }));
-      return [...sides, ...((whatIfOf(setup.what).knobs && fail?.runs()) || [])];
+      const whatIf = whatIfOf(setup.what);
+      const names = sidesOf(whatIf, [setup.left, setup.right]);
+      const sides = (runs ?? []).map((run, k) => ({ label: names[k].label, run, score: scores?.[k] }));
+      const all = [...((whatIf.knobs && fail?.runs()) || []), ...sides];
+      return all.filter(({ run }, k) => all.findIndex((one) => one.run === run) === k);
     },
   };
 }

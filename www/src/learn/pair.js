@@ -46,7 +46,11 @@ function legendOf(colouring, [least, most]) {
     case 'radius':
       return createScale('Radius', formatSignificant(least, 2), formatSignificant(most, 2));
     default:
-      return h('p', { class: 'scale' }, 'Blue where the front began, sand where it ended, with a lighter ring every eighth level.');
+      return h(
+        'p',
+        { class: 'scale' },
+        'Blue where the front began, sand where it ended, with a lighter ring every eighth level.',
+      );
   }
 }
 

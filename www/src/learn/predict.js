@@ -5,6 +5,7 @@
 
 import { button } from '../ui/button.js';
 import { fill, h, uniqueId } from '../ui/dom.js';
+import { formatCount } from '../ui/format.js';
 import { reasonOf, whenNear } from './figure.js';
 import { HEAD_PX } from './stops.js';
 
@@ -159,8 +160,7 @@ function inputOf(prediction, question, picked) {
       set(/** @type {unknown} */ guess) {
         if (typeof guess === 'number') box.valueAsNumber = guess;
       },
-      // The answer begins with the number.
-      nameOf: () => '',
+      nameOf: (/** @type {string | number} */ right) => `It is ${formatCount(Number(right))}`,
       lock: () => {
         box.disabled = true;
       },
