@@ -48,19 +48,22 @@ export function createScorecard(show) {
         // What a sampling costs is marked only where that is what decides.
         const isJudged = isMarked && (row.ideal !== null || row.key === decides);
         const best = isJudged ? bestOf(values, row, isOneDisc) : -1;
-        return h(
-          'tr',
-          { class: row.key === decides ? 'decides' : null },
+        const kind = row.key === decides ? 'decides' : null;
+        return [
           h(
-            'th',
-            { scope: 'row' },
-            row.name,
-            row.key === decides ? h('span', { class: 'visually-hidden' }, ', which decides here') : null,
-            h('small', { class: 'means' }, row.means),
+            'tr',
+            { class: kind },
+            h(
+              'th',
+              { scope: 'row' },
+              row.name,
+              kind ? h('span', { class: 'visually-hidden' }, ', which decides here') : null,
+            ),
+            h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
+            scores.map((_, side) => cellOf(scores, row, side, side === best)),
           ),
-          h('td', { class: 'ideal' }, row.ideal === null ? MISSING : row.write(row.ideal)),
-          scores.map((_, side) => cellOf(scores, row, side, side === best)),
-        );
+          h('tr', { class: 'means' }, h('td', { colspan: 2 + names.length }, row.means)),
+        ];
       });
       const heads = ['Ideal', ...names].map((name) => h('th', { scope: 'col' }, name));
       fill(
