@@ -148,7 +148,7 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   const number = page.locator('#first').getByRole('slider', { name: 'Match tolerance' });
   await expect(number).toHaveText('0.70');
   const count = async () =>
-    Number(/of ([\d,]+)/.exec(await first.locator('.choices').innerText())?.[1].replace(',', ''));
+    Number(/run of ([\d,]+)/.exec(await first.getByText(/^A run of/).innerText())?.[1].replace(',', ''));
   const usual = await count();
   const box = await number.boundingBox();
   if (!box) throw new Error('the number has no box');
@@ -163,6 +163,43 @@ test('the match tolerance is dragged in its sentence, and the figure follows', a
   await expect.poll(count, { timeout: 30_000 }).toBeLessThan(0.9 * usual);
   for (let k = 0; k < 5; k += 1) await number.press('ArrowLeft');
   await expect.poll(count, { timeout: 30_000 }).toBe(usual);
+  clean();
+});
+
+test('a particle is followed by events, particles and levels, with its plane, its line and a slot from the side', async ({
+  page,
+}) => {
+  const { clean } = await openLesson(page, { hash: '#first' });
+  const first = await live(page, 'first');
+  const [name, told] = [first.getByText(/^Particle \d+ on level/), first.locator('.told')];
+  const [on, back] = ['Step forward', 'Step back'].map((label) => first.getByRole('button', { name: label }));
+  await expect(told).toContainText('its nearest');
+  await expect(first.locator('.algorithm [aria-current]')).toHaveText(/^For each child: find the nearest/);
+  await expect(first.locator('.profile')).toHaveCount(1);
+  await expect(first.locator('.facts')).toContainText('The circle lands at2.000');
+  const own = Number(/\d+/.exec((await name.textContent()) ?? '')?.[0]);
+  // Event by event the steps go on to the next particle, and back to the last event of the one before.
+  await first.getByRole('slider', { name: 'Event' }).press('End');
+  await expect(told).toContainText('The particle is done');
+  await on.click();
+  await expect(name).toContainText(`Particle ${own + 1} `);
+  await back.click();
+  await expect(name).toContainText(`Particle ${own} `);
+  await expect(told).toContainText('The particle is done');
+  await first.getByLabel('One step is').selectOption('particle');
+  await on.focus();
+  await page.keyboard.press('Enter');
+  await expect(name).toContainText(`Particle ${own + 1} `);
+  // The button keeps the focus, so that the keys go on.
+  await page.keyboard.press('Enter');
+  await expect(name).toContainText(`Particle ${own + 2} `);
+  const level = async () => Number(/level (\d+)/.exec((await name.textContent()) ?? '')?.[1]);
+  const before = await level();
+  await first.getByLabel('One step is').selectOption('level');
+  await on.click();
+  await expect.poll(level).toBe(before + 1);
+  await back.click();
+  await expect.poll(level).toBe(before);
   clean();
 });
 
