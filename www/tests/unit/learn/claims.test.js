@@ -160,7 +160,7 @@ test('what the text states of rings, tolerance and rest is so in the run', async
   const rings = ringsOf(run.placed);
   expect(rings[12]).toBeLessThan(72);
   expect(rings[rings.length - 1]).toBeLessThan(Math.max(...rings));
-  says('Here it is <span data-number="tolerance" title="Match tolerance">0.7</span> · 2<i>r</i>;');
+  says('Here it is <span data-number="tolerance" title="Match tolerance">0.7</span> · 2<i>r</i>.');
   expect((await lab.run({ match_tolerance: 0.7 })).end.positions).toEqual(run.end.positions);
   says('No two particles are then nearer than the tolerance.');
   expect(Math.min(...nearestDistances(run.placed))).toBeGreaterThanOrEqual(0.7 - 1e-4);
@@ -504,7 +504,7 @@ test('the figure of the circle has the child where the run landed it, and bends 
 });
 
 test('the drawing of φ and τ decides as the run does in a plane', async () => {
-  says('with equal radii six fit exactly');
+  says('With equal radii six fit exactly.');
   const bounds = { min: [-1, -1, -0.5], max: [1, 1, 0.5] };
   const plane = lab.beside(/** @type {any} */ ({ formula: 'z', parameters: [], bounds }));
   const radius = 0.1;
