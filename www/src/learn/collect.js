@@ -1,5 +1,6 @@
 /**
- * Collect: a lecturer drops the files that learners saved, and sees how often each answer was guessed, with the right one marked.
+ * Collect: a lecturer drops the files that learners saved, and sees how often each answer was guessed, with the right
+ * one marked.
  * The files are read in this page and go nowhere.
  */
 import { button } from '../ui/button.js';

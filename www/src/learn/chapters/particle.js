@@ -1,15 +1,19 @@
 /** The chapter on who was first: one particle by events, particles or levels, and the fates of all children. */
 import { computed, signal } from '@preact/signals-core';
+import { nearest } from '../../engine/vector.js';
 import { algorithmList } from '../../figures/algorithm.js';
-import { asideWords, isSearched, profileOf, tangentPlane } from '../../figures/drawings.js';
+import { asideWords, isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { momentAt } from '../../figures/moment.js';
 import { openParticle } from '../../figures/particle.js';
 import { fateShape } from '../../figures/svg.js';
-import { FATES, inRadii, lineOf, tell } from '../../figures/words.js';
+import { FATES, inRadii, lineOf, tell, transcript } from '../../figures/words.js';
 import { button } from '../../ui/button.js';
 import { fill, h, queryAll, s } from '../../ui/dom.js';
 import { formatCount, MISSING, plural } from '../../ui/format.js';
+import { download } from '../../ui/share.js';
 import { loadSheet } from '../../ui/sheet.js';
+import { unpackParticle } from '../../ui/surface-link.js';
+import { readAddress } from '../address.js';
 import { createTolerance } from '../drag.js';
 import { reasonOf } from '../figure.js';
 import { latest } from '../latest.js';
@@ -19,7 +23,7 @@ import sheet from '../plane.css?url';
 /**
  * @import { Signal } from '../../engine/types.js'
  * @import { Moment, Opened } from '../../figures/types.js'
- * @import { Context, LabRun } from '../types.js'
+ * @import { Context, Lab, LabRun } from '../types.js'
  */
 
 /** @typedef {'event' | 'particle' | 'level'} Grain */
@@ -54,8 +58,8 @@ const GRAINS = [
  * Views of a particle at one of its events: its tangent plane, the event in words, the line of the algorithm, and the
  * slot from the side with both landings.
  * @param {Opened} opened
- * @param {{ at: number, grain: Signal<Grain>, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first; `go`
- *   leads to another particle
+ * @param {{ at: number, grain: Signal<Grain>, go: (by: 1 | -1) => void }} how  `at`: the event that is shown first;
+ *   `go` leads to another particle
  */
 function viewsOf(opened, { at, grain, go }) {
   const { events, subject } = opened;
@@ -106,6 +110,11 @@ function viewsOf(opened, { at, grain, go }) {
           what.element,
           range.element,
         ),
+        h(
+          'div',
+          { class: 'controls' },
+          button({ class: 'plain', press: () => saveTranscript(opened) }, 'Save transcript'),
+        ),
         h('div', { class: 'particle-lines' }, () => algorithmList(lineOf(moment.value.event))),
       ),
     ),
@@ -116,7 +125,18 @@ function viewsOf(opened, { at, grain, go }) {
   ];
 }
 
-/** The plane of the slot that an event is about; null if it holds the parent. @param {Opened} opened @param {Moment} moment */
+/** Saves all events of a particle in words. @param {Opened} opened */
+function saveTranscript({ events, subject }) {
+  const head = [`Particle ${subject.particle}, level ${subject.level}`, `Algorithm 2, r = ${subject.radius}`];
+  const moments = events.map((_, at) => momentAt(events, at));
+  const blob = new Blob([transcript(moments, subject, head)], { type: 'text/plain;charset=utf-8' });
+  download(blob, `particle-${subject.particle}.txt`);
+}
+
+/**
+ * The plane of the slot that an event is about; null if it holds the parent.
+ * @param {Opened} opened @param {Moment} moment
+ */
 const profileAt = ({ profiles }, { slot }) =>
   profiles[slot ?? profiles.findIndex((profile) => profile !== null)] ?? null;
 
@@ -127,6 +147,7 @@ function sideOf(opened, moment) {
   const slot = opened.profiles.indexOf(profile);
   const child = moment.children[slot];
   const { radius } = opened.subject;
+  const enlarged = lens(opened, profile, child);
   const newton = profile.newtonDistance === null ? 'no landing' : inRadii(profile.newtonDistance, radius, 3);
   return [
     h('div', { class: 'drawing-box' }, profileOf(opened, profile, child)),
@@ -139,6 +160,7 @@ function sideOf(opened, moment) {
         ['Newton’s method would', isSearched(child) ? newton + asideWords(profile) : MISSING],
         ['Evaluations of f so far', formatCount(moment.evaluations)],
       ]),
+      enlarged && h('div', { class: 'lens-box' }, enlarged, h('p', { class: 'quiet' }, 'The search, enlarged')),
     ),
   ];
 }
@@ -168,18 +190,35 @@ function fateChart(run, hidden) {
   });
 }
 
+/**
+ * The run whose particles are shown, and the first of them as a share of all: the one that the address names, in a run
+ * with its radius from the same seeds, else one in the middle of a coarse run.
+ * @param {Lab} own
+ */
+async function asked(own) {
+  const wanted = unpackParticle(readAddress(location.hash).parts.particle ?? '');
+  const coarse = await own.coarse();
+  if (!wanted) return { usual: coarse, first: 0.5 };
+  const { place, radius, seeds } = wanted;
+  // With particles this small there may be too many of them to be followed.
+  const usual = await own.run({ relax_steps: 0, radius, seeds }, { keep: true }).catch(() => coarse);
+  const { positions, radii } = usual.placed;
+  const found = nearest(positions, radii.length, place);
+  return { usual, first: ((found?.index ?? 0) + 0.5) / radii.length };
+}
+
 /** A particle amid the front, and the fates of all children. @param {Context} context */
 export async function whoWasFirst({ lab, stops }) {
   await loadSheet(sheet);
   const own = await lab;
-  const usual = await own.coarse();
+  const { usual, first } = await asked(own);
   const run = signal(usual);
   const tolerance = signal(USUAL_TOLERANCE);
   const place = h('div', { class: 'particle' });
   const runAt = async (/** @type {number} */ to) =>
     to === USUAL_TOLERANCE ? usual : own.run({ ...usual.settings, match_tolerance: to }, { keep: true });
   /** The particle that is shown, as a share of all. */
-  let share = 0.5;
+  let share = first;
   /** @type {Signal<Grain>} */
   const grain = signal('event');
   const status = h('p', { class: 'figure-status', role: 'status' });
