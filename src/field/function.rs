@@ -1,6 +1,6 @@
 //! Fields given by functions of the program.
 
-use super::{Field, Jet, difference_step, jet_by_differences};
+use super::{Field, Jet, MaybeSend, MaybeSync, difference_step, jet_by_differences};
 use crate::math::Sym3;
 use glam::DVec3;
 
@@ -34,28 +34,34 @@ const SECOND: f64 = 20.0;
 pub struct FnField<F, G = fn(DVec3) -> DVec3> {
     value: F,
     gradient: Option<G>,
-    origin: DVec3,
 }
 
-impl<F: FnMut(DVec3) -> f64 + Send> FnField<F> {
+impl<F: Fn(DVec3) -> f64> FnField<F> {
     /// The field with the function `value`.
     pub fn new(value: F) -> Self {
-        Self { value, gradient: None, origin: DVec3::ZERO }
+        Self { value, gradient: None }
     }
 }
 
 impl<F, G> FnField<F, G> {
     /// Returns the field with `gradient` as its gradient function.
-    pub fn with_gradient<H: FnMut(DVec3) -> DVec3 + Send>(self, gradient: H) -> FnField<F, H> {
-        FnField { value: self.value, gradient: Some(gradient), origin: self.origin }
+    pub fn with_gradient<H: Fn(DVec3) -> DVec3>(self, gradient: H) -> FnField<F, H> {
+        FnField { value: self.value, gradient: Some(gradient) }
     }
 }
 
-impl<F: FnMut(DVec3) -> f64 + Send, G: FnMut(DVec3) -> DVec3 + Send> Field for FnField<F, G> {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        let p = self.origin + p;
+impl<F, G> Field for FnField<F, G>
+where
+    F: Fn(DVec3) -> f64 + MaybeSend + MaybeSync,
+    G: Fn(DVec3) -> DVec3 + MaybeSend + MaybeSync,
+{
+    fn value(&self, p: DVec3) -> f64 {
+        (self.value)(p)
+    }
+
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         let value = (self.value)(p);
-        if let Some(gradient) = &mut self.gradient {
+        if let Some(gradient) = &self.gradient {
             return (value, gradient(p));
         }
         let h = difference_step(p);
@@ -63,40 +69,26 @@ impl<F: FnMut(DVec3) -> f64 + Send, G: FnMut(DVec3) -> DVec3 + Send> Field for F
         (value, DVec3::from_array(DVec3::AXES.map(along)))
     }
 
-    fn jet(&mut self, p: DVec3) -> Jet {
+    fn jet(&self, p: DVec3) -> Jet {
         if self.gradient.is_some() {
             return jet_by_differences(self, p);
         }
         let (value, gradient) = self.value_and_gradient(p);
-        let p = self.origin + p;
         let h = SECOND * difference_step(p);
-        let mut at = |d: DVec3| (self.value)(p + h * d);
+        let at = |d: DVec3| (self.value)(p + h * d);
         let [x, y, z] = DVec3::AXES;
-        let mut pure = |axis: DVec3| (at(axis) - 2.0 * value + at(-axis)) / (h * h);
+        let pure = |axis: DVec3| (at(axis) - 2.0 * value + at(-axis)) / (h * h);
         let [xx, yy, zz] = [pure(x), pure(y), pure(z)];
-        let mut mixed = |a: DVec3, b: DVec3| (at(a + b) - at(a - b) - at(b - a) + at(-a - b)) / (4.0 * h * h);
+        let mixed = |a: DVec3, b: DVec3| (at(a + b) - at(a - b) - at(b - a) + at(-a - b)) / (4.0 * h * h);
         let [xy, xz, yz] = [mixed(x, y), mixed(x, z), mixed(y, z)];
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
-    }
-
-    fn values(&mut self, points: &[glam::Vec3], value: &mut [f32]) {
-        for (p, value) in points.iter().zip(value) {
-            *value = (self.value)(self.origin + p.as_dvec3()) as f32;
-        }
-    }
-
-    fn origin(&self) -> DVec3 {
-        self.origin
-    }
-
-    fn set_origin(&mut self, origin: DVec3) {
-        self.origin = origin;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Frame;
 
     /// f = x² y + sin z, with all derivatives known.
     fn value(p: DVec3) -> f64 {
@@ -121,12 +113,10 @@ mod tests {
     fn derivatives_by_differences_are_near_the_known_ones_around_any_origin() {
         for origin in [DVec3::ZERO, DVec3::new(3.0, -2.0, 1.0)] {
             for p in [DVec3::new(0.3, -0.7, 0.4), DVec3::new(-1.2, 0.1, 2.0)] {
-                let mut plain = FnField::new(value);
-                plain.set_origin(origin);
-                assert_is_near(&plain.jet(p - origin), p);
-                let mut given = FnField::new(value).with_gradient(gradient);
-                given.set_origin(origin);
-                assert_is_near(&given.jet(p - origin), p);
+                let plain = FnField::new(value);
+                assert_is_near(&plain.evaluator(Frame::around(origin)).jet(p - origin), p);
+                let given = FnField::new(value).with_gradient(gradient);
+                assert_is_near(&given.evaluator(Frame::around(origin)).jet(p - origin), p);
             }
         }
     }

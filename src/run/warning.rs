@@ -264,19 +264,20 @@ impl<F: Field> Run<F> {
         }
         // Derivatives of a field that has bounds are derived, not given.
         let bounds = self.local_bounds();
-        if self.field.bounded().is_none()
-            && let Some(at) = check::wrong_gradient(&mut self.field, &bounds)
+        let field = &mut *self.evaluator();
+        if field.bounded().is_none()
+            && let Some(at) = check::wrong_gradient(field, &bounds)
         {
             let position = self.place(at.to_array());
             warnings.push(Warning::Gradient { position, length: self.bounds.diagonal() });
         }
-        warnings.extend(self.field.sampled_as().map(|equation| Warning::SampledAs { equation }));
+        warnings.extend(self.field.given.facts().sampled_as.map(|equation| Warning::SampledAs { equation }));
         warnings
     }
 
     /// The warning about the faces of a cell across an axis, if particles lie on them, and not the same ones.
     fn unpaired(&self, axis: usize) -> Option<Warning> {
-        let cell = self.field.unit_cell()?;
+        let cell = self.field.given.facts().unit_cell?.relative_to(self.particles().origin);
         let Particles { position, opposite, .. } = self.particles();
         let faces = [cell.bounds.min[axis], cell.bounds.max[axis]].map(|at| at as f32);
         let is_paired = opposite.iter().any(|faces| usize::from(faces.axis) == axis);

@@ -4,6 +4,7 @@
 use crate::cases;
 use glam::{DVec3, Vec3};
 use marching_particles::Sampling::{Adaptive, Uniform};
+use marching_particles::field::Frame;
 use marching_particles::{Bounds, Field, Formula, Method, Sample, Settings, sample};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -51,7 +52,7 @@ pub(crate) fn euler_on_grid(mut field: Formula, bounds: &Bounds, cells: usize) -
     };
     let nodes: Vec<Vec3> = (0..side * side * side).map(node).collect();
     let mut values = vec![0.0; nodes.len()];
-    field.values(&nodes, &mut values);
+    field.evaluator(Frame::default()).values(&nodes, &mut values);
     let is_inside: Vec<bool> = values.iter().map(|&value| value < 0.0).collect();
     // Kuhn's triangulation: its simplices at a corner are the chains of growing sets of axes.
     let offset = |axes: usize| (axes & 1) + (axes >> 1 & 1) * side + (axes >> 2 & 1) * side * side;

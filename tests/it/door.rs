@@ -217,7 +217,7 @@ fn files_are_written_from_a_sample() {
 #[test]
 fn a_gradient_that_is_not_that_of_the_values_is_told() {
     let settings = Settings::with_count(FEW);
-    let is_told = |field: &mut dyn Field| match sample(field, &settings) {
+    let is_told = |field: &dyn Field| match sample(field, &settings) {
         Ok(sample) => {
             sample.report().warnings.iter().any(|warning| matches!(warning, Warning::Gradient { .. }))
         }

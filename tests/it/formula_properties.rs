@@ -3,6 +3,7 @@
 
 use crate::fuzz::harness;
 use glam::{DVec3, Vec3};
+use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
@@ -270,7 +271,7 @@ proptest! {
         harness::check_value(&mut field, p, below, above);
         if field.jet(p).value.is_nan() {
             let mut out = [Enclosure::UNKNOWN];
-            field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
+            field.evaluator(Frame::default()).bounded().expect("a formula has bounds").enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
             prop_assert!(!out[0].defined, "{text} has no value at {p} but {out:?}");
         }
     }
@@ -306,10 +307,10 @@ proptest! {
         let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
         let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
         let mut hessian = vec![Sym3::default(); length];
-        field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+        field.evaluator(Frame::default()).hessians(&points, &mut value, &mut gradient, &mut hessian);
         let k = length / 2;
         let (mut value1, mut gradient1, mut hessian1) = ([0.0], [Vec3::ZERO], [Sym3::default()]);
-        field.hessians(&points[k..=k], &mut value1, &mut gradient1, &mut hessian1);
+        field.evaluator(Frame::default()).hessians(&points[k..=k], &mut value1, &mut gradient1, &mut hessian1);
         let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
         prop_assert!(same(value[k], value1[0]), "{} {}", value[k], value1[0]);
         for axis in 0..3 {

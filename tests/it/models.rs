@@ -10,6 +10,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use marching_particles::field::Field;
+use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::model::MODELS;
 use marching_particles::pointcloud::Cloud;
@@ -137,7 +138,7 @@ fn points_of(formula: &str) -> Cloud {
                     node(index[0], index[1], index[2])
                 };
                 let line: Vec<Vec3> = (0..CELLS[axis]).map(|c| at(c).as_vec3()).collect();
-                field.values(&line, &mut value);
+                field.evaluator(Frame::default()).values(&line, &mut value);
                 for c in 1..line.len() {
                     if (value[c - 1] < 0.0) != (value[c] < 0.0) {
                         let t = f64::from(value[c - 1]) / f64::from(value[c - 1] - value[c]);

@@ -12,23 +12,23 @@ use rand_pcg::Pcg32;
 /// A field given by its jet alone.
 struct Analytic<F: Fn(DVec3) -> Jet>(F);
 
-impl<F: Fn(DVec3) -> Jet + Send> Field for Analytic<F> {
-    fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
+impl<F: Fn(DVec3) -> Jet + Send + Sync> Field for Analytic<F> {
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         let jet = (self.0)(p);
         (jet.value, jet.gradient)
     }
 
-    fn jet(&mut self, p: DVec3) -> Jet {
+    fn jet(&self, p: DVec3) -> Jet {
         (self.0)(p)
     }
 }
 
-fn plane() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn plane() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| Jet { value: p.z, gradient: DVec3::Z, ..Jet::default() })
 }
 
 /// |p|² − 1.
-fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| Jet {
         value: p.length_squared() - 1.0,
         gradient: 2.0 * p,
@@ -37,7 +37,7 @@ fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
 }
 
 /// (√(x² + y²) − 1)² + z² − 1/4, without its Hessian.
-fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
+fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send + Sync> {
     Analytic(|p| {
         let ring = p.truncate().length();
         let out = ring - 1.0;

@@ -3,6 +3,7 @@
 
 use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};
+use marching_particles::field::Frame;
 use marching_particles::field::gallery::{self, SURFACES};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
@@ -80,7 +81,7 @@ fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
         let sampler = of_gallery(surface.id, &settings);
         let particles = sampler.particles();
         let mut curvature = vec![Curvature::default(); particles.len()];
-        curvatures(&mut surface.field(), &particles.position, &mut curvature);
+        curvatures(&mut *surface.field().evaluator(Frame::default()), &particles.position, &mut curvature);
         let diagonal = surface.bounds.diagonal();
         let (error, least) = (settings.chord_error * diagonal, settings.radius_min_share * diagonal);
         let greatest = settings.radius_max_share * diagonal;
