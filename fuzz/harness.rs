@@ -5,7 +5,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::pointcloud::job::Job;
 use marching_particles::pointcloud::read::Reader;

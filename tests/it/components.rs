@@ -4,9 +4,9 @@
 use crate::runs::{finished, run, session};
 use glam::{DVec3, Vec3};
 use marching_particles::Report;
+use marching_particles::field::Enclosure;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery;
-use marching_particles::field::{Bounded, Enclosure};
 use marching_particles::field::{Field, Frame};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;

@@ -44,7 +44,7 @@ fn roof(random: &mut Pcg32) -> [String; 2] {
 
 /// Euler number of the surface f = 0 in a box, by the tetrahedra of a grid of so many cells along each axis: it crosses each of their edges in a
 /// point, each of their triangles in a line and each of themselves in a face, or not at all.
-pub(crate) fn euler_on_grid(mut field: Formula, bounds: &Bounds, cells: usize) -> i64 {
+pub(crate) fn euler_on_grid(field: Formula, bounds: &Bounds, cells: usize) -> i64 {
     let side = cells + 1;
     let node = |k: usize| {
         let share = DVec3::new((k % side) as f64, (k / side % side) as f64, (k / side / side) as f64);
@@ -125,7 +125,7 @@ fn check(sample: &Sample, bounds: &Bounds, euler: Option<i64>, what: &str) -> us
 fn random_roofs_are_refined_up_to_the_box() {
     const ROOFS: u64 = 14;
     /// Shares that were usual when the test was written.
-    const TOLD: f64 = 0.85;
+    const TOLD: f64 = 0.79;
     const REFINED: f64 = 0.75;
     const RIGHT: f64 = 0.98;
     const NOT_REFUSED: f64 = 0.95;
@@ -134,10 +134,11 @@ fn random_roofs_are_refined_up_to_the_box() {
     for seed in cases::seeds(ROOFS) {
         let [text, rounded] = roof(&mut Pcg32::seed_from_u64(seed));
         let field = Formula::parse(&text).expect("a formula");
-        // Where the sheets leave a gap that is thinner than the cells, they are of no use.
+        // Where the sheets leave a gap that is thinner than the cells, or than what rounding fills, grids are of no use.
         let rounded = Formula::parse(&rounded).expect("a formula");
-        let [euler, other] = [40, 56].map(|cells| euler_on_grid(rounded.clone(), &bounds, cells));
-        let euler = (euler == other).then_some(euler);
+        let [euler, others @ ..] = [(&field, 56), (&rounded, 56), (&rounded, 40)]
+            .map(|(field, cells)| euler_on_grid(field.clone(), &bounds, cells));
+        let euler = (others == [euler; 2]).then_some(euler);
         told += u64::from(euler.is_some());
         for (count, sampling) in [(2_000, Uniform), (8_000, Uniform), (8_000, Adaptive)] {
             let settings = settings!(

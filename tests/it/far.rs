@@ -6,7 +6,7 @@ use marching_particles::Report;
 use marching_particles::export::{self, Format, MeshFormat};
 use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};

@@ -6,7 +6,7 @@ use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaError, FormulaErrorKind as Kind, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
     utf16_offset,
 };
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::{Bounds, Interval, Sym3};
 
 fn parse(text: &str) -> Formula {
@@ -491,10 +491,10 @@ fn the_number_of_operations_is_bounded() {
     assert_eq!(error(&powers.join("+")).kind, Kind::TooComplex);
     // The longest sum that fits is accepted and evaluated.
     let long = format!("x{}", "+y^2".repeat(1000));
-    let mut field = parse(&long);
+    let field = parse(&long);
     assert_eq!(field.jet(DVec3::new(1.0, 2.0, 0.0)).value, 4001.0);
     let terms: Vec<String> = (1..400).map(|k| format!("sin({k}x)")).collect();
-    let mut field = parse(&terms.join("+"));
+    let field = parse(&terms.join("+"));
     let mut value = [0.0];
     let mut gradient = [Vec3::ZERO];
     let mut hessian = [Sym3::default()];
@@ -675,7 +675,7 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
 
 #[test]
 fn a_branch_not_taken_does_not_spoil_the_interval_or_the_value() {
-    let mut field = parse("min(x, exp(x^4))");
+    let field = parse("min(x, exp(x^4))");
     assert_eq!(field.jet(DVec3::new(10.0, 0.0, 0.0)).value, 10.0);
     let mut value = [0.0];
     field.evaluator(Frame::default()).values(&[Vec3::new(10.0, 0.0, 0.0)], &mut value);
@@ -685,7 +685,7 @@ fn a_branch_not_taken_does_not_spoil_the_interval_or_the_value() {
 #[test]
 fn kinks_have_the_documented_slopes() {
     let slope = |text: &str, p: DVec3| {
-        let mut field = parse(text);
+        let field = parse(text);
         let exact = field.jet(p).gradient;
         let mut value = [0.0];
         let mut gradient = [Vec3::ZERO];

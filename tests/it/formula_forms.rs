@@ -6,7 +6,7 @@ use marching_particles::field::Frame;
 use marching_particles::field::formula::{
     Formula, FormulaError, FormulaErrorKind as Kind, Parameter, number,
 };
-use marching_particles::field::{Bounded, Enclosure, Field};
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Bounds;
 
 fn parse(text: &str) -> Formula {
@@ -88,7 +88,7 @@ fn single_precision_and_bounds_agree_with_double_precision() {
         "x > y ? step(y, z) : log2(z)",
     ];
     for text in texts {
-        let mut field = parse(text);
+        let field = parse(text);
         for p in [Vec3::new(1.25, -0.5, 2.0), Vec3::new(0.3, 0.7, 1.1), Vec3::new(-2.0, -0.25, 1.75)] {
             let (mut single, mut slope) = ([0.0], [Vec3::ZERO]);
             field.evaluator(Frame::default()).gradients(&[p], &mut single, &mut slope);
@@ -172,7 +172,7 @@ fn definitions_stand_for_what_they_define() {
         ("r = hypot(x, y); (r) = 2r - 1", "hypot(x, y) = 2hypot(x, y) - 1"),
     ];
     for &(text, plain) in pairs {
-        let (mut field, mut wanted) = (parse(text), parse(plain));
+        let (field, wanted) = (parse(text), parse(plain));
         assert_eq!(field.auto(), wanted.auto(), "{text}");
         let p = DVec3::new(0.75, -0.5, 2.0);
         assert!((field.jet(p).value - wanted.jet(p).value).abs() < 1e-15, "{text}: {}", field.normal_form());
@@ -419,7 +419,7 @@ fn a_formula_without_coordinates_says_what_its_names_are() {
         ("theta=0", "atan2(y, x)"),
         ("k = 2", "of x, y and z"),
     ] {
-        let mut field = parse(text);
+        let field = parse(text);
         let why = field.facts().why_constant.unwrap_or_default();
         assert!(why.contains("is a parameter") && why.contains(words), "{text}: {why}");
         assert!(field.jet(DVec3::ONE).gradient == DVec3::ZERO);

@@ -8,7 +8,7 @@ use marching_particles::field::formula::{
     FUNCTIONS, Formula, FormulaErrorKind as Kind, MAX_FORMULA_BYTES, MathGroup, MathNode,
 };
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use proptest::prelude::*;
 
@@ -172,7 +172,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(0.1..2.0_f64),
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let MathNode::Group { children, .. } = field.mathml() else { return Ok(()) };
         // Without the `= 0` at its end.
         let Some(latex) = in_latex(&children[0]) else { return Ok(()) };
@@ -180,7 +180,7 @@ proptest! {
         if latex.len() > MAX_FORMULA_BYTES || text.contains("1e") || text.contains("e-") || text.contains("hypot") {
             return Ok(());
         }
-        let mut again = match Formula::as_written(&latex, &[]) {
+        let again = match Formula::as_written(&latex, &[]) {
             Ok(again) => again,
             // A quotient adds operations, and braces add levels.
             Err(e) if matches!(e.kind, Kind::TooDeep | Kind::TooComplex | Kind::NotFinite) => return Ok(()),
@@ -231,9 +231,9 @@ proptest! {
 
     #[test]
     fn printing_and_parsing_definitions_are_inverse(text in programs(), point in prop::array::uniform3(-2.0..2.0_f64)) {
-        if let Ok(mut field) = Formula::as_written(&text, &[]) {
+        if let Ok(field) = Formula::as_written(&text, &[]) {
             let printed = field.normal_form();
-            let mut again = match Formula::as_written(&printed, &[]) {
+            let again = match Formula::as_written(&printed, &[]) {
                 Ok(again) => again,
                 Err(e) => panic!("{text} → {printed}: {e}"),
             };
@@ -302,7 +302,7 @@ proptest! {
         first in prop::array::uniform3(-2.0..2.0_f32),
         length in 1..200_usize,
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let first = Vec3::from_array(first);
         let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
         let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
@@ -324,7 +324,7 @@ proptest! {
         text in formulas(),
         point in prop::array::uniform3(-2.0..2.0_f64),
     ) {
-        let Ok(mut field) = Formula::as_written(&text, &[]) else { return Ok(()) };
+        let Ok(field) = Formula::as_written(&text, &[]) else { return Ok(()) };
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);

@@ -6,7 +6,7 @@ use marching_particles::field::Frame;
 use marching_particles::field::formula::Formula;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
-use marching_particles::field::{Bounded, Enclosure, Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ fn entries(hessian: &Sym3<f64>) -> [f64; 6] {
 
 /// Central differences of f, and of ∇f, with a step of `h`.
 fn differences(field: &dyn Field, p: DVec3, h: f64) -> (DVec3, [f64; 6]) {
-    let mut ends = |axis: DVec3| (field.jet(p - axis * h), field.jet(p + axis * h));
+    let ends = |axis: DVec3| (field.jet(p - axis * h), field.jet(p + axis * h));
     let pairs: [(Jet, Jet); 3] = [ends(DVec3::X), ends(DVec3::Y), ends(DVec3::Z)];
     let gradient = DVec3::from_array(pairs.map(|(a, b)| (b.value - a.value) / (2.0 * h)));
     let [x, y, z] = pairs.map(|(a, b)| (b.gradient - a.gradient) / (2.0 * h));
@@ -66,7 +66,7 @@ fn derivatives_agree_with_central_differences() {
 #[test]
 fn batches_agree_with_double_precision() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let points: Vec<Vec3> = points(surface, 203).iter().map(|p| p.as_vec3()).collect();
         let n = points.len();
         let mut values = vec![0.0; n];
@@ -111,7 +111,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
             None => format!("{} + x^2 + 0.618034", surface.formula),
         };
-        let mut field = Formula::as_written(&text, surface.parameters).expect("a formula");
+        let field = Formula::as_written(&text, surface.parameters).expect("a formula");
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));
@@ -138,7 +138,7 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
 #[test]
 fn small_boxes_off_the_surface_are_proven_empty() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let half = DVec3::splat(surface.bounds.diagonal() * 1e-5);
         let mut proven = 0;
         let all = points(surface, 200);
@@ -235,7 +235,7 @@ fn closed_surfaces_have_the_genus_they_claim() {
 #[test]
 fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let (mut inside, mut outside) = (0, 0);
         for p in points(surface, 20_000) {
             let (value, _) = field.value_and_gradient(p);

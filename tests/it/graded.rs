@@ -62,7 +62,7 @@ fn radii_are_those_of_the_law_and_their_cells_cover_the_surface() {
     let settings = settings!(radius_law: LawKind::MaxCurvature, curvature_scale: 0.03; ..graded(0));
     let (sampler, f) = run("ellipsoid", &settings);
     assert_eq!(sampler.counts().refusal, None);
-    let mut field = surface.field();
+    let field = surface.field();
     let particles = sampler.particles();
     let mut as_law = 0;
     for (p, &r) in particles.position.iter().zip(&particles.radius) {

@@ -125,7 +125,7 @@ fn points_of(formula: &str) -> Cloud {
     const CELLS: [usize; 3] = [65, 65, 75];
     let corner = DVec3::new(-1.3, -1.3, -0.3);
     let node = |i: usize, j: usize, k: usize| corner + DVec3::new(i as f64, j as f64, k as f64) * STEP;
-    let mut field = Formula::as_written(formula, &[]).expect("a formula");
+    let field = Formula::as_written(formula, &[]).expect("a formula");
     let mut cloud = Cloud::default();
     let mut value = vec![0.0; CELLS[0].max(CELLS[2])];
     for axis in 0..3 {

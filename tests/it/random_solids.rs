@@ -4,7 +4,6 @@
 use crate::cases;
 use crate::fuzz::{below, harness};
 use marching_particles::Warning;
-use marching_particles::field::Field;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Method, Sampling, Settings};
 use marching_particles::session::{BoxFaces, FieldRequest, Session, SolidSettings};

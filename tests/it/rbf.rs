@@ -149,7 +149,7 @@ fn places(fit: &Fit) -> Vec<Vec3> {
 fn batches_agree_with_the_sum_in_double_precision() {
     for id in ["bunny", "sack-and-hat"] {
         let fit = of_model(id);
-        let mut field = RbfField::new(fit.data.clone()).expect("a field");
+        let field = RbfField::new(fit.data.clone()).expect("a field");
         let places = places(&fit);
         let n = places.len();
         let mut value = vec![0.0; n];
@@ -219,13 +219,13 @@ fn the_result_at_a_point_depends_on_the_point_alone() {
     let fit = of_model("rabbit");
     let places = places(&fit);
     let n = places.len();
-    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let field = RbfField::new(fit.data.clone()).expect("a field");
     let mut value = vec![0.0; n];
     let mut gradient = vec![Vec3::ZERO; n];
     field.evaluator(Frame::default()).gradients(&places, &mut value, &mut gradient);
     // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more
     // derivatives.
-    let mut other = RbfField::new(fit.data).expect("a field");
+    let other = RbfField::new(fit.data).expect("a field");
     let mut hessian = [Sym3::<f32>::default()];
     for i in (0..n).rev() {
         let (mut v, mut w, mut g) = ([0.0], [0.0], [Vec3::ZERO]);
@@ -244,7 +244,7 @@ fn the_result_at_a_point_depends_on_the_point_alone() {
 #[test]
 fn a_centre_is_an_ordinary_point() {
     let fit = of_model("bunny");
-    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let field = RbfField::new(fit.data.clone()).expect("a field");
     for &centre in &fit.data.centres {
         let p = DVec3::from_array(centre).as_vec3();
         let (mut v, mut g, mut h) = ([1.0], [Vec3::ZERO], [Sym3::<f32>::default()]);
@@ -268,7 +268,7 @@ fn the_field_is_invariant_under_scaling_and_translation() {
     for (a, b) in small.data.alpha.iter().zip(&plain.data.alpha) {
         assert_eq!(a * scale * scale, *b);
     }
-    let (mut a, mut b) =
+    let (a, b) =
         (RbfField::new(small.data).expect("a field"), RbfField::new(plain.data.clone()).expect("a field"));
     let places = places(&plain);
     let scaled: Vec<Vec3> = places.iter().map(|&p| p * scale as f32).collect();
@@ -305,7 +305,7 @@ fn the_models_have_nothing_outside_of_their_box() {
     const NODES: usize = 61;
     for model in MODELS {
         let fit = of_model(model.id);
-        let mut field = RbfField::new(fit.data).expect("a field");
+        let field = RbfField::new(fit.data).expect("a field");
         let (middle, half) =
             ((fit.bounds.lo() + fit.bounds.hi()) * 0.5, (fit.bounds.hi() - fit.bounds.lo()) * 0.5);
         let mut value = [0.0; NODES];
@@ -384,7 +384,7 @@ fn pulled_bunny() -> (Fit, [Pull; 2]) {
 #[test]
 fn a_pull_takes_its_place_along_and_leaves_what_is_far() {
     let (fit, pulls) = pulled_bunny();
-    let mut own = RbfField::new(fit.data).expect("a field");
+    let own = RbfField::new(fit.data).expect("a field");
     let mut pulled = own.clone();
     pulled.pull(&pulls).expect("pulls");
     let [first, second] = pulls;

@@ -235,7 +235,9 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     // The last level ends the phase.
     assert_eq!(shown.len() as u32, levels - 1, "{shown:?}");
 
-    sampler.begin(&field, DVec3::ZERO, &surface.bounds, &settings, None).expect("room for the particles");
+    sampler
+        .begin(&field, glam::DVec3::ZERO, &surface.bounds, &settings, None)
+        .expect("room for the particles");
     let first = loop {
         let progress = sampler.step(&mut field, 500);
         if progress.phase == Phase::Refinement && progress.moved {

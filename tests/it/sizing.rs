@@ -3,8 +3,8 @@
 
 use crate::runs::{gallery_figures, of_gallery, sampled};
 use marching_particles::differential::{Curvature, curvatures};
-use marching_particles::field::Frame;
 use marching_particles::field::gallery::{self, SURFACES};
+use marching_particles::field::{Field, Frame};
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{LawKind, Sampling, Settings, SettingsError, SizeMode};
 use marching_particles::spatial::CellGrid;
