@@ -1,7 +1,7 @@
 //! Evenly spaced particles on an implicit surface f(x, y, z) = 0.
 //!
-//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure ([`FnField`]), a model from
-//! points, or anything that implements one method of the trait. [`sample`] covers its zero set with
+//! A [`Field`] is a [`Formula`], a surface of the [gallery], a closure, a model from points, or
+//! anything that implements one method of the trait. [`sample`] covers its zero set with
 //! particles: a front grows over the surface in hexagons, generation level by generation level, and a
 //! few relaxation steps even the spacing out. A [`Sample`] holds the particles, a report on them and
 //! their mesh. A [`Run`] does the same in steps, for a caller that draws or cancels.
@@ -75,7 +75,7 @@
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Sampling`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
 //! | formulas | [`Formula`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
-//! | fields of a program | [`Field`], [`FnField`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
+//! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
@@ -140,7 +140,10 @@ pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parame
 pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]
 pub use field::rbf::RbfField;
-pub use field::{Bounded, Enclosure, Field, FnField, Jet, UnitCell, gallery};
+pub use field::{
+    BatchField, Bounded, Enclosure, Evaluator, Facts, Field, FieldError, FnField, Frame, IntoField, Jet,
+    SharedError, UnitCell, gallery,
+};
 pub use glam;
 pub use math::{Bounds, BoxError, Interval, Sym3};
 pub use mesh::build::Triangulation;

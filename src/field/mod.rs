@@ -9,11 +9,13 @@ mod evaluator;
 pub mod formula;
 mod function;
 pub mod gallery;
+mod given;
 pub mod model;
 pub mod rbf;
 
 pub use evaluator::{Bounded, Evaluator, Frame, Patches};
 pub use function::FnField;
+pub use given::{BatchField, FieldError, IntoField, NoGradient, SharedError, kind};
 
 use evaluator::Pointwise;
 
@@ -151,6 +153,11 @@ pub trait Field: MaybeSend + MaybeSync {
         Facts::default()
     }
 
+    /// Why the field has no values any more, if a function of the program has failed. A run ends then, and gives this error.
+    fn failure(&self) -> Option<FieldError> {
+        None
+    }
+
     /// This field as one whose surface may have creases. By default there is none: the field is smooth.
     #[doc(hidden)]
     fn creased(&self) -> Option<&dyn Creased> {
@@ -219,6 +226,11 @@ pub(crate) fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3) -> Jet 
         let [ahead, behind] = [p + h * axis, p - h * axis].map(|q| field.value_and_gradient(q).1);
         (ahead - behind) / (2.0 * h)
     });
+    jet_of_slopes(value, gradient, [x, y, z])
+}
+
+/// The jet with these derivatives of the gradient along the axes, which rounding leaves a little asymmetric.
+fn jet_of_slopes(value: f64, gradient: DVec3, [x, y, z]: [DVec3; 3]) -> Jet {
     let (xy, xz, yz) = (0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y));
     Jet { value, gradient, hessian: Sym3 { xx: x.x, xy, xz, yy: y.y, yz, zz: z.z } }
 }
@@ -243,6 +255,10 @@ impl<P: Deref<Target: Field> + MaybeSend + MaybeSync> Field for P {
 
     fn facts(&self) -> Facts {
         (**self).facts()
+    }
+
+    fn failure(&self) -> Option<FieldError> {
+        (**self).failure()
     }
 
     fn creased(&self) -> Option<&dyn Creased> {

@@ -17,7 +17,7 @@ pub use warning::Warning;
 
 use crate::differential::{self, Curvature};
 use crate::extent::{self, Reach};
-use crate::field::{Creased, Evaluator, Field, Frame};
+use crate::field::{Creased, Evaluator, Field, FieldError, Frame, IntoField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality;
@@ -58,6 +58,9 @@ pub enum Error {
         /// Share of the nodes of the grids at which f has a value.
         defined: f64,
     },
+    /// A function of the program has failed: its error.
+    #[error("the function that is sampled has failed: {0}")]
+    Field(FieldError),
     /// No particle could be placed.
     #[error("{message}")]
     Nothing {
@@ -186,9 +189,10 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If a setting or the box is out of its range, or the memory does not hold the particles to expect.
-    pub fn start(field: F, settings: &Settings) -> Result<Self, Error> {
+    /// If a setting or the box is out of its range, the memory does not hold the particles to expect, or a function of the program fails.
+    pub fn start<Kind>(field: impl IntoField<Kind, Field = F>, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
+        let field = field.into_field();
         let (bounds, reach) = match settings.bounds {
             Some(bounds) => (bounds, None),
             None => {
@@ -197,7 +201,9 @@ impl<F: Field> Run<F> {
             }
         };
         let mut run = Self { reach, ..Self::idle(field, bounds) };
-        run.begin(settings)?;
+        let begun = run.begin(settings);
+        run.check_field()?;
+        begun?;
         Ok(run)
     }
 
@@ -257,9 +263,13 @@ impl<F: Field> Run<F> {
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step. It
-    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set.
+    /// returns early now and then, so that a caller can show the particles. The run has ended when [`Progress::stop_reason`] is set: it is
+    /// [cancelled](StopReason::Cancelled) where a function of the program [has failed](Run::check_field).
     pub fn step(&mut self, budget: u32) -> Progress {
         let progress = self.sampler.step(self.field.function(), budget);
+        if self.field.given.failure().is_some() && progress.stop_reason.is_none() {
+            return self.cancel();
+        }
         if progress.phase == Phase::Relaxation && progress.relax_step == 0 && progress.relax_steps > 0 {
             self.measuring.keep_front(self.sampler.particles(), progress.rows);
         }
@@ -357,10 +367,11 @@ impl<F: Field> Run<F> {
     ///
     /// # Errors
     ///
-    /// If there is no particle: the error says why.
+    /// If there is no particle, or a function of the program has failed: the error says why.
     pub fn finish(mut self) -> Result<Sample, Error> {
         self.check_not_empty()?;
         let report = self.report();
+        self.check_field()?;
         Ok(Sample::new(self, report))
     }
 
@@ -377,8 +388,18 @@ impl<F: Field> Run<F> {
         Ok(Sample::new(self, report))
     }
 
-    /// Returns the reason if there is no particle.
+    /// The error of a function of the program that has failed. The run has ended then, and its particles are those of before.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Field`], if it has.
+    pub fn check_field(&self) -> Result<(), Error> {
+        self.field.given.failure().map_or(Ok(()), |error| Err(Error::Field(error)))
+    }
+
+    /// Returns the reason if there is no particle, or its field has failed.
     pub(crate) fn check_not_empty(&mut self) -> Result<(), Error> {
+        self.check_field()?;
         if self.count() > 0 {
             return Ok(());
         }

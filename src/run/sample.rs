@@ -3,7 +3,7 @@
 use super::mesh::joined;
 use super::{Error, Report, Run, Warning};
 use crate::export::{self, MeshBuffers, MeshFile, ParticleFile, Vertices};
-use crate::field::Field;
+use crate::field::{Field, IntoField};
 use crate::math::Bounds;
 use crate::mesh::build::Triangulation;
 use crate::particles::Particles;
@@ -13,7 +13,8 @@ use crate::slices;
 use std::io::{self, Write};
 use std::sync::OnceLock;
 
-/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them.
+/// Samples the surface f = 0 of a field with evenly spaced particles, and measures them. The field is anything that [`IntoField`] lists: a
+/// [`Formula`](crate::Formula), a reference or an `Arc` of a field, a closure.
 ///
 /// The surface is sampled in the box of the settings, or in one that fits it: around all of a bounded surface, and of one that goes
 /// on for ever a part. The box of a field without [bounds](crate::Bounded) is fitted to what grids show ([`FnField`](crate::FnField)): give it
@@ -22,8 +23,8 @@ use std::sync::OnceLock;
 ///
 /// # Errors
 ///
-/// If a setting or the box is out of its range, the memory does not hold the particles to expect, or no particle could be placed: the
-/// error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
+/// If a setting or the box is out of its range, the memory does not hold the particles to expect, no particle could be placed, or a
+/// function of the program fails: the error says why. Anything else that a field may do wrong is a [`Warning`] in the report.
 ///
 /// ```
 /// use marching_particles::{Formula, Format, Settings, sample};
@@ -36,7 +37,7 @@ use std::sync::OnceLock;
 /// assert_eq!(sample.mesh().topology.components.len(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn sample(field: impl Field, settings: &Settings) -> Result<Sample, Error> {
+pub fn sample<Kind>(field: impl IntoField<Kind>, settings: &Settings) -> Result<Sample, Error> {
     let mut run = Run::start(field, settings)?;
     while run.step(u32::MAX).stop_reason.is_none() {}
     run.finish()
