@@ -127,7 +127,7 @@ pub mod slices;
 pub mod spatial;
 #[doc(hidden)]
 pub mod topology;
-#[cfg(target_arch = "wasm32")]
+#[cfg(all(target_arch = "wasm32", feature = "bindings"))]
 #[doc(hidden)]
 pub mod web;
 

@@ -2,7 +2,7 @@
 //! corners where more than two meet; and the [tips] of cones.
 //!
 //! A formula with maxima, minima and absolute values has a surface of *patches*. On each one smooth branch gives f
-//! ([`Branched::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*, the curve on which both branches
+//! ([`Patches::branch_at`](crate::field::Patches::branch_at)). Two patches meet along a *crease*, the curve on which both branches
 //! are zero; it ends at a corner, at the box, or runs back into itself. Where the factors of a product cross, four patches
 //! meet: each factor is two branches, one on either side of the other factor.
 //!
