@@ -12,7 +12,7 @@ mod solid_table;
 use core::f64::consts::PI;
 use marching_particles::field::Evaluator;
 use marching_particles::particles::Particles;
-use marching_particles::{Bounds, Field, Formula, MeshFormat, Method, Run, Settings, sample};
+use marching_particles::{Bounds, Formula, MeshFormat, Method, Run, Settings, sample};
 use solid_table::SOLIDS;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};

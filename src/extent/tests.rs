@@ -5,7 +5,7 @@ use crate::field::formula::Formula;
 
 fn extent(text: &str) -> Extent {
     let field = Formula::as_written(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-    find(&mut field.without_powers())
+    find(&field.without_powers())
 }
 
 /// Asserts that the box holds `lo` to `hi` and is larger by less than 5 % of its longest side.
@@ -195,8 +195,8 @@ fn the_room_is_a_twentieth_and_three_radii() {
 #[test]
 fn budgets_do_not_change_the_box() {
     let text = "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8";
-    let mut field = Formula::as_written(text, &[]).expect("a formula");
-    let mut fit = core::pin::pin!(find_in_slices(&mut field));
+    let field = Formula::as_written(text, &[]).expect("a formula");
+    let mut fit = core::pin::pin!(find_in_slices(&field));
     let mut steps = 0;
     let slowly = loop {
         steps += 1;

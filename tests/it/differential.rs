@@ -46,8 +46,8 @@ fn surface_points(field: &dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3
 /// Points of a gallery surface, with the curvature at each.
 fn sampled(id: &str, count: usize) -> Vec<(DVec3, Curvature<f64, DVec3>)> {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    let mut field = surface.field();
-    let points = surface_points(&mut field, &surface.bounds, count);
+    let field = surface.field();
+    let points = surface_points(&field, &surface.bounds, count);
     points.into_iter().map(|p| (p, exact_curvature(&field.jet(p)))).collect()
 }
 
@@ -119,7 +119,7 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
         let mut field = surface.field();
         let diagonal = surface.bounds.diagonal();
         let mut compared = 0;
-        let points = surface_points(&mut field, &surface.bounds, 200);
+        let points = surface_points(&field, &surface.bounds, 200);
         for &p in &points {
             let jet = field.jet(p);
             let k = exact_curvature(&jet);
@@ -150,9 +150,9 @@ fn normals_of_the_gallery_turn_as_the_curvature_says() {
 #[test]
 fn single_precision_and_lanes_agree_with_double() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let points: Vec<Vec3> =
-            surface_points(&mut field, &surface.bounds, 203).iter().map(|p| p.as_vec3()).collect();
+            surface_points(&field, &surface.bounds, 203).iter().map(|p| p.as_vec3()).collect();
         let n = points.len();
         let (mut value, mut gradient) = (vec![0.0; n], vec![Vec3::ZERO; n]);
         let mut hessian = vec![Sym3::default(); n];

@@ -39,10 +39,10 @@ fn derivatives_agree_with_central_differences() {
     const STEP: f64 = 1e-5;
     const TOLERANCE: f64 = 1e-6;
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         for p in points(surface, 200) {
             let jet = field.jet(p);
-            let (gradient, hessian) = differences(&mut field, p, STEP);
+            let (gradient, hessian) = differences(&field, p, STEP);
             let size = jet.value.abs() + jet.gradient.length() + 1.0;
             assert!(
                 (jet.gradient - gradient).length() <= TOLERANCE * size,
@@ -266,10 +266,10 @@ fn on_surface(field: &dyn Field, mut p: DVec3) -> Option<DVec3> {
 #[test]
 fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
     for surface in SURFACES.iter() {
-        let mut field = surface.field();
+        let field = surface.field();
         let mut slopes = Vec::new();
         for p in points(surface, 4000) {
-            let Some(p) = on_surface(&mut field, p) else { continue };
+            let Some(p) = on_surface(&field, p) else { continue };
             if surface.bounds.contains(p.as_vec3()) {
                 slopes.push(field.value_and_gradient(p).1.length());
             }

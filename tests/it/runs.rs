@@ -34,7 +34,7 @@ pub(crate) fn sampled_in_any_steps(field: &dyn Field, bounds: &Bounds, settings:
 /// A surface of the gallery, sampled.
 pub(crate) fn of_gallery(id: &str, settings: &Settings) -> Sampler {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    sampled(&mut surface.field(), &surface.bounds, settings, 10_000)
+    sampled(&surface.field(), &surface.bounds, settings, 10_000)
 }
 
 /// The fates of the slots agree with what was counted, and each particle but a seed is the child of one other.
@@ -67,7 +67,7 @@ pub(crate) fn figures(
 /// Figures of particles on a surface of the gallery.
 pub(crate) fn gallery_figures(id: &str, particles: &Particles, radii: Option<&[f32]>) -> Figures {
     let surface = gallery::find(id).expect("a surface of the gallery");
-    figures(&mut surface.field(), &surface.bounds, particles, radii)
+    figures(&surface.field(), &surface.bounds, particles, radii)
 }
 
 /// A session with a formula in a box.

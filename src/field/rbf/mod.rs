@@ -104,7 +104,7 @@ struct RbfEvaluator<'a> {
 
 impl RbfEvaluator<'_> {
     /// Calls `store` with the index of each point and with the first numbers of f, ∇f and ∇∇f at it, before they are scaled.
-    fn sums<const N: usize>(&mut self, points: &[Vec3], mut store: impl FnMut(usize, [f32; N])) {
+    fn sums<const N: usize>(&mut self, points: &[Vec3], store: impl FnMut(usize, [f32; N])) {
         let Self { field: RbfField { data, tree, pulls }, frame, places } = self;
         let pulls = Some(pulls).filter(|pulls| !pulls.list().is_empty());
         let points = match pulls {
@@ -116,7 +116,7 @@ impl RbfEvaluator<'_> {
                 places
             }
         };
-        tree.sums(data, frame.origin, points, |n, sums| store(n, sums));
+        tree.sums(data, frame.origin, points, store);
     }
 
     /// Takes the pulls into account of the derivatives at a point.

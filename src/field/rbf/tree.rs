@@ -48,7 +48,7 @@ const MIN_TOGETHER: usize = 6;
 #[derive(Debug)]
 enum Cell {
     Branch(BranchCell),
-    Leaf(LeafCell),
+    Leaf(Box<LeafCell>),
 }
 
 /// A cell that is split into eight, each of which is made when a point falls into it.
@@ -212,14 +212,14 @@ fn cell(
         return Cell::Branch(BranchCell { middle: place, octants: Default::default(), half, far, near });
     }
     let near: Vec<Centre> = near.iter().map(|&j| centres[j as usize]).collect();
-    Cell::Leaf(LeafCell {
+    Cell::Leaf(Box::new(LeafCell {
         middle: place,
         half: half as f32,
         inverse: (1.0 / half) as f32,
         far: taylor.rows(&far),
         centres: near.len(),
         near: near.chunks(LANES).map(Near::new).collect(),
-    })
+    }))
 }
 
 /// Whether a cell, which includes its lower faces, contains a point. NaN is outside of every cell.
