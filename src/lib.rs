@@ -74,13 +74,13 @@
 //! |---|---|
 //! | the job | [`sample`], [`Sample`], [`Run`], [`Start`], [`Progress`], [`Phase`], [`StopReason`], [`Reporting`] |
 //! | its settings | [`Settings`], [`Sampling`], [`SizeMode`], [`LawKind`], [`Method`], [`GapPolicy`], [`Bounds`], [`Reach`] |
-//! | formulas | [`Formula`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
+//! | formulas | [`Formula`], [`Expr`], [`Parameter`], [`FormulaError`], [`FormulaErrorKind`], [`Mended`], [gallery] |
 //! | fields of a program | [`Field`], [`IntoField`], [`FnField`], [`BatchField`], [`FieldError`], [`SharedError`], [`Evaluator`], [`Frame`], [`Facts`], [`Jet`], [`Sym3`], [`Bounded`], [`Enclosure`], [`Interval`], [`UnitCell`], [glam] |
 //! | surfaces through points | [`fit_points`], [`CENTRES`], [`Fit`], [`ModelInfo`], [`NormalSource`], [`GivenMesh`], [`GivenTopology`], [`RbfField`] |
 //! | particles and meshes | [`Particles`], [`Slots`], [`SlotFate`], [`OppositeFaces`], [`Triangulation`], [`MeshBuffers`], [`Inside`], [`Topology`], [`Component`], [`MeshAnswer`], [`MeshComponent`] |
 //! | the report | [`Report`], [`Radii`], [`Growth`], [`FateCounts`], [`Proof`], [`Search`], [`Sampled`], [`Unsampled`], [`Measures`], [`Cut`] |
 //! | its figures | [`Figures`] with the groups in [figures], [`Histogram`], [`Places`], [`Pair`], [`Hole`], [`Measurements`] |
-//! | what may be wrong | [`Warning`], [`Doubt`], [`Refusal`], [`Spot`] |
+//! | what may be wrong | [`Warning`], [`Severity`], [`Doubt`], [`Refusal`], [`Spot`] |
 //! | why there is no result | [`Error`], [`SettingsError`], [`BoxError`]; of points [`JobError`], [`ReadError`], [`InputFormat`], [`CloudError`], [`FitError`] |
 //! | files | [`Format`], [`ParticleFile`], [`MeshFormat`], [`MeshFile`], [`Vertices`], [`Placement`], [`Unit`], [`UpAxis`], [`RecordText`] |
 //!
@@ -135,7 +135,7 @@ pub use export::{
     Format, MeshBuffers, MeshFile, MeshFormat, ParticleFile, Placement, RecordText, Unit, UpAxis, Vertices,
 };
 pub use extent::Reach;
-pub use field::formula::{Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
+pub use field::formula::{Expr, Formula, FormulaError, FormulaErrorKind, Mended, Parameter};
 #[cfg(feature = "points")]
 pub use field::model::{CENTRES, GivenMesh, GivenTopology, ModelInfo, NormalSource};
 #[cfg(feature = "points")]
@@ -162,7 +162,7 @@ pub use pointcloud::read::{InputFormat, ReadError};
 pub use quality::{Figures, Histogram, Hole, Measurements, Pair, Places, figures};
 pub use run::{
     Cut, Error, Growth, Measures, MeshAnswer, MeshComponent, Proof, Radii, Report, Reporting, Run, Sample,
-    Start, Warning, sample,
+    Severity, Start, Warning, sample,
 };
 pub use sampler::{
     Doubt, FateCounts, FollowError, GapPolicy, LawKind, Method, Phase, Progress, Refusal, Sampled, Sampling,

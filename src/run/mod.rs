@@ -13,7 +13,7 @@ mod warning;
 pub use mesh::{MeshAnswer, MeshComponent};
 pub use report::{Cut, Growth, Measures, Proof, Radii, Report, Reporting};
 pub use sample::{Sample, sample};
-pub use warning::Warning;
+pub use warning::{Severity, Warning};
 
 use crate::differential::{self, Curvature};
 use crate::extent::{self, Reach};

@@ -3,7 +3,7 @@
 use marching_particles::glam::DVec3;
 use marching_particles::{
     BatchField, Bounds, BoxError, Error, Field, FnField, Format, Formula, MeshFormat, Method, Particles, Run,
-    Settings, SettingsError, StopReason, Warning, sample,
+    Settings, SettingsError, Severity, StopReason, Warning, sample,
 };
 use std::cell::Cell;
 use std::sync::Arc;
@@ -124,6 +124,57 @@ fn a_function_that_fails_ends_the_run_with_its_error_whenever_that_is() {
         // Nothing is asked of it once it has failed.
         assert!(asked.into_inner() <= most + 2 * 512);
     }
+}
+
+#[test]
+fn a_sample_gives_the_buffers_of_a_graphics_card_and_files_by_their_names() {
+    let centre = DVec3::new(500.0, -300.0, 0.25);
+    let sample = sample(
+        move |p: DVec3| sphere(p - centre),
+        &Settings::with_count(FEW).in_box(Bounds::new(centre - 1.2, centre + 1.2)),
+    );
+    let sample = sample.unwrap();
+    let (positions, normals) = (sample.positions(), sample.normals());
+    assert_eq!((positions.len(), normals.len()), (sample.report().count, sample.report().count));
+    for (&position, &normal) in positions.iter().zip(normals) {
+        let away = DVec3::from_array(position.map(f64::from)) - centre;
+        // Positions in single precision are whole multiples of 3·10⁻⁵ there.
+        assert!((away.length() - 1.0).abs() < 1e-4, "{away}");
+        assert!(away.distance(DVec3::from_array(normal.map(f64::from))) < 1e-3);
+    }
+    assert!(sample.indices().as_flattened().iter().all(|&i| (i as usize) < positions.len()));
+    assert_eq!(sample.indices().len(), 2 * positions.len() - 4);
+
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("door");
+    std::fs::create_dir_all(&folder).unwrap();
+    for name in ["mesh.glb", "mesh.3mf", "mesh.STL", "mesh.obj", "points.ply", "points.csv", "points.npy"] {
+        let path = folder.join(name);
+        sample.save(&path).unwrap();
+        assert!(path.metadata().unwrap().len() > 10_000, "{name}");
+    }
+    let error = sample.save(folder.join("mesh.step")).unwrap_err().to_string();
+    assert!(
+        error.contains("mesh.step") && error.contains("glb, 3mf, stl, obj, ply, csv, xyz, npy"),
+        "{error}"
+    );
+}
+
+#[test]
+fn warnings_have_names_that_stay_and_say_how_much_they_weigh() {
+    let refused = sample(
+        FnField::new(sphere).with_gradient(|p| -outward(p)),
+        &Settings::with_count(300).in_box(Bounds::cube(1.3)),
+    );
+    let warnings = match refused {
+        Ok(sample) => sample.report().warnings.clone(),
+        Err(_) => vec![Warning::Gradient { position: [0.0; 3], length: 1.0 }],
+    };
+    assert!(
+        warnings.iter().any(|w| (w.code(), w.severity()) == ("gradient", Severity::Fault)),
+        "{warnings:?}"
+    );
+    assert!(Severity::Note < Severity::Caution && Severity::Caution < Severity::Fault);
+    assert_eq!(Warning::Touches.severity(), Severity::Note);
 }
 
 #[test]

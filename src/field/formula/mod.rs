@@ -41,6 +41,7 @@
 mod ast;
 mod branches;
 mod build;
+mod builder;
 mod call;
 mod compiled;
 mod conditions;
@@ -73,6 +74,7 @@ mod tests;
 mod token;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
+pub use builder::Expr;
 pub use control::Grip;
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use lex::name_pattern;
@@ -225,9 +227,21 @@ impl Formula {
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
         let compiled = Compiled::new(&parsed.equation, &parameters)?;
-        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
         let written = WrittenFormula { text: text.to_owned(), equation: parsed.equation, automatic, unused };
-        Ok(Self {
+        Ok(Self::of(written, parameters, compiled))
+    }
+
+    /// The field of an equation with automatic parameters of these names, to be evaluated as it is written.
+    fn of_equation(text: &str, equation: Equation, automatic: Vec<String>) -> Result<Self, FormulaError> {
+        let parameters: Vec<Parameter> = automatic.iter().map(|name| Parameter::automatic(name)).collect();
+        let compiled = Compiled::new(&equation, &parameters)?;
+        let written = WrittenFormula { text: text.to_owned(), equation, automatic, unused: Vec::new() };
+        Ok(Self::of(written, parameters, compiled))
+    }
+
+    fn of(written: WrittenFormula, parameters: Vec<Parameter>, compiled: Compiled) -> Self {
+        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+        Self {
             written: Arc::new(written),
             simplified: None,
             surface: Arc::new(compiled.graph.part(compiled.root)),
@@ -236,7 +250,7 @@ impl Formula {
             values,
             compiled,
             parameters,
-        })
+        }
     }
 
     /// Field of the same surface in which powers and repeated factors stand once: u in place of u², √u or |u|.
