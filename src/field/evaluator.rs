@@ -1,6 +1,6 @@
 //! Who evaluates a field: batches of points in single precision, single ones in double, counted from a near origin.
 
-use super::{BATCH, Enclosure, Field, Jet};
+use super::{BATCH, Enclosure, Field, Jet, STEP};
 use crate::math::{Bounds, Interval, Sym3, median, power_of_two};
 use glam::{DVec3, Vec3};
 
@@ -23,11 +23,13 @@ pub struct Frame {
     /// f/s. It is for fields whose values or intermediate results are beyond single precision: arsinh(f/s) has the zeros and signs of f, is
     /// f/s near the surface, and grows like a logarithm far from it.
     pub double: Option<f64>,
+    /// The length of what is looked at, to which the steps of differences are small: the diagonal of the box in a run.
+    pub length: f64,
 }
 
 impl Default for Frame {
     fn default() -> Self {
-        Self { origin: DVec3::ZERO, scale: 1.0, double: None }
+        Self { origin: DVec3::ZERO, scale: 1.0, double: None, length: 1.0 }
     }
 }
 
@@ -74,6 +76,16 @@ impl Frame {
     #[must_use]
     pub fn is_double(&self) -> bool {
         self.double.is_some() || self.origin != DVec3::ZERO
+    }
+
+    /// Length of the steps of differences at a point in the coordinates of the field: a 131,072nd of the length, but far above the
+    /// rounding of the point. It is a power of two, so that p ± h loses no digit of h.
+    pub(super) fn step(&self, p: DVec3) -> f64 {
+        /// √ε of double precision.
+        const ROUNDING: f64 = 1.0 / 67_108_864.0;
+        let size = p.abs().max_element();
+        let least = if size.is_normal() { ROUNDING * power_of_two(size) } else { 0.0 };
+        least.max(STEP * power_of_two(self.length))
     }
 
     /// f and ∇f as they are given for single points.
@@ -287,12 +299,12 @@ impl<'a> dyn Evaluator + 'a {
 }
 
 /// The evaluator of a field by its own methods, one point at a time.
-pub(super) struct Pointwise<'a, F: ?Sized> {
-    pub(super) field: &'a F,
+pub(super) struct Pointwise<F> {
+    pub(super) field: F,
     pub(super) frame: Frame,
 }
 
-impl<F: Field + ?Sized> Evaluator for Pointwise<'_, F> {
+impl<F: Field> Evaluator for Pointwise<F> {
     fn frame(&self) -> Frame {
         self.frame
     }

@@ -1,12 +1,14 @@
 //! Fields given by functions of the program.
 
-use super::{Field, Jet, MaybeSend, MaybeSync, difference_step, jet_by_differences};
+use super::{
+    Evaluator, Field, Frame, Jet, MaybeSend, MaybeSync, Pointwise, difference_step, jet_by_differences,
+};
 use crate::math::Sym3;
 use glam::DVec3;
 
 /// Steps of second differences are this many times those of first ones: ε^¼ in place of ε^⅓, the best compromise between the error
 /// of the formula, of order h², and that of rounding, of order ε/h².
-const SECOND: f64 = 20.0;
+pub(super) const SECOND: f64 = 20.0;
 
 /// A field given by a function of a point, with its gradient or without.
 ///
@@ -60,30 +62,66 @@ where
     }
 
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
-        let value = (self.value)(p);
         if let Some(gradient) = &self.gradient {
-            return (value, gradient(p));
+            return ((self.value)(p), gradient(p));
         }
-        (value, slope([0, 1, 2, 3].map(|k| if k == 0 { value } else { (self.value)(at_slope(p, k)) }), p))
+        let jet = self.jet(p);
+        (jet.value, jet.gradient)
     }
 
     fn jet(&self, p: DVec3) -> Jet {
-        if self.gradient.is_some() {
-            return jet_by_differences(self, p);
+        Stepped { field: self, step: &difference_step }.jet(p)
+    }
+
+    /// Derivatives that are not given are differences over steps that suit the frame, those of first order forward ones.
+    fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
+        Box::new(Pointwise { field: Stepped { field: self, step: move |p| frame.step(p) }, frame })
+    }
+}
+
+/// The field with steps of this length at a point.
+struct Stepped<'a, F, G, S> {
+    field: &'a FnField<F, G>,
+    step: S,
+}
+
+impl<F, G, S> Field for Stepped<'_, F, G, S>
+where
+    F: Fn(DVec3) -> f64 + MaybeSend + MaybeSync,
+    G: Fn(DVec3) -> DVec3 + MaybeSend + MaybeSync,
+    S: Fn(DVec3) -> f64 + MaybeSend + MaybeSync,
+{
+    fn value(&self, p: DVec3) -> f64 {
+        (self.field.value)(p)
+    }
+
+    fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
+        if self.field.gradient.is_some() {
+            return self.field.value_and_gradient(p);
         }
-        jet(core::array::from_fn(|k| (self.value)(at_jet(p, k))), p)
+        let h = (self.step)(p);
+        let f = core::array::from_fn(|k| self.value(at_slope(p, k, h)));
+        (f[0], slope(f, h))
+    }
+
+    fn jet(&self, p: DVec3) -> Jet {
+        let h = (self.step)(p);
+        if self.field.gradient.is_some() {
+            return jet_by_differences(self, p, h);
+        }
+        jet(core::array::from_fn(|k| self.value(at_jet(p, k, SECOND * h))), SECOND * h)
     }
 }
 
 /// Place `k` of the four whose values give a gradient: the point itself, then one ahead along each axis.
-pub(super) fn at_slope(p: DVec3, k: usize) -> DVec3 {
-    if k == 0 { p } else { p + DVec3::AXES[k - 1] * difference_step(p) }
+pub(super) fn at_slope(p: DVec3, k: usize, h: f64) -> DVec3 {
+    if k == 0 { p } else { p + DVec3::AXES[k - 1] * h }
 }
 
-/// The gradient by forward differences, from the values at the places of [`at_slope`]. Its error is of order h, a few millionths for a surface
-/// that bends within a unit, which is far less than a normal in single precision shows where a function computes in single precision itself.
-pub(super) fn slope(f: [f64; SLOPE], p: DVec3) -> DVec3 {
-    (DVec3::new(f[1], f[2], f[3]) - DVec3::splat(f[0])) / difference_step(p)
+/// The gradient by forward differences, from the values at the places of [`at_slope`]. Its error is of order h: less than a ten-thousandth
+/// where the surface bends within a twentieth of the box, and no more where a function computes in single precision.
+pub(super) fn slope(f: [f64; SLOPE], h: f64) -> DVec3 {
+    (DVec3::new(f[1], f[2], f[3]) - DVec3::splat(f[0])) / h
 }
 
 /// Number of values that a gradient takes, and a second-order jet.
@@ -92,10 +130,9 @@ pub(super) const JET: usize = 19;
 
 /// Place `k` of those whose values give a second-order jet: the point itself, one ahead and one behind on each axis, and four around it in each
 /// plane of two axes.
-pub(super) fn at_jet(p: DVec3, k: usize) -> DVec3 {
+pub(super) fn at_jet(p: DVec3, k: usize, h: f64) -> DVec3 {
     const SIGNS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
     const PLANES: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
-    let h = SECOND * difference_step(p);
     match k.checked_sub(1) {
         None => p,
         Some(k @ 0..6) => p + DVec3::AXES[k / 2] * if k % 2 == 0 { h } else { -h },
@@ -107,8 +144,7 @@ pub(super) fn at_jet(p: DVec3, k: usize) -> DVec3 {
 }
 
 /// The second-order jet by central differences, from the values at the places of [`at_jet`].
-pub(super) fn jet(f: [f64; JET], p: DVec3) -> Jet {
-    let h = SECOND * difference_step(p);
+pub(super) fn jet(f: [f64; JET], h: f64) -> Jet {
     let value = f[0];
     let [x, y, z] = [1, 3, 5].map(|k| (f[k] - f[k + 1]) / (2.0 * h));
     let [xx, yy, zz] = [1, 3, 5].map(|k| (f[k] - 2.0 * value + f[k + 1]) / (h * h));

@@ -1,6 +1,6 @@
 //! What a program may give to be sampled: a field, a function of a point, a function of a batch of points.
 
-use super::function::{JET, SLOPE, at_jet, at_slope, jet, slope};
+use super::function::{JET, SECOND, SLOPE, at_jet, at_slope, jet, slope};
 use super::{BATCH, Evaluator, Field, FnField, Frame, Jet, MaybeSend, MaybeSync};
 use crate::math::Sym3;
 use core::fmt::{self, Debug, Display, Formatter};
@@ -218,8 +218,8 @@ where
         }
     }
 
-    /// f and ∇f at each point, at most a [`BATCH`] of them.
-    fn gradients(&self, points: &[DVec3], f: &mut [f64], gradient: &mut [DVec3]) {
+    /// f and ∇f at each point, at most a [`BATCH`] of them; differences are over the steps of a frame.
+    fn gradients(&self, frame: Frame, points: &[DVec3], f: &mut [f64], gradient: &mut [DVec3]) {
         let n = points.len();
         if let Some(gradients) = &self.gradients {
             self.values(points, f);
@@ -233,25 +233,33 @@ where
             }
             return;
         }
-        let places: Vec<DVec3> = points.iter().flat_map(|&p| [0, 1, 2, 3].map(|k| at_slope(p, k))).collect();
+        let places: Vec<DVec3> =
+            points.iter().flat_map(|&p| [0, 1, 2, 3].map(|k| at_slope(p, k, frame.step(p)))).collect();
         let mut values = vec![0.0; places.len()];
         self.values(&places, &mut values);
         for (k, values) in values.as_chunks::<SLOPE>().0.iter().enumerate() {
-            (f[k], gradient[k]) = (values[0], slope(*values, points[k]));
+            (f[k], gradient[k]) = (values[0], slope(*values, frame.step(points[k])));
         }
     }
 
-    /// f, ∇f and ∇∇f at each point.
-    fn jets(&self, points: &[DVec3]) -> Vec<Jet> {
+    /// f, ∇f and ∇∇f at each point; differences are over the steps of a frame.
+    fn jets(&self, frame: Frame, points: &[DVec3]) -> Vec<Jet> {
         if self.gradients.is_none() {
             let mut jets = Vec::with_capacity(points.len());
             for points in points.chunks(BATCH * SLOPE / JET) {
-                let places: Vec<DVec3> =
-                    points.iter().flat_map(|&p| (0..JET).map(move |k| at_jet(p, k))).collect();
+                let places: Vec<DVec3> = points
+                    .iter()
+                    .flat_map(|&p| (0..JET).map(move |k| at_jet(p, k, SECOND * frame.step(p))))
+                    .collect();
                 let mut values = vec![0.0; places.len()];
                 self.values(&places, &mut values);
                 jets.extend(
-                    values.as_chunks::<JET>().0.iter().zip(points).map(|(values, &p)| jet(*values, p)),
+                    values
+                        .as_chunks::<JET>()
+                        .0
+                        .iter()
+                        .zip(points)
+                        .map(|(values, &p)| jet(*values, SECOND * frame.step(p))),
                 );
             }
             return jets;
@@ -262,16 +270,16 @@ where
             let places: Vec<DVec3> = points
                 .iter()
                 .flat_map(|&p| {
-                    let h = super::difference_step(p);
+                    let h = frame.step(p);
                     let around = DVec3::AXES.into_iter().flat_map(move |axis| [p + h * axis, p - h * axis]);
                     core::iter::once(p).chain(around)
                 })
                 .collect();
             let (mut f, mut g) = (vec![0.0; places.len()], vec![DVec3::ZERO; places.len()]);
-            self.gradients(&places, &mut f, &mut g);
+            self.gradients(frame, &places, &mut f, &mut g);
             for (k, &p) in points.iter().enumerate() {
                 let own = &g[AROUND * k..][..AROUND];
-                let h = super::difference_step(p);
+                let h = frame.step(p);
                 let [x, y, z] = [1, 3, 5].map(|k| (own[k] - own[k + 1]) / (2.0 * h));
                 jets.push(super::jet_of_slopes(f[AROUND * k], own[0], [x, y, z]));
             }
@@ -294,12 +302,12 @@ where
 
     fn value_and_gradient(&self, p: DVec3) -> (f64, DVec3) {
         let (mut f, mut gradient) = ([0.0], [DVec3::ZERO]);
-        self.gradients(&[p], &mut f, &mut gradient);
+        self.gradients(Frame::default(), &[p], &mut f, &mut gradient);
         (f[0], gradient[0])
     }
 
     fn jet(&self, p: DVec3) -> Jet {
-        self.jets(&[p])[0]
+        self.jets(Frame::default(), &[p])[0]
     }
 
     fn evaluator(&self, frame: Frame) -> Box<dyn Evaluator + '_> {
@@ -343,7 +351,7 @@ where
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         let (mut f, mut g) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
         for (n, points) in (0..).step_by(BATCH).zip(points.chunks(BATCH)) {
-            self.field.gradients(&self.places(points), &mut f, &mut g);
+            self.field.gradients(self.frame, &self.places(points), &mut f, &mut g);
             for k in 0..points.len() {
                 (value[n + k], gradient[n + k]) = self.frame.gradient((f[k], g[k]));
             }
@@ -357,22 +365,24 @@ where
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        for (k, jet) in self.field.jets(&self.places(points)).iter().enumerate() {
+        for (k, jet) in self.field.jets(self.frame, &self.places(points)).iter().enumerate() {
             (value[k], gradient[k], hessian[k]) = self.frame.hessian(jet);
         }
     }
 
     fn value_and_gradient(&mut self, p: DVec3) -> (f64, DVec3) {
-        self.frame.exact(self.field.value_and_gradient(self.frame.place(p)))
+        let (mut f, mut gradient) = ([0.0], [DVec3::ZERO]);
+        self.field.gradients(self.frame, &[self.frame.place(p)], &mut f, &mut gradient);
+        self.frame.exact((f[0], gradient[0]))
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        self.frame.jet(self.field.jet(self.frame.place(p)))
+        self.frame.jet(self.field.jets(self.frame, &[self.frame.place(p)])[0])
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         for (n, points) in (0..).step_by(BATCH).zip(points.chunks(BATCH)) {
-            self.field.gradients(&self.places(points), &mut value[n..], &mut gradient[n..]);
+            self.field.gradients(self.frame, &self.places(points), &mut value[n..], &mut gradient[n..]);
             for k in n..n + points.len() {
                 (value[k], gradient[k]) = self.frame.exact((value[k], gradient[k]));
             }

@@ -139,7 +139,7 @@ pub trait Field: MaybeSend + MaybeSync {
 
     /// f, ∇f and ∇∇f at `p`. By default the second derivatives are central differences of the gradient.
     fn jet(&self, p: DVec3) -> Jet {
-        jet_by_differences(self, p)
+        jet_by_differences(self, p, difference_step(p))
     }
 
     /// An evaluator of the field in `frame`. A field that wraps another one passes this on. By default it calls the methods above, one point
@@ -209,19 +209,19 @@ impl UnitCell {
     }
 }
 
+/// ∛ε of double precision, rounded to a power of two so that p ± h loses no digit of h.
+const STEP: f64 = 1.0 / 131_072.0;
+
 /// Length of the steps of central differences at `p`: ∛ε of its largest coordinate, or of 1 if that is smaller. It is the best
 /// compromise between the error of the formula, of order h², and that of rounding, of order ε/h (Press et al., "Numerical Recipes",
 /// §5.7).
 pub(crate) fn difference_step(p: DVec3) -> f64 {
-    /// ∛ε of double precision, rounded to a power of two so that p ± h loses no digit of h.
-    const STEP: f64 = 1.0 / 131_072.0;
     STEP * p.abs().max_element().max(1.0)
 }
 
-/// [`Field::jet`], with second derivatives that are central differences of the gradient.
-pub(crate) fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3) -> Jet {
+/// [`Field::jet`], with second derivatives that are central differences of the gradient with steps of this length.
+fn jet_by_differences<F: Field + ?Sized>(field: &F, p: DVec3, h: f64) -> Jet {
     let (value, gradient) = field.value_and_gradient(p);
-    let h = difference_step(p);
     let [x, y, z] = DVec3::AXES.map(|axis| {
         let [ahead, behind] = [p + h * axis, p - h * axis].map(|q| field.value_and_gradient(q).1);
         (ahead - behind) / (2.0 * h)

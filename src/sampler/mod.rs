@@ -160,7 +160,7 @@ pub(crate) fn find_creases<'a>(
 fn frame_for(field: &dyn Field, origin: DVec3, bounds: &Bounds) -> Frame {
     /// Points along each axis: 125 of them, off the faces of the box and its planes of symmetry, fill one batch.
     const SIDE: usize = 5;
-    let frame = Frame::around(origin);
+    let frame = Frame { length: bounds.diagonal(), ..Frame::around(origin) };
     let double = precision::double_scale(&mut *field.evaluator(frame), bounds);
     let spread: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     Frame { double, ..frame }.scaled_to(field, spread.into_iter())
