@@ -39,17 +39,16 @@ export async function createCharts(engine, player) {
     return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
   });
   const energy = computed(() => engine.report.value?.energy ?? []);
-  const followed = computed(() => (player.grain.value === 'level' ? null : (player.panel.value?.level.value ?? null)));
-  const atLevel = computed(() => followed.value ?? (level.value === null ? null : newest.value));
+  const atLevel = computed(() => (level.value === null ? null : newest.value));
   const atStep = computed(() => {
-    if (followed.value !== null || (level.value !== null && newest.value < table.value.last)) return null;
+    if (level.value !== null && newest.value < table.value.last) return null;
     if (level.value !== null) return 0;
     return whole.value ? Math.max(0, energy.value.length - 1) : (relaxed.value ?? null);
   });
   const spread = computed(() => {
     void [engine.report.value, kept.value, table.value];
     if (!shown.value) return null;
-    const upTo = followed.value ?? (level.value === null ? null : newest.value);
+    const upTo = level.value === null ? null : newest.value;
     return spreadOf(engine.columns, { upTo, step: upTo === null ? relaxed.value : null });
   });
   const degree = computed(() => {
@@ -57,15 +56,15 @@ export async function createCharts(engine, player) {
     return degreeBins(engine.columns.valence);
   });
   /** @param {number} step */
-  const seekStep = (step) => player.seekLevel(step === 0 ? table.peek().last : table.peek().last + step);
+  const seekStep = (step) => player.seek(step === 0 ? table.peek().last : table.peek().last + step);
   const charts = [
     chartOf(
       () => freshChart(table.value, atLevel.value),
-      (k) => player.seekLevel(k),
+      (k) => player.seek(k),
     ),
     chartOf(
       () => fateChart(table.value, atLevel.value),
-      (k) => player.seekLevel(k),
+      (k) => player.seek(k),
     ),
     chartOf(() => energyChart(energy.value, atStep.value), seekStep),
     chartOf(() => moveChart(moves.value, atStep.value), seekStep),
