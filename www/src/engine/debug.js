@@ -13,7 +13,7 @@
 export const CAMERA_MS = 120;
 
 /** @param {Parts} parts @returns {EngineDebug} */
-export function createDebug({ store, picture: { viewer }, runs: { sampling } }) {
+export function createDebug({ store, picture: { viewer }, scheduler: { sampling } }) {
   return {
     provoke: (fault) => sampling.client.post({ type: 'provoke', fault }),
     loseDevice(reason = 'unknown') {

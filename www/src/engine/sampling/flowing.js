@@ -49,16 +49,13 @@ export class FlowingFront {
       this.#worker.postMessage({
         type: 'job',
         job: {
-          kind: 'sample',
+          kind: 'live',
           id: this.#last,
           field: { surface: null, parameters: {}, pins: [], ...field },
           points: null,
           settings,
           following: follows ? [settings] : [],
           isClosed,
-          grow: false,
-          live: true,
-          coarse: false,
           askAbove: Infinity,
         },
       });

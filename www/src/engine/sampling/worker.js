@@ -26,7 +26,7 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-const jobs = new Jobs(post);
+const jobs = new Jobs(post, () => performance.now());
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
 /** @type {Fault | null} */
@@ -85,6 +85,7 @@ const surroundings = (ours) => ({
   pause,
   post: (message, transfer) => {
     if (message.type === 'columns') undrawn += 1;
+    if (message.type === 'done') jobs.sampled();
     post(message, transfer);
   },
   interrupt: () => {
