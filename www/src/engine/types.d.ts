@@ -418,8 +418,6 @@ export type ParticleFormat = 'ply' | 'csv' | 'json';
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 /** Commands and counts of an engine for tests. */
 export interface EngineDebug {
-  /** traps the core in its worker, overflows the worker's stack, or sends it into an endless loop */
-  provoke: (fault: 'panic' | 'overflow' | 'hang') => void;
   loseDevice: (reason?: string) => void;
   /** delivers a message of another run */
   stale: (id: number) => void;

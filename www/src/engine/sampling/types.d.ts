@@ -60,14 +60,11 @@ export type ToWorker =
   | { type: 'number'; request: number; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
-  | { type: 'drawn'; id: number }
-  | { type: 'provoke'; fault: Fault };
+  | { type: 'drawn'; id: number };
 /** Particles that the sampler has not placed: vectors of three floats. */
 export type PlacedColumns = { positions: Float32Array; normals: Float32Array; radii: Float32Array };
 /** Figures, places and columns as those of a report. */
 export type PlacedMeasures = Measures & { energy: Float32Array; valence: Uint8Array };
-/** Faults that tests provoke. */
-export type Fault = 'panic' | 'hang' | 'overflow';
 /**
  * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than `askAbove` are expected;
  * `lost`: the worker no longer holds the particles to relax. A job whose field was refused ends with that answer. A
