@@ -1,6 +1,6 @@
 /**
  * Serves the built site for the browser tests at `/` and again at `/sub/path/`, as a plain static host would: the folder
- * that SITE names, else `dist/`.
+ * that SITE names, else `dist/`. At `/faults/` its workers run `faults.js` first, and listen to the channel `faults`.
  *
  * Usage: node tests/server.js [port]
  */
@@ -27,6 +27,10 @@ const types = {
   '.webmanifest': 'application/manifest+json',
 };
 
+const FAULTS = `${readFileSync(new URL('./faults.js', import.meta.url), 'utf8')}
+new BroadcastChannel('faults').onmessage = ({ data }) => strike(data);
+`;
+
 /**
  * Creates a server of the site.
  * @param {(name: string, content: Buffer) => Buffer | string} [change]  what is sent for a file, by its path in the
@@ -35,7 +39,8 @@ const types = {
 export const createSite = (change = (_name, content) => content) =>
   createServer((request, response) => {
     const { pathname } = new URL(request.url ?? '/', 'http://localhost');
-    const inside = pathname.startsWith('/sub/path/') ? pathname.slice('/sub/path'.length) : pathname;
+    const [mount = '/'] = ['/sub/path/', '/faults/'].filter((path) => pathname.startsWith(path));
+    const inside = pathname.slice(mount.length - 1);
     let file = join(root, normalize(decodeURIComponent(inside)));
     if (!file.startsWith(root)) return response.writeHead(403).end();
     if (existsSync(file) && statSync(file).isDirectory()) file = join(file, 'index.html');
@@ -44,7 +49,9 @@ export const createSite = (change = (_name, content) => content) =>
       'content-type': types[extname(file)] ?? 'application/octet-stream',
       'cache-control': 'no-store',
     });
-    return response.end(change(file.slice(root.length), readFileSync(file)));
+    const name = file.slice(root.length);
+    const content = change(name, readFileSync(file));
+    return response.end(mount === '/faults/' && /worker-[^/]*\.js$/.test(name) ? FAULTS + content : content);
   });
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href)

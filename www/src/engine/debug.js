@@ -1,5 +1,5 @@
 /**
- * Commands and counts of an engine for tests: they provoke faults, wait for the picture and read counters.
+ * Commands and counts of an engine for tests: they lose the device, wait for the picture and read counters.
  *
  * @module
  */
@@ -13,9 +13,8 @@
 export const CAMERA_MS = 120;
 
 /** @param {Parts} parts @returns {EngineDebug} */
-export function createDebug({ store, picture: { viewer }, runs: { sampling } }) {
+export function createDebug({ store, picture: { viewer }, scheduler: { sampling } }) {
   return {
-    provoke: (fault) => sampling.client.post({ type: 'provoke', fault }),
     loseDevice(reason = 'unknown') {
       const { device } = viewer.keeper;
       if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');

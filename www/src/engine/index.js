@@ -13,8 +13,8 @@ import { createDebug } from './debug.js';
 import { Framing } from './framing.js';
 import { keepLook } from './look.js';
 import { createPicture } from './picture.js';
-import { Runs } from './runs.js';
 import { fetchCore } from './sampling/spawn.js';
+import { Scheduler } from './scheduler.js';
 import { surfaceOf } from './share/state.js';
 import { createStore } from './store.js';
 
@@ -34,7 +34,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
   const columns = new Columns();
   const picture = createPicture({ host, store, columns, first: backend, after: fetchCore() });
   const { viewer } = picture;
-  const runs = new Runs({
+  const scheduler = new Scheduler({
     store,
     columns,
     picture: viewer,
@@ -45,7 +45,7 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       fetchExports().catch(() => {});
     },
   });
-  const framing = new Framing({ store, columns, viewer, keep: () => runs.sampling.commit() });
+  const framing = new Framing({ store, columns, viewer, keep: () => scheduler.sampling.commit() });
 
   /** @type {Parts['adopt']} */
   function adopt(whole) {
@@ -54,15 +54,15 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
     const { camera } = whole.view;
     viewer.camera.set(camera);
     store.state.value = whole;
-    if (camera.fit && runs.loader.ready()) viewer.fit(true);
+    if (camera.fit && scheduler.loader.ready()) viewer.fit(true);
     // If the surface cannot be sampled, the camera fits the one that stays.
     framing.written({ typed: false });
-    runs.choose({ grow: true, fit: camera.fit });
+    scheduler.choose(camera.fit ? 'new' : 'grow');
   }
 
   /** @type {Parts} */
-  const parts = { store, columns, picture, runs, framing, adopt };
-  const closeLook = keepLook({ store, viewer, runs });
+  const parts = { store, columns, picture, scheduler, framing, adopt };
+  const closeLook = keepLook({ store, viewer, scheduler });
   /** @type {Engine} */
   const engine = {
     ...store,
@@ -81,16 +81,16 @@ export function createEngine({ host, link = '', state = {}, backend = null }) {
       if (!field) return null;
       const { model, formula, parameters, bounds } = field;
       if (!model) return { formula, parameters, bounds };
-      const solved = runs.loader.client.get(runs.loader.key());
+      const solved = scheduler.loader.client.get(scheduler.loader.key());
       return solved ? { system: solved.field, pulls: store.state.value.pulls, bounds } : null;
     },
     debug: createDebug(parts),
     destroy() {
       closeLook();
-      for (const part of [framing, picture, runs]) part.close();
+      for (const part of [framing, picture, scheduler]) part.close();
     },
   };
-  runs.sampling.start();
+  scheduler.sampling.start();
   void viewer.start();
   return engine;
 }

@@ -7,16 +7,16 @@ import { effect, signal, untracked } from '@preact/signals-core';
 import { seenOf } from './view/style.js';
 
 /**
- * @import { Runs } from './runs.js'
+ * @import { Scheduler } from './scheduler.js'
  * @import { Store } from './store.js'
  * @import { Viewer } from './view/viewer.js'
  */
 
 /**
- * @param {{ store: Store, viewer: Viewer, runs: Runs }} parts
+ * @param {{ store: Store, viewer: Viewer, scheduler: Scheduler }} parts
  * @returns ends it
  */
-export function keepLook({ store, viewer, runs: { loader, sampling } }) {
+export function keepLook({ store, viewer, scheduler: { loader, sampling } }) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   const isDark = signal(system.matches);
   const follow = () => {

@@ -1,10 +1,9 @@
 // The parts of the engine, as its own files know them.
 import type { Framing } from './framing.js';
-import type { SampleOptions } from './points/types.js';
-import type { Runs } from './runs.js';
 import type { PictureLike } from './sampling/types.js';
+import type { Scheduler } from './scheduler.js';
 import type { Store } from './store.js';
-import type { BackendKind, Columns, FieldRequest, Settings, State, Take } from './types.js';
+import type { BackendKind, Columns, FieldRequest, SampleKind, Settings, State, Take } from './types.js';
 import type { Viewer } from './view/viewer.js';
 
 /** The parts of the engine, on which its commands act. */
@@ -12,7 +11,7 @@ export interface Parts {
   store: Store;
   columns: Columns;
   picture: Picture;
-  runs: Runs;
+  scheduler: Scheduler;
   framing: Framing;
   /** takes over a whole valid state and samples it */
   adopt: (state: State) => void;
@@ -25,8 +24,8 @@ export interface Picture {
   hand: { take: Take };
   close: () => void;
 }
-/** `changed`: only a control has changed the surface, so that the particles may follow it. */
-export type RunOptions = SampleOptions & { settings?: Settings; pulled?: Pulled; changed?: boolean };
+/** `settings` in the place of the state's; `pulled` where the surface is pulled. */
+export type RunOptions = { kind?: SampleKind; settings?: Settings; pulled?: Pulled };
 /** Points that the surface is to pass through, and the parameters that are changed for it. */
 export type Pulled = Required<Pick<FieldRequest, 'parameters' | 'pins'>>;
 export interface PictureOptions {
@@ -38,7 +37,7 @@ export interface PictureOptions {
   /** what the bundles of the renderer are fetched after */
   after: Promise<unknown>;
 }
-export interface RunsOptions {
+export interface SchedulerOptions {
   store: Store;
   columns: Columns;
   picture: PictureLike;

@@ -93,6 +93,21 @@ export type Settings = Record<string, number | string>;
  * quality figures are being computed.
  */
 export type Progress = Omit<CoreProgress, 'phase'> & { phase: CorePhase | 'quality'; run: number; live: boolean };
+/** What a run that samples is for: {@link KINDS} says what follows from it. */
+export type SampleKind =
+  | 'new'
+  | 'grow'
+  | 'agreed'
+  | 'change'
+  | 'move'
+  | 'rest'
+  | 'trial'
+  | 'live'
+  | 'sketch'
+  | 'again'
+  | 'restore'
+  | 'backdrop';
+export type RunKind = SampleKind | 'relax';
 export type Seconds = { seeding: number; generation: number; refinement: number; relaxation: number; quality: number };
 /** A report with what the worker measured. */
 export type Report = CoreReport & { seconds: Seconds };
@@ -400,8 +415,6 @@ export type ParticleFormat = 'ply' | 'csv' | 'json';
 export type MeshFormat = 'glb' | '3mf' | 'stl' | 'obj' | 'ply';
 /** Commands and counts of an engine for tests. */
 export interface EngineDebug {
-  /** traps the core in its worker, overflows the worker's stack, or sends it into an endless loop */
-  provoke: (fault: 'panic' | 'overflow' | 'hang') => void;
   loseDevice: (reason?: string) => void;
   /** delivers a message of another run */
   stale: (id: number) => void;

@@ -133,9 +133,6 @@ export function createConsole(engine) {
     create: (options) => createEngine(options),
     engine,
     debug: {
-      panic: () => debug.provoke('panic'),
-      overflow: () => debug.provoke('overflow'),
-      hang: () => debug.provoke('hang'),
       loseDevice: debug.loseDevice,
       stale: debug.stale,
       still: debug.still,

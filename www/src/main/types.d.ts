@@ -27,7 +27,7 @@ export interface Console {
   /** another engine, in another element */
   create: (options: EngineOptions) => Engine;
   engine: Engine;
-  debug: Omit<Engine['debug'], 'provoke' | 'isOff'> & Record<'panic' | 'overflow' | 'hang', () => void>;
+  debug: Omit<Engine['debug'], 'isOff'>;
 }
 /**
  * Copies of the columns: index i of each belongs to particle i. `exact`: the positions in double precision, in a box

@@ -1,20 +1,32 @@
 /** Creates a menu of choices. */
-import { h } from './dom.js';
+import { fill, h, live } from './dom.js';
 
 /** @import { SelectOptions } from './types.js' */
 
 /**
+ * Creates a select. It shows the choice that `value` names; without one it keeps what the user has chosen.
  * @template {string | number} T
  * @param {SelectOptions<T>} options
  */
-export const createSelect = ({ name, choices, value, change, look = '' }) =>
-  h(
-    'select',
-    {
-      class: `select ${look}`.trim(),
-      'aria-label': name,
-      prop: { value: () => String(value()) },
-      on: { change: ({ currentTarget }) => change(choices[currentTarget.selectedIndex].value) },
-    },
-    choices.map(({ value, label }) => h('option', { value }, label)),
-  );
+export function createSelect({ name, choices, value, change, look = '' }) {
+  /** @type {Exclude<typeof choices, Function>} */
+  let shown = [];
+  const select = h('select', {
+    class: `select ${look}`.trim(),
+    'aria-label': name,
+    on: { change: () => change?.(shown[select.selectedIndex].value) },
+  });
+  live(select, () => {
+    const next = typeof choices === 'function' ? choices() : choices;
+    const wanted = value ? String(value()) : select.value;
+    if (next !== shown) {
+      shown = next;
+      fill(
+        select,
+        next.map((choice) => h('option', { value: choice.value }, choice.label)),
+      );
+    }
+    if (next.some((choice) => String(choice.value) === wanted)) select.value = wanted;
+  });
+  return select;
+}

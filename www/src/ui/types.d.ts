@@ -210,15 +210,17 @@ export interface LayoutOptions {
   inset: (insets: { top: number; right: number; bottom: number; left: number }) => void;
 }
 export interface SelectOptions<T> {
-  /** accessible name */
-  name: string;
-  choices: readonly { value: T; label: string }[];
+  /** accessible name, where no label names it */
+  name?: string;
+  /** the choices, or a function of signals */
+  choices: readonly Choice<T>[] | (() => readonly Choice<T>[]);
   /** the choice that is shown, from signals */
-  value: () => NoInfer<T>;
-  change: (value: T) => void;
+  value?: () => NoInfer<T>;
+  change?: (value: T) => void;
   /** more classes */
   look?: string;
 }
+export type Choice<T> = { value: T; label: string };
 export interface SegmentedOptions<T extends string> {
   /** accessible name */
   name: string;

@@ -13,6 +13,8 @@ import { firefox, webkit } from './drivers.js';
 
 const PORT = 4519;
 const SITE = `http://localhost:${PORT}/sub/path/`;
+/** The same site, whose sampler tests can bring down. */
+const FAULTY = `http://localhost:${PORT}/faults/`;
 /** A link to a state. @param {object} state */
 const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
 /** About 1,100 particles, which software draws quickly. */
@@ -38,10 +40,10 @@ function shutDown() {
   server.close();
 }
 
-/** Opens the page anew and returns the report of its first run. @param {string} hash */
-async function open(hash) {
+/** Opens the page anew and returns the report of its first run. @param {string} hash @param {string} [site] */
+async function open(hash, site = SITE) {
   await tab.go('about:blank');
-  await tab.go(SITE + hash);
+  await tab.go(site + hash);
   return tab.run(async () => {
     while (!(/** @type {any} */ (window).marchingParticles)) await new Promise((resolve) => setTimeout(resolve, 50));
     const p = /** @type {any} */ (window).marchingParticles;
@@ -107,10 +109,11 @@ test('a link brings the same particles back', async () => {
 });
 
 test('a sampler that traps is replaced, with the surface intact', async () => {
-  const { digest } = await open(COARSE);
+  const { digest } = await open(COARSE, FAULTY);
   const again = await tab.run(async () => {
     const p = /** @type {any} */ (window).marchingParticles;
-    p.debug.panic();
+    new BroadcastChannel('faults').postMessage('panic');
+    while (p.debug.counts().restarts === 0) await new Promise((resolve) => setTimeout(resolve, 20));
     const report = await p.run();
     return { digest: report.digest, restarts: p.debug.counts().restarts, cause: p.engine.notice.value?.id };
   });

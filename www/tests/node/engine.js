@@ -28,6 +28,12 @@ export const coarse = { settings: { radius_share: 0.01 } };
 
 /** The workers that were started, by name. @type {Record<string, FakeWorker[]>} */
 export let workers = {};
+/**
+ * Brings a fault upon the newest worker of the sampler (`faults.js`).
+ * @param {'panic' | 'overflow' | 'hang'} fault
+ */
+export const strike = (fault) => workers.sampler.at(-1)?.thread.postMessage({ fault });
+
 /** The addresses that were fetched. @type {string[]} */
 export let fetched = [];
 /** What is answered in place of a file whose address has this part. @type {Map<string, import('./files.js').Answer>} */

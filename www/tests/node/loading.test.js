@@ -1,6 +1,6 @@
 /** A core that cannot be had: the cause is named, every promise settles, and another try helps. */
 import { expect, test, vi } from 'vitest';
-import { answers, begin, expectSurface, fetched, until } from './engine.js';
+import { answers, begin, expectSurface, fetched, strike, until } from './engine.js';
 
 // In one test, since a core that has loaded is kept for the engines to come.
 test('without a core the cause is named, calls settle, and another try helps; a core that is there is kept', async () => {
@@ -37,7 +37,7 @@ test('without a core the cause is named, calls settle, and another try helps; a 
   action?.run();
   await until(p.engine.report, (report) => report);
   await expectSurface(p);
-  p.debug.panic();
+  strike('panic');
   await until(p.engine.notice, (notice) => notice?.id === 'panic');
   await p.run();
   expect(fetched.filter((url) => url.includes('core_bg'))).toHaveLength(1);

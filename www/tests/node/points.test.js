@@ -1,6 +1,6 @@
 /** Surfaces from points: built-in models and files, their links, and what can go wrong with them. */
 import { describe, expect, test } from 'vitest';
-import { answers, expectSurface, link, open, pause, spots, until, workers } from './engine.js';
+import { answers, expectSurface, link, open, pause, spots, strike, until, workers } from './engine.js';
 import { spherePly } from './sphere.js';
 
 const bunny = { surface: 'bunny', settings: { radius_share: 0.015 } };
@@ -73,7 +73,7 @@ test('settings and the clip box of a model are sampled live', async () => {
 test('the sampler replaced in the middle of a model samples it again', async () => {
   const p = await open();
   const before = await p.set(bunny);
-  p.debug.panic();
+  strike('panic');
   await until(p.engine.notice, (notice) => notice?.id === 'panic');
   expect((await p.run())?.digest).toBe(before?.digest);
   expect(p.engine.model.value).not.toBe(null);

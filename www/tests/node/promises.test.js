@@ -1,7 +1,7 @@
 /** Every promise of the console settles, whatever its worker was doing when it died. */
 import { describe, expect, test } from 'vitest';
 import { SILENCE_MS } from '../../src/engine/bundle/load.js';
-import { expectSurface, open, pause, until, workers } from './engine.js';
+import { expectSurface, open, pause, strike, until, workers } from './engine.js';
 import { spherePly } from './sphere.js';
 
 /** @import { Console } from '../../src/main/types.js' */
@@ -53,7 +53,7 @@ async function attack(p, { state, worker, death }) {
   if (worker === 'points') await until(engine.loading, (loading) => loading?.label === 'Solving for the surface');
   else await until(engine.progress, ({ phase }) => phase === (rests ? 'done' : state));
 
-  if (death === 'panic') p.debug.panic();
+  if (death === 'panic') strike('panic');
   else workers[worker].at(-1)?.terminate();
   // First what nothing else helps to settle.
   call('exportMesh', engine.exportMesh('ply'));

@@ -1,7 +1,7 @@
 /** Runs: what starts, stops and replaces them, and what the page has of the surface meanwhile. */
 import { readFile } from 'node:fs/promises';
 import { describe, expect, test } from 'vitest';
-import { eventually, expectSurface, link, open, pause, picture, until, wishes } from './engine.js';
+import { eventually, expectSurface, link, open, pause, picture, strike, until, wishes } from './engine.js';
 
 const golden = new URL('../../../tests/golden/digests.json', import.meta.url);
 
@@ -20,7 +20,7 @@ describe('a sampler that fails', () => {
     test(`by ${fault} is replaced, with the state intact`, async () => {
       const p = await open();
       const before = p.state;
-      p.debug[fault]();
+      strike(fault);
       if (fault === 'hang') p.engine.setParameter('a', 1.25);
       await until(p.engine.notice, (notice) => notice?.id === (fault === 'hang' ? 'hang' : 'panic'));
       expect(p.debug.counts().restarts).toBe(1);
@@ -35,7 +35,7 @@ describe('a sampler that fails', () => {
     const p = await open();
     const kinds = [];
     for (const fault of [true, true, false]) {
-      if (fault) p.debug.hang();
+      if (fault) strike('hang');
       await p.run();
       kinds.push(p.engine.notice.value?.kind);
     }
@@ -47,7 +47,7 @@ describe('a sampler that fails', () => {
   test('four times in a minute is left alone until it is asked for again', async () => {
     const p = await open();
     for (let k = 1; k <= 4; k += 1) {
-      p.debug.panic();
+      strike('panic');
       await eventually(() => p.debug.counts().restarts).toBe(k);
     }
     await until(p.engine.notice, (notice) => notice?.id === 'safe-mode');

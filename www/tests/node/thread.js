@@ -17,7 +17,9 @@ const addresses = `export const load = (url, context, next) => url.endsWith('?ur
   ? { format: 'module', shortCircuit: true, source: 'export default ' + JSON.stringify(url.slice(0, -4)) }
   : next(url, context);`;
 register(`data:text/javascript,${encodeURIComponent(addresses)}`);
+await import('../faults.js');
 await import(workerData.url);
-parentPort?.on('message', ({ message, name }) =>
-  worker.onmessage({ data: name ? { ...message, file: new File([message.file], name) } : message }),
-);
+parentPort?.on('message', ({ fault, message, name }) => {
+  if (fault) worker.strike(fault);
+  else worker.onmessage({ data: name ? { ...message, file: new File([message.file], name) } : message });
+});

@@ -10,6 +10,13 @@ export interface WorkerLike<Sent, Heard> {
   onerror: Handler<{ message?: string }> | null;
 }
 
+export interface RequestWorkerOptions<Sent, Heard> {
+  spawn: () => WorkerLike<Sent, Heard>;
+  onMessage: (message: Heard) => void;
+  /** an error that the worker has not caught, in words or without */
+  onFail: (message: string) => void;
+}
+
 /** Why a bundle could not be loaded. */
 export type LoadFault = 'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init';
 /** The surroundings of a worker's loop, which tests script. */

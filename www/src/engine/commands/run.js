@@ -17,19 +17,19 @@ const MOST_STEPS = 1000;
 /** @typedef {Pick<EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax' | 'makeMesh' | 'leaveMesh'>} RunCommands */
 
 /** @param {Parts} parts @returns {RunCommands} */
-export function runCommands({ store, columns, runs }) {
+export function runCommands({ store, columns, scheduler }) {
   /** Whether the particles are those of a method. @param {Settings[string]} method */
   const isOf = (method) => columns.record?.settings.method === method;
   return {
     run() {
       showAll(store);
-      runs.resample({ grow: true });
+      scheduler.resample({ kind: 'grow' });
     },
     makeMesh() {
       const { draw, level, step } = store.state.value.view;
       store.meshing.value ??= { draw, level, step };
       // Before the picture asks for a mesh, so that the present particles are not joined to one.
-      if (!isOf('refined') || store.partial.value) runs.resample();
+      if (!isOf('refined') || store.partial.value) scheduler.resample();
       changeView(store, { draw: 'mesh', level: null, step: null });
     },
     leaveMesh() {
@@ -39,15 +39,15 @@ export function runCommands({ store, columns, runs }) {
       const { view, settings } = store.state.value;
       // Who has chosen another way of drawing meanwhile keeps it.
       if (view.draw === 'mesh') changeView(store, before);
-      if (!isOf(completeSettings(description(store), settings).method)) runs.resample();
+      if (!isOf(completeSettings(description(store), settings).method)) scheduler.resample();
     },
-    stop: () => runs.stop(),
+    stop: () => scheduler.stop(),
     generateOnly() {
       const settings = { ...completeSettings(description(store), store.state.value.settings), relax_steps: 0 };
-      runs.resample({ grow: true, settings });
+      scheduler.resample({ kind: 'grow', settings });
     },
     relax(steps) {
-      if (steps > 0) runs.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
+      if (steps > 0) scheduler.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
     },
   };
 }

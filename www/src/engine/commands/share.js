@@ -27,7 +27,7 @@ export const fetchExports = () => import('../share/exports.js');
  */
 
 /** @param {Parts} parts @returns {ShareCommands} */
-export function shareCommands({ store, columns, picture: { viewer }, runs, adopt }) {
+export function shareCommands({ store, columns, picture: { viewer }, scheduler, adopt }) {
   /** @type {EngineCommands['picture']} */
   async function picture({ width, height, transparent = false } = {}) {
     const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
@@ -41,7 +41,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
     link: () => encode(store.state.value, description(store)),
     async openLink(link, { initial = false, patch = {} } = {}) {
       const about = description(store);
-      const { state, reset, problem } = await decode(link, about, runs.loader.hasFile);
+      const { state, reset, problem } = await decode(link, about, scheduler.loader.hasFile);
       if (problem) {
         const outcome = initial ? 'This is the standard surface instead.' : 'Nothing was changed.';
         store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${outcome}` };
@@ -50,10 +50,10 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
         const what = [...new Set(reset)].join(', ');
         store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
-      adopt(mergeState(state, { ...patch }, about, runs.loader.hasFile).state);
+      adopt(mergeState(state, { ...patch }, about, scheduler.loader.hasFile).state);
     },
     set(patch) {
-      const { state, reset } = mergeState(store.state.value, patch, description(store), runs.loader.hasFile);
+      const { state, reset } = mergeState(store.state.value, patch, description(store), scheduler.loader.hasFile);
       adopt(state);
       return reset;
     },
@@ -74,7 +74,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, adopt
       return format === 'csv' ? csv(columns, all) : ply(columns, all, record);
     },
     async exportMesh(format, options) {
-      const bytes = await runs.sampling.client.meshFile({ ...options, format });
+      const bytes = await scheduler.sampling.client.meshFile({ ...options, format });
       return new Blob([bytes], { type: MIME[format] ?? 'application/octet-stream' });
     },
   };

@@ -38,13 +38,13 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, pu
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, pulls, settings]);
 
 /** @param {Parts} parts @returns {SurfaceCommands} */
-export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
+export function surfaceCommands({ store, scheduler, framing, picture: { viewer } }) {
   const { state } = store;
   return {
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
-      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
+      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && scheduler.loader.hasFile)) return;
       showAll(store);
       change(store, freshShape(description(store), state.value.settings, id, surface?.formula));
       // Another surface is framed, wherever the hand has left the camera.
@@ -53,20 +53,20 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         camera.set({ ...camera.state, fit: true });
         changeView(store, { camera: camera.state });
       }
-      runs.choose({ grow: true, fit: true });
+      scheduler.choose('new');
     },
     openFile(file) {
       // A formula still waiting for its pause would replace the file.
-      runs.forgetLater();
-      return runs.loader.openFile(file);
+      scheduler.forgetLater();
+      return scheduler.loader.openFile(file);
     },
     setCentres(count) {
       const centres = validCentres(count, description(store), state.value.surface);
       if (centres === undefined || centres === state.value.centres) return;
       change(store, { centres });
-      runs.choose();
+      scheduler.choose();
     },
-    cancelLoading: () => runs.loader.cancel(),
+    cancelLoading: () => scheduler.loader.cancel(),
     setFormula(text, { typing = false } = {}) {
       const { surface, formula } = state.value;
       if (text !== formula) {
@@ -79,11 +79,11 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         change(store, fresh ? freshShape(about, state.value.settings, about.surfaces[0].id, text) : next);
         framing.written({ typed: true });
       } else if (!store.typing.value) {
-        if (!typing) runs.sampling.commit();
+        if (!typing) scheduler.sampling.commit();
         return;
       }
-      if (typing) runs.chooseTyped();
-      else runs.choose();
+      if (typing) scheduler.chooseTyped();
+      else scheduler.choose();
     },
     restore({ camera, ...shape }) {
       const another = shape.surface !== state.value.surface;
@@ -95,13 +95,13 @@ export function surfaceCommands({ store, runs, framing, picture: { viewer } }) {
         changeView(store, { camera });
         viewer.frames.ask();
       }
-      if (sampled) runs.choose({ grow: another, fit: another && (camera?.fit ?? true) });
+      if (sampled) scheduler.choose(another ? ((camera?.fit ?? true) ? 'new' : 'grow') : 'change');
     },
   };
 }
 
 /** @param {Parts} parts @returns {InputCommands} */
-export function inputCommands({ store, runs }) {
+export function inputCommands({ store, scheduler }) {
   const { state } = store;
   /**
    * Changes the state and says whether a drag is under way, as one, so that the history records the drag once.
@@ -115,8 +115,8 @@ export function inputCommands({ store, runs }) {
   /** @param {boolean} live @param {Partial<State>} patch */
   const resample = (live, patch) => {
     take(live, patch);
-    if (live) runs.resampleLive();
-    else runs.resample({ changed: true });
+    if (live) scheduler.resampleLive();
+    else scheduler.resample({ kind: 'move' });
   };
   return {
     setParameter(name, value, { live = false } = {}) {
@@ -126,26 +126,26 @@ export function inputCommands({ store, runs }) {
     resetParameter(name) {
       const { [name]: _, ...parameters } = state.value.parameters;
       change(store, { parameters });
-      runs.resample();
+      scheduler.resample();
     },
     pull(parameters, pins, { live = false } = {}) {
       const pulled = { parameters, pins: [...pins] };
       // A pull ends with the parameters that the core answers.
       store.dragging.value = true;
-      if (live) runs.resampleLive(pulled);
-      else runs.resample({ pulled, changed: true });
+      if (live) scheduler.resampleLive(pulled);
+      else scheduler.resample({ kind: 'move', pulled });
     },
     setPulls: (pulls, { live = false } = {}) => resample(live, { pulls: [...pulls] }),
     declareParameter(name) {
       const { declared } = state.value;
       if (declared.some((p) => p.name === name)) return;
       change(store, { declared: [...declared, newParameter(description(store), name)] });
-      runs.resample();
+      scheduler.resample();
     },
     async readNumber(text) {
       const plain = Number(text.trim().replace(/^([-+]?\d+),(\d+)$/, '$1.$2'));
       if (text.trim() !== '' && Number.isFinite(plain)) return plain;
-      return runs.sampling.client.number(text);
+      return scheduler.sampling.client.number(text);
     },
     setBounds(bounds, { live = false } = {}) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
@@ -170,7 +170,7 @@ export function inputCommands({ store, runs }) {
     resetSetting(name) {
       const { [name]: _, ...settings } = state.value.settings;
       change(store, { settings });
-      runs.resample();
+      scheduler.resample();
     },
   };
 }

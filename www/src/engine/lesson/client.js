@@ -12,11 +12,11 @@
  *
  * @module
  */
+import { RequestWorker } from '../bundle/requests.js';
 
 /**
  * @import {
- *   Fault, FromLesson, LessonClientOptions, LessonProgress, LessonSettings, Questions, Surface, ToLesson,
- *   WorkerLike,
+ *   Fault, FromLesson, LessonClientOptions, LessonProgress, LessonSettings, Questions, Surface, ToLesson, WorkerLike,
  * } from './types.js'
  */
 
@@ -41,30 +41,23 @@ export class LessonError extends Error {
 export const spawnLesson = () =>
   new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
 
-/** @typedef {{resolve: (value: any) => void, reject: (error: LessonError) => void}} Waiting */
-
 export class LessonClient {
-  #spawn;
   #onProgress;
 
-  /** @type {WorkerLike | null} */
+  /** @type {RequestWorker<ToLesson, FromLesson>} */
   #worker;
-  #lastId;
 
   /** Number of the present run. */
-  #run;
-
-  /** The pending promises, by the number of the message. @type {Map<number, Waiting>} */
-  #waiting;
+  #run = 0;
 
   /** @param {LessonClientOptions} [options] */
   constructor({ spawn = spawnLesson, onProgress = () => {} } = {}) {
-    this.#spawn = spawn;
     this.#onProgress = onProgress;
-    this.#worker = null;
-    this.#lastId = 0;
-    this.#run = 0;
-    this.#waiting = new Map();
+    this.#worker = new RequestWorker({
+      spawn,
+      onMessage: (message) => this.#receive(message),
+      onFail: (message) => this.#fail('bundle', message || 'the lesson did not load'),
+    });
   }
 
   /**
@@ -76,8 +69,8 @@ export class LessonClient {
    * @returns {Promise<LessonProgress>}
    */
   start(surface, settings, holds = false) {
-    this.#giveUp('another run has begun');
-    return this.#send((id) => {
+    this.#worker.requests.refuseAll(new LessonError('given_up', 'another run has begun'));
+    return this.#worker.ask((id) => {
       this.#run = id;
       return { type: 'start', id, surface, settings, holds };
     });
@@ -85,7 +78,7 @@ export class LessonClient {
 
   /** Ends the present run where it is: its promise is then fulfilled. */
   stop() {
-    this.#worker?.postMessage({ type: 'stop' });
+    this.#worker.post({ type: 'stop' });
   }
 
   /**
@@ -95,47 +88,29 @@ export class LessonClient {
    * @returns {Promise<Questions[K]['answer']>}
    */
   ask(about, ask) {
-    return this.#send((id) => /** @type {ToLesson} */ ({ type: 'ask', id, about, ask }));
+    return this.#worker.ask((id) => /** @type {ToLesson} */ ({ type: 'ask', id, about, ask }));
   }
 
   /** Ends the worker and frees its memory. The next run starts another one. */
   close() {
-    this.#giveUp('the lesson was closed');
-    this.#end();
-  }
-
-  /** @param {(id: number) => ToLesson} message @returns {Promise<any>} */
-  #send(message) {
-    this.#lastId += 1;
-    const id = this.#lastId;
-    return new Promise((resolve, reject) => {
-      this.#waiting.set(id, { resolve, reject });
-      this.#worker ??= this.#listen(this.#spawn());
-      this.#worker.postMessage(message(id));
-    });
-  }
-
-  /** @param {WorkerLike} worker */
-  #listen(worker) {
-    worker.onmessage = ({ data }) => this.#receive(data);
-    worker.onerror = (event) => this.#fail('bundle', event.message || 'the lesson did not load');
-    return worker;
+    this.#worker.end(new LessonError('given_up', 'the lesson was closed'));
   }
 
   /** @param {FromLesson} message */
   #receive(message) {
+    const { requests } = this.#worker;
     switch (message.type) {
       case 'progress':
         if (message.id === this.#run) this.#onProgress(message.progress);
         break;
       case 'ended':
-        this.#settle(message.id)?.resolve(message.progress);
+        requests.answer(message.id, message.progress);
         break;
       case 'answer':
-        this.#settle(message.id)?.resolve(message.answer);
+        requests.answer(message.id, message.answer);
         break;
       case 'refused':
-        this.#settle(message.id)?.reject(new LessonError('refused', message.error.message, message.error));
+        requests.refuse(message.id, new LessonError('refused', message.error.message, message.error));
         break;
       case 'crashed':
         this.#fail('crashed', `the lesson stopped on an error: ${message.message}`);
@@ -147,37 +122,9 @@ export class LessonClient {
     }
   }
 
-  /** @param {number} id */
-  #settle(id) {
-    const waiting = this.#waiting.get(id);
-    this.#waiting.delete(id);
-    return waiting;
-  }
-
-  /** Rejects all who wait. @param {string} why */
-  #giveUp(why) {
-    this.#reject(new LessonError('given_up', why));
-  }
-
   /** A worker that failed is not asked again. @param {'crashed' | 'bundle'} kind @param {string} message */
   #fail(kind, message) {
-    this.#end();
-    this.#reject(new LessonError(kind, message));
-  }
-
-  /** @param {LessonError} error */
-  #reject(error) {
-    const waiting = [...this.#waiting.values()];
-    this.#waiting.clear();
-    for (const { reject } of waiting) reject(error);
-  }
-
-  #end() {
-    if (!this.#worker) return;
-    this.#worker.onmessage = null;
-    this.#worker.onerror = null;
-    this.#worker.terminate();
-    this.#worker = null;
+    this.#worker.end(new LessonError(kind, message));
   }
 }
 

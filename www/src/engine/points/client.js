@@ -4,12 +4,12 @@
  *
  * @module
  */
-
 import { GRACE_MS, LOADING_MS, SILENCE_MS } from '../bundle/load.js';
+import { RequestWorker } from '../bundle/requests.js';
 
 /**
  * @import { Timer } from '../bundle/types.js'
- * @import { Order, PointsClientOptions, Refusal, Solved } from './types.js'
+ * @import { FromPoints, Order, PointsClientOptions, Refusal, Solved } from './types.js'
  */
 
 /**
@@ -18,15 +18,20 @@ import { GRACE_MS, LOADING_MS, SILENCE_MS } from '../bundle/load.js';
  */
 
 export class PointsClient {
-  #spawn;
   #onProgress;
   #clock;
 
-  /** @type {Map<string, Solved>} */
-  #solved;
+  /** @type {RequestWorker<Order, FromPoints>} */
+  #worker;
 
-  /** Ends the current order. @type {((ending: Ending) => void) | null} */
-  #end;
+  /** The number and the key of the current order. */
+  #order = { id: 0, key: '' };
+
+  /** @type {Timer | undefined} */
+  #timer;
+
+  /** @type {Map<string, Solved>} */
+  #solved = new Map();
 
   /** @param {PointsClientOptions} options */
   constructor({
@@ -34,11 +39,13 @@ export class PointsClient {
     onProgress,
     clock = { setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) },
   }) {
-    this.#spawn = spawn;
     this.#onProgress = onProgress;
     this.#clock = clock;
-    this.#solved = new Map();
-    this.#end = null;
+    this.#worker = new RequestWorker({
+      spawn,
+      onMessage: (message) => this.#receive(message),
+      onFail: (message) => this.#refuse('bundle', message || 'the solver did not load'),
+    });
   }
 
   /** Returns the solved model under this key, if there is one. @param {string | undefined} key */
@@ -53,57 +60,59 @@ export class PointsClient {
    */
   load(key, order) {
     this.giveUp();
-    return new Promise((resolve) => {
-      const worker = this.#spawn();
-      /** @type {Timer | undefined} */
-      let timer;
-      const end = (/** @type {Ending} */ ending) => {
-        this.#clock.clearTimeout(timer);
-        worker.onmessage = null;
-        worker.onerror = null;
-        worker.terminate();
-        if (this.#end === end) this.#end = null;
-        if ('solved' in ending) this.#solved.set(key, ending.solved);
-        resolve(ending);
-      };
-      const refuse = (/** @type {string} */ kind, /** @type {string} */ message, /** @type {string} */ details = '') =>
-        end({ refusal: { kind, message, details } });
-      const silent = () => refuse('silent', 'the solver fell silent and was stopped');
-      const listen = (/** @type {number} */ ms) => {
-        this.#clock.clearTimeout(timer);
-        timer = this.#clock.setTimeout(() => {
-          timer = this.#clock.setTimeout(silent, GRACE_MS);
-        }, ms);
-      };
-      worker.onmessage = ({ data }) => {
-        listen(SILENCE_MS);
-        switch (data.type) {
-          case 'progress':
-            this.#onProgress(data);
-            break;
-          case 'solved':
-            end({ solved: data.solved });
-            break;
-          case 'refused':
-            refuse(data.kind, data.message);
-            break;
-          case 'crashed':
-            refuse('crashed', 'the solver stopped on an error', `${data.message}\n${data.stack}`);
-            break;
-          case 'failed':
-            refuse('bundle', data.message);
-            break;
-          default:
-        }
-      };
-      worker.onerror = (event) => refuse('bundle', event.message || 'the solver did not load');
-      this.#end = end;
-      listen(LOADING_MS);
-      worker.postMessage(order);
+    return this.#worker.ask((id) => {
+      this.#order = { id, key };
+      this.#listen(LOADING_MS);
+      return order;
     });
   }
 
   giveUp() {
-    this.#end?.({ givenUp: true });
+    if (this.#worker.requests.count > 0) this.#end({ givenUp: true });
+  }
+
+  /** @param {FromPoints} message */
+  #receive(message) {
+    this.#listen(SILENCE_MS);
+    switch (message.type) {
+      case 'progress':
+        this.#onProgress(message);
+        break;
+      case 'solved':
+        this.#solved.set(this.#order.key, message.solved);
+        this.#end({ solved: message.solved });
+        break;
+      case 'refused':
+        this.#refuse(message.kind, message.message);
+        break;
+      case 'crashed':
+        this.#refuse('crashed', 'the solver stopped on an error', `${message.message}\n${message.stack}`);
+        break;
+      case 'failed':
+        this.#refuse('bundle', message.message);
+        break;
+      default:
+    }
+  }
+
+  /** @param {string} kind @param {string} message @param {string} [details] */
+  #refuse(kind, message, details = '') {
+    this.#end({ refusal: { kind, message, details } });
+  }
+
+  /** Ends the order and its worker. @param {Ending} ending */
+  #end(ending) {
+    this.#clock.clearTimeout(this.#timer);
+    this.#worker.requests.answer(this.#order.id, ending);
+    this.#worker.end(new Error('the order has ended'));
+  }
+
+  /** Waits so long for the next message before the worker counts as hung. @param {number} ms */
+  #listen(ms) {
+    const silent = () => this.#refuse('silent', 'the solver fell silent and was stopped');
+    this.#clock.clearTimeout(this.#timer);
+    this.#timer = this.#clock.setTimeout(() => {
+      this.#timer = this.#clock.setTimeout(silent, GRACE_MS);
+    }, ms);
   }
 }

@@ -11,8 +11,8 @@ import { defaultState, emptyState, freshShape, fromPoints, modelOf } from '../sh
 import { PointsClient } from './client.js';
 
 /**
- * @import { Shape } from '../types.js'
- * @import { LoaderOptions, Refusal, SampleOptions, Wanted } from './types.js'
+ * @import { SampleKind, Shape } from '../types.js'
+ * @import { LoaderOptions, Refusal, Wanted } from './types.js'
  */
 
 /** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
@@ -87,19 +87,19 @@ export class ModelLoader {
     return this.#last ?? first;
   }
 
-  /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
-  async load(options) {
+  /** Starts solving the state's model and samples it once it is solved. @param {SampleKind} [kind] */
+  async load(kind) {
     const { state } = this.#store;
     const key = this.key();
     const wanted = this.#wanted();
     if (key === undefined || !wanted || this.orderKey === key) return;
     const done = await this.#order(wanted, key, () => {
-      if (this.key() === key) this.#sample(options);
+      if (this.key() === key) this.#sample(kind);
     });
     if (done || this.key() !== key || this.orderKey === key) return;
     const nothing = this.#last === null;
     state.value = { ...state.value, ...this.#before() };
-    if (nothing) this.#sample(options);
+    if (nothing) this.#sample(kind);
   }
 
   /**
@@ -135,7 +135,7 @@ export class ModelLoader {
       this.#opened = { file, key };
       const { value: now } = state;
       state.value = { ...now, ...freshShape(this.#store.description.value, now.settings, FILE_SURFACE) };
-      this.#sample({ grow: true, fit: true });
+      this.#sample('new');
     });
   }
 

@@ -3,7 +3,7 @@
 // also how an order is cancelled.
 import type { Timers } from '../bundle/types.js';
 import type { Store } from '../store.js';
-import type { Bounds, ModelInfo, PointsAnswer, SolvedAnswer } from '../types.js';
+import type { Bounds, ModelInfo, PointsAnswer, SampleKind, SolvedAnswer } from '../types.js';
 
 export type WorkerLike = import('../bundle/types.js').WorkerLike<Order, FromPoints>;
 export type Refusal = { kind: string; message: string; details?: string };
@@ -38,10 +38,9 @@ export interface PointsClientOptions {
   onProgress: (progress: Extract<FromPoints, { type: 'progress' }>) => void;
   clock?: Timers;
 }
-export type SampleOptions = { grow?: boolean; fit?: boolean; trial?: boolean };
 export interface LoaderOptions {
   store: Store;
   spawn: () => WorkerLike;
   /** samples the present state */
-  sample: (options: SampleOptions) => void;
+  sample: (kind?: SampleKind) => void;
 }

@@ -4,6 +4,7 @@
  *
  * @module
  */
+import { Requests } from '../bundle/requests.js';
 import { Supervisor } from './supervisor.js';
 
 /**
@@ -11,23 +12,18 @@ import { Supervisor } from './supervisor.js';
  * @import { ClientEvents, Clock, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
+const lost = () => new Error('The sampler does not hold these particles any more.');
+
 export class SamplingClient {
   #onMessage;
   #onLoadFailed;
 
   /** Whether the page shows the curvature and a mesh. A new worker is told again. */
   #wishes = { curvature: false, mesh: false };
-  /**
-   * The pending requests for a file, by their numbers.
-   * @type {Map<number, (bytes: Uint8Array<ArrayBuffer> | null) => void>}
-   */
-  #files = new Map();
-  #lastFile = 0;
-  /**
-   * The texts that are being read as numbers, by the numbers of their requests.
-   * @type {Map<number, (value: number | null) => void>}
-   */
-  #texts = new Map();
+  /** The files that are being written. */
+  #files = new Requests();
+  /** The texts that are being read as numbers. */
+  #texts = new Requests();
   #isBusy = false;
 
   /** @param {ClientEvents & {spawn: () => WorkerLike, clock?: Clock}} options */
@@ -89,16 +85,12 @@ export class SamplingClient {
    * @returns {Promise<Uint8Array<ArrayBuffer>>}
    * @throws if the worker does not hold the particles
    */
-  async meshFile(file) {
-    this.#lastFile += 1;
-    const request = this.#lastFile;
-    const bytes = await new Promise((resolve) => {
-      this.#files.set(request, resolve);
+  meshFile(file) {
+    const bytes = this.#files.make((request) => {
       if (this.isThere) this.post({ type: 'export', request, file });
-      else this.#handOver(request, null);
-      this.#attend();
+      else this.#files.refuse(request, lost());
     });
-    if (!bytes) throw new Error('The sampler does not hold these particles any more.');
+    this.#attend();
     return bytes;
   }
 
@@ -110,25 +102,13 @@ export class SamplingClient {
    */
   number(text) {
     if (!this.isThere) return Promise.resolve(null);
-    this.#lastFile += 1;
-    const request = this.#lastFile;
-    return new Promise((resolve) => {
-      this.#texts.set(request, resolve);
-      this.post({ type: 'number', request, text });
-    });
+    return this.#texts.make((request) => this.post({ type: 'number', request, text })).catch(() => null);
   }
 
   /** Gives up all files and texts, because the worker is gone. */
   forgetFiles() {
-    for (const resolve of this.#texts.values()) resolve(null);
-    this.#texts.clear();
-    for (const request of [...this.#files.keys()]) this.#handOver(request, null);
-  }
-
-  /** @param {number} request @param {Uint8Array<ArrayBuffer> | null} bytes */
-  #handOver(request, bytes) {
-    this.#files.get(request)?.(bytes);
-    this.#files.delete(request);
+    this.#texts.refuseAll(lost());
+    this.#files.refuseAll(lost());
     this.#attend();
   }
 
@@ -140,7 +120,7 @@ export class SamplingClient {
 
   /** A silent worker is replaced only while it has work. */
   #attend() {
-    this.supervisor.setBusy(this.#isBusy || this.#files.size > 0);
+    this.supervisor.setBusy(this.#isBusy || this.#files.count > 0);
   }
 
   /** @param {FromWorker} message */
@@ -157,11 +137,11 @@ export class SamplingClient {
       case 'crashed':
         return;
       case 'number':
-        this.#texts.get(message.request)?.(message.value);
-        this.#texts.delete(message.request);
-        return;
+        return this.#texts.answer(message.request, message.value);
       case 'file':
-        return this.#handOver(message.request, message.bytes);
+        if (message.bytes) this.#files.answer(message.request, message.bytes);
+        else this.#files.refuse(message.request, lost());
+        return this.#attend();
       default:
         this.#onMessage(message);
     }

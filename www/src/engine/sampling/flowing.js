@@ -9,30 +9,29 @@
  *
  * @module
  */
+import { RequestWorker } from '../bundle/requests.js';
 import { spawnSampler } from './spawn.js';
 
 /**
  * @import { FieldRequest, Settings } from '../types.js'
- * @import { ColumnsMessage, FromWorker, WorkerLike } from './types.js'
+ * @import { ColumnsMessage, FromWorker, ToWorker, WorkerLike } from './types.js'
  */
 
+/** @typedef {{ columns: ColumnsMessage, evaluations: number }} FlowStep  `evaluations`: of f since the front began */
+
 export class FlowingFront {
+  /** @type {RequestWorker<ToWorker, FromWorker>} */
   #worker;
-  #last = 0;
   /** @type {ColumnsMessage | null} */
   #columns = null;
 
-  /** @type {{ resolve: (step: FlowStep) => void, reject: (error: Error) => void } | null} */
-  #waiting = null;
-
-  /** @typedef {{ columns: ColumnsMessage, evaluations: number }} FlowStep  `evaluations`: of f since the front began */
-
   /** @param {{ spawn?: () => WorkerLike }} [options] */
   constructor({ spawn = spawnSampler } = {}) {
-    /** @type {WorkerLike} */
-    this.#worker = spawn();
-    this.#worker.onmessage = ({ data }) => this.#receive(data);
-    this.#worker.onerror = ({ message }) => this.#fail(message || 'the sampler did not load');
+    this.#worker = new RequestWorker({
+      spawn,
+      onMessage: (message) => this.#receive(message),
+      onFail: (message) => this.#worker.end(new Error(message || 'the sampler did not load')),
+    });
   }
 
   /**
@@ -43,58 +42,49 @@ export class FlowingFront {
    * @returns {Promise<FlowStep>}
    */
   go(field, settings, { follows = false, isClosed = false } = {}) {
-    this.#last += 1;
-    return new Promise((resolve, reject) => {
-      this.#waiting = { resolve, reject };
-      this.#worker.postMessage({
-        type: 'job',
-        job: {
-          kind: 'sample',
-          id: this.#last,
-          field: { surface: null, parameters: {}, pins: [], ...field },
-          points: null,
-          settings,
-          following: follows ? [settings] : [],
-          isClosed,
-          grow: false,
-          live: true,
-          coarse: false,
-          askAbove: Infinity,
-        },
-      });
-    });
+    return this.#worker.ask((id) => ({
+      type: 'job',
+      job: {
+        kind: 'live',
+        id,
+        field: { surface: null, parameters: {}, pins: [], ...field },
+        points: null,
+        settings,
+        following: follows ? [settings] : [],
+        isClosed,
+        askAbove: Infinity,
+      },
+    }));
   }
 
   /** Ends the worker. A step that is asked for is given up. */
   close() {
-    this.#worker.terminate();
-    this.#fail('the front was closed');
+    this.#worker.end(new Error('the front was closed'));
   }
 
   /** @param {FromWorker} message */
   #receive(message) {
+    const { requests } = this.#worker;
     switch (message.type) {
       case 'columns':
         // A message without particles tells of those that are here.
         if (message.radii.length > 0) this.#columns = message;
         break;
       case 'done':
-        if (message.outcome !== 'complete' || !this.#columns) return this.#fail(message.message || message.outcome);
-        this.#waiting?.resolve({ columns: this.#columns, evaluations: message.progress?.evaluations ?? 0 });
+        if (message.outcome !== 'complete' || !this.#columns) {
+          requests.refuse(message.id, new Error(message.message || message.outcome));
+        } else {
+          requests.answer(message.id, { columns: this.#columns, evaluations: message.progress?.evaluations ?? 0 });
+        }
         break;
       case 'field':
-        if (!message.answer.ok) this.#fail(message.answer.error.message);
+        if (!message.answer.ok) requests.refuse(message.id, new Error(message.answer.error.message));
         break;
       case 'crashed':
       case 'failed':
-        this.#fail(message.message);
+        this.#worker.end(new Error(message.message));
         break;
       default:
     }
-  }
-
-  /** @param {string} message */
-  #fail(message) {
-    this.#waiting?.reject(new Error(message));
   }
 }

@@ -9,6 +9,7 @@ import { nextBudget } from '../bundle/budget.js';
 import { MEASURED } from '../columns.js';
 import { MOST_STEPPED } from '../constants.js';
 import { join } from './joining.js';
+import { KINDS } from './kinds.js';
 import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
@@ -86,7 +87,7 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
  * @param {Memory} memory
  */
 export async function runJob(core, job, env, memory) {
-  const run = new JobRun(core, job, env);
+  const run = new Execution(core, job, env);
   if (!(await run.fit(memory)) || !run.start(memory)) return;
   const last = await run.sample();
   if (!last) {
@@ -98,18 +99,24 @@ export async function runJob(core, job, env, memory) {
     return;
   }
   const stopped = last.stop_reason === 'cancelled';
-  const reported = (!job.live || stopped) && core.count() > 0;
+  const reported = (!KINDS[job.kind].isLive || stopped) && core.count() > 0;
   run.done(stopped ? 'stopped' : 'complete', '', reported);
   if (reported) await run.measure();
 }
 
-/** A job in progress: its times, its latest progress, and what the page has received. */
-class JobRun {
+/** The execution of a job: its times, its latest progress, and what the page has received. */
+class Execution {
+  #isLive;
+  #grows;
+
   /** Time of the last message that the supervisor counts as a sign of life. */
   #beatMs;
 
   /** @param {Core} core @param {Job} job @param {Env} env */
   constructor(core, job, env) {
+    const { isLive = false, grows = false } = KINDS[job.kind];
+    this.#isLive = isLive;
+    this.#grows = grows;
     this.core = core;
     this.job = job;
     this.env = env;
@@ -154,13 +161,13 @@ class JobRun {
    */
   async fit(memory) {
     const { core, job, env } = this;
-    if (job.kind !== 'sample') return true;
+    if (job.kind === 'relax') return true;
     memory.held = 0;
     let slices = FIRST_SLICES;
     this.#beatMs = env.nowMs();
     for (;;) {
       const before = env.nowMs();
-      const answer = core.fit(job.settings, job.live, slices);
+      const answer = core.fit(job.settings, this.#isLive, slices);
       const took = env.nowMs() - before;
       this.seconds.seeding += took / 1000;
       if (answer?.ok === false) return this.#end('refused', answer.error.message);
@@ -192,7 +199,7 @@ class JobRun {
    */
   start(memory) {
     const { core, job, env } = this;
-    if (job.kind === 'sample') {
+    if (job.kind !== 'relax') {
       // The core looks for the surface here; for a model, this is most of the seeding.
       const before = env.nowMs();
       this.followed = job.following.some((settings) => core.follow(settings, job.isClosed ?? false));
@@ -236,7 +243,7 @@ class JobRun {
     /** @type {Record<string, number>} */
     const budgets = {};
     /** @type {CoreProgress['phase']} */
-    let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
+    let phase = job.kind === 'relax' ? 'relaxation' : 'seeding';
     let wasHanding = false;
     this.#beatMs = env.nowMs();
     for (;;) {
@@ -258,7 +265,7 @@ class JobRun {
       this.#remember(progress);
       // A refinement moves the particles while it hands a level on, the coarse one first, and then goes on below them.
       const isHanding = progress.phase === 'refinement' && progress.moved;
-      if (job.kind === 'sample' && job.coarse && wasHanding && !isHanding) {
+      if (job.kind === 'sketch' && job.settings.method === 'refined' && wasHanding && !isHanding) {
         this.progress = { ...core.cancel(), stop_reason: 'complete' };
         return this.progress;
       }
@@ -271,8 +278,8 @@ class JobRun {
 
   /** Keeps the positions before every relaxation step. @param {CoreProgress} progress */
   #remember(progress) {
-    const { core, job, past } = this;
-    if (job.live || progress.phase !== 'relaxation' || this.#stepsOf(progress) !== past.length) return;
+    const { core, past } = this;
+    if (this.#isLive || progress.phase !== 'relaxation' || this.#stepsOf(progress) !== past.length) return;
     if (past.length === 0 || core.count() <= MOST_STEPPED) past.push(core.positions(0));
   }
 
@@ -292,11 +299,11 @@ class JobRun {
 
   /** Returns whether the page should receive columns after this step. @param {CoreProgress} progress */
   #isDue({ phase }) {
-    const { core, job, env, sent } = this;
+    const { core, env, sent } = this;
     if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
-    if (job.live || (!job.grow && phase !== 'relaxation' && phase !== 'refinement')) return false;
+    if (this.#isLive || (!this.#grows && phase !== 'relaxation' && phase !== 'refinement')) return false;
     // A mesh on the page stays until the next one is there, unless the surface is to be seen growing.
-    if (env.mesh() && !(job.kind === 'sample' && job.grow)) return false;
+    if (env.mesh() && (this.job.kind === 'relax' || !this.#grows)) return false;
     return sent.stale || core.count() > sent.count;
   }
 

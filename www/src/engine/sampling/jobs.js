@@ -1,16 +1,23 @@
 /**
- * Queues the jobs of a worker: one runs, and the latest one waits. A job replaces the running one only after the core
- * has accepted its field. A refused field changes nothing in the core, so the running job continues and the surface
- * that stays on the page is completed and measured.
+ * The one queue of jobs, in the worker: one runs, and the latest one waits. A job replaces the running one only after
+ * the core has accepted its field. A refused field changes nothing in the core, so the running job continues and the
+ * surface that stays on the page is completed and measured.
  *
  * @module
  */
+import { KINDS } from './kinds.js';
 
 /**
  * @import { Core } from '../../wasm/core/core.js'
  * @import { FieldAnswer } from '../types.js'
  * @import { FromWorker, Job, SampleJob, ToWorker } from './types.js'
  */
+
+/**
+ * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
+ * finish. So does the run of a control that rests, since the particles that it leaves can follow the surface again.
+ */
+const PATIENCE_MS = 150;
 
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
@@ -40,6 +47,7 @@ export function measured(core, { request, field, placed: { positions, normals, r
 
 export class Jobs {
   #post;
+  #nowMs;
 
   /** The latest job; its field has not been passed to the core. @type {Pending | null} */
   #waiting;
@@ -50,12 +58,16 @@ export class Jobs {
    */
   #accepted;
 
-  /** Whether it must stop. */
+  /** Whether the running job must stop. */
   #stopped;
 
-  /** @param {(message: FromWorker) => void} post */
-  constructor(post) {
+  /** When it began, and whether all its particles are on their way to the page. */
+  #running = { sinceMs: 0, isSampled: false };
+
+  /** @param {(message: FromWorker) => void} post @param {() => number} nowMs */
+  constructor(post, nowMs) {
     this.#post = post;
+    this.#nowMs = nowMs;
     this.#waiting = null;
     this.#accepted = null;
     /** The job that runs. @type {Job | null} */
@@ -77,11 +89,13 @@ export class Jobs {
 
   /** Begins and returns the next job, with its field set in the core. @param {Core} core */
   take(core) {
+    this.running = null;
     this.#ask(core);
     const next = this.#accepted;
     this.#accepted = null;
     this.#stopped = next?.stopped ?? false;
     this.running = next?.job ?? null;
+    this.#running = { sinceMs: this.#nowMs(), isSampled: false };
     return this.running;
   }
 
@@ -95,13 +109,29 @@ export class Jobs {
     return this.#stopped ? 'stop' : null;
   }
 
+  /** Notes that the running job has its particles: what is left is its report, for which no other waits. */
+  sampled() {
+    this.#running.isSampled = true;
+  }
+
+  /**
+   * Whether a job waits until the running one has ended, which would otherwise be replaced time and again.
+   * @param {Job} job
+   */
+  #isPatient({ kind }) {
+    const { running } = this;
+    if (!running || this.#running.isSampled || !KINDS[kind].isLive) return false;
+    const isSpared = KINDS[running.kind].isLive || running.kind === 'rest';
+    return isSpared === true && this.#nowMs() - this.#running.sinceMs < PATIENCE_MS;
+  }
+
   /** @param {Core} core */
   #ask(core) {
     const next = this.#waiting;
-    if (!next) return;
+    if (!next || this.#isPatient(next.job)) return;
     const { job } = next;
     this.#waiting = null;
-    if (job.kind === 'sample') {
+    if (job.kind !== 'relax') {
       const answer = setField(core, job);
       this.#post({ type: 'field', id: job.id, answer });
       if (!answer.ok) return;

@@ -9,28 +9,25 @@
  *
  * @module
  */
+import { RequestWorker } from '../bundle/requests.js';
 import { spawnSampler } from './spawn.js';
 
 /**
  * @import { FieldRequest } from '../types.js'
- * @import { FromWorker, PlacedColumns, PlacedMeasures, WorkerLike } from './types.js'
+ * @import { FromWorker, PlacedColumns, PlacedMeasures, ToWorker, WorkerLike } from './types.js'
  */
 
-/** @typedef {{resolve: (measures: PlacedMeasures) => void, reject: (error: Error) => void}} Waiting */
-
 export class Meter {
-  #spawn;
-
-  /** @type {WorkerLike | null} */
-  #worker = null;
-  #last = 0;
-
-  /** The open questions, by their numbers. @type {Map<number, Waiting>} */
-  #waiting = new Map();
+  /** @type {RequestWorker<ToWorker, FromWorker>} */
+  #worker;
 
   /** @param {{ spawn?: () => WorkerLike }} [options] */
   constructor({ spawn = spawnSampler } = {}) {
-    this.#spawn = spawn;
+    this.#worker = new RequestWorker({
+      spawn,
+      onMessage: (message) => this.#receive(message),
+      onFail: (message) => this.#worker.end(new Error(message || 'the sampler did not load')),
+    });
   }
 
   /**
@@ -40,42 +37,17 @@ export class Meter {
    * @returns {Promise<PlacedMeasures>}
    */
   measure(field, { positions, normals, radii }, isAdaptive) {
-    this.#last += 1;
-    const request = this.#last;
-    return new Promise((resolve, reject) => {
-      this.#waiting.set(request, { resolve, reject });
-      this.#worker ??= this.#listen(this.#spawn());
-      this.#worker.postMessage({ type: 'measure', request, field, placed: { positions, normals, radii }, isAdaptive });
-    });
-  }
-
-  /** @param {WorkerLike} worker */
-  #listen(worker) {
-    worker.onmessage = ({ data }) => this.#receive(data);
-    worker.onerror = (event) => this.#fail(event.message || 'the sampler did not load');
-    return worker;
+    const placed = { positions, normals, radii };
+    return this.#worker.ask((request) => ({ type: 'measure', request, field, placed, isAdaptive }));
   }
 
   /** @param {FromWorker} message */
   #receive(message) {
-    if (message.type === 'failed' || message.type === 'crashed') return this.#fail(message.message);
+    if (message.type === 'failed' || message.type === 'crashed') return this.#worker.end(new Error(message.message));
     if (message.type !== 'measured') return;
-    const waiting = this.#waiting.get(message.request);
-    this.#waiting.delete(message.request);
-    if ('measures' in message) waiting?.resolve(message.measures);
-    else waiting?.reject(new Error(message.error.message));
-    if (this.#waiting.size === 0) this.#end();
-  }
-
-  #end() {
-    this.#worker?.terminate();
-    this.#worker = null;
-  }
-
-  /** @param {string} message */
-  #fail(message) {
-    this.#end();
-    for (const { reject } of this.#waiting.values()) reject(new Error(message));
-    this.#waiting.clear();
+    const { requests } = this.#worker;
+    if ('measures' in message) requests.answer(message.request, message.measures);
+    else requests.refuse(message.request, new Error(message.error.message));
+    if (requests.count === 0) this.#worker.end(new Error('all is measured'));
   }
 }

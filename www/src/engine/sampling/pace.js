@@ -4,10 +4,11 @@
  * @module
  */
 import { CostModel, costKey, planLive, sizeOf } from './cost.js';
+import { KINDS } from './kinds.js';
 
 /**
  * @import { Bounds, LastDrag, Seconds, Settings, Timing } from '../types.js'
- * @import { Measured, Run, SampleRequest } from './types.js'
+ * @import { Measured, SampleRequest, Ticket } from './types.js'
  */
 
 /** Pause between live requests after which the next one belongs to another drag. */
@@ -52,7 +53,7 @@ export class Pace {
 
   /**
    * Updates the cost model and the drag from a finished run.
-   * @param {Run} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
+   * @param {Ticket} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
    * @param {Measured} measured
    * @returns {LastDrag | null} the state of the drag that the run belongs to, if any
    */
@@ -61,13 +62,12 @@ export class Pace {
     const { drag } = this;
     const cost = this.#costOf(sampled);
     // A run that ended at its coarse level does not tell what the whole one costs, nor do particles that followed.
-    const isWhole =
-      !measured.followed && !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
-    if (request.kind === 'sample' && isWhole) cost.record(measured);
-    if (!request.live || !drag) return null;
+    const isWhole = !measured.followed && !(request.kind === 'sketch' && request.settings.method === 'refined');
+    if (request.kind !== 'relax' && isWhole) cost.record(measured);
+    if (!KINDS[request.kind].isLive || !drag) return null;
     const latency = this.#nowMs() - sinceMs;
     drag.latencies.push(latency);
-    drag.coarse ||= request.coarse === true && !measured.followed;
+    drag.coarse ||= request.kind === 'sketch' && !measured.followed;
     // The rest of the latency is drawing: a slow graphics device delays every message.
     cost.recordPicture(particles, latency - samplingSeconds(measured.seconds) * 1e3);
     const sorted = [...drag.latencies].sort((a, b) => a - b);

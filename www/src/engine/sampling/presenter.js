@@ -7,12 +7,15 @@ import { batch } from '@preact/signals-core';
 import { MOST_STEPPED } from '../constants.js';
 import { change, idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
+import { KINDS } from './kinds.js';
 import { timingOf } from './pace.js';
 
 /**
  * @import { Store } from '../store.js'
  * @import { Columns, CoreProgress, FieldAnswer, FieldRequest, Mesh, Progress } from '../types.js'
- * @import { ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, Run, RunRequest } from './types.js'
+ * @import {
+ *   ColumnsMessage, DoneMessage, PastMessage, PictureLike, ReportMessage, RunRequest, Ticket,
+ * } from './types.js'
  */
 
 /** The figures of the report that are those of the mesh. @param {Mesh} mesh */
@@ -36,17 +39,19 @@ export class Presenter {
    * @param {number} id @param {RunRequest} request
    */
   begin(id, request) {
-    if (request.backdrop) return;
-    if (!request.live) this.store.empty.value = false;
-    const phase = request.kind === 'relax' ? 'relaxation' : 'seeding';
-    this.store.progress.value = { ...idleProgress(), run: id, live: request.live, phase };
+    const { kind } = request;
+    if (kind === 'backdrop') return;
+    const live = KINDS[kind].isLive === true;
+    if (!live) this.store.empty.value = false;
+    const phase = kind === 'relax' ? 'relaxation' : 'seeding';
+    this.store.progress.value = { ...idleProgress(), run: id, live, phase };
   }
 
-  /** @param {CoreProgress} progress @param {Run} run */
+  /** @param {CoreProgress} progress @param {Ticket} run */
   progress(progress, { id, request }) {
-    if (request.backdrop) return;
+    if (request.kind === 'backdrop') return;
     if (progress.particles > 0) this.store.empty.value = false;
-    this.store.progress.value = { ...progress, run: id, live: request.live };
+    this.store.progress.value = { ...progress, run: id, live: KINDS[request.kind].isLive === true };
   }
 
   /**
@@ -100,23 +105,24 @@ export class Presenter {
     this.picture.dim(astray || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
   }
 
-  /** Replaces the particles on the page by the first ones of a run. @param {Run} run */
+  /** Replaces the particles on the page by the first ones of a run. @param {Ticket} run */
   first({ request, bounds }) {
     const { store } = this;
     store.report.value = null;
     store.mesh.value = null;
-    if (request.kind !== 'sample') return;
+    if (request.kind === 'relax') return;
+    const { grows = false, fits = false, isLive = false } = KINDS[request.kind];
     this.columns.clear(request.settings.sampling === 'adaptive');
-    this.columns.stale = request.backdrop === true;
+    this.columns.stale = request.kind === 'backdrop';
     // The particles of a run take the places of those that have followed the surface there.
-    this.picture.begin({ grow: request.grow, fit: request.fit, bounds, meets: this.#followed && !request.live });
+    this.picture.begin({ grow: grows, fit: fits, bounds, meets: this.#followed && !isLive });
     batch(() => {
       store.hover.value = null;
       store.empty.value = this.columns.stale;
     });
   }
 
-  /** @param {ColumnsMessage} message @param {Run} run @param {() => void} onDrawn */
+  /** @param {ColumnsMessage} message @param {Ticket} run @param {() => void} onDrawn */
   particles(message, run, onDrawn) {
     const { columns, picture, store } = this;
     if (!columns.write(message)) return onDrawn();
@@ -141,7 +147,7 @@ export class Presenter {
     store.revision.value += 1;
   }
 
-  /** Takes the positions before the relaxation steps of a run. @param {PastMessage} message @param {Run} run */
+  /** Takes the positions before the relaxation steps of a run. @param {PastMessage} message @param {Ticket} run */
   past({ positions }, { request }) {
     const { columns } = this;
     // Steps that are made afterwards go on from the earlier ones, if those were all kept.
@@ -155,13 +161,14 @@ export class Presenter {
   /**
    * Shows the end of a run that has made a surface or found none.
    * @param {DoneMessage} message
-   * @param {Run} run
+   * @param {Ticket} run
    * @param {number} particles
    */
   end({ outcome, progress, seconds, reportFollows, record, followed }, { id, request }, particles) {
     const { store, columns } = this;
     this.#followed = followed;
-    if (request.backdrop) return;
+    const { isLive = false, fits = false } = KINDS[request.kind];
+    if (request.kind === 'backdrop') return;
     if (particles > 0) columns.record = record;
     if (particles === 0) {
       // The last surface stays visible until there is another, but it cannot be measured or exported.
@@ -173,10 +180,10 @@ export class Presenter {
     store.revision.value += 1;
     store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
     if (progress) {
-      store.progress.value = { ...progress, run: id, live: request.live, phase: reportFollows ? 'quality' : 'done' };
+      store.progress.value = { ...progress, run: id, live: isLive, phase: reportFollows ? 'quality' : 'done' };
     }
     store.timing.value = timingOf(seconds, particles, request.kind === 'relax' ? request.steps : 0);
-    if (request.fit && particles > 0) this.picture.fit();
+    if (fits && particles > 0) this.picture.fit();
   }
 
   /** Shows the end of a run that has failed. @param {DoneMessage} message */

@@ -8,27 +8,29 @@ import { batch } from '@preact/signals-core';
 import { clampSettings } from '../share/state.js';
 import { SamplingClient } from './client.js';
 import { loadNotice, restartNotice, safeModeNotice } from './faults.js';
-import { Pace, sizeOfRun } from './pace.js';
-import { Presenter } from './presenter.js';
+import { KINDS } from './kinds.js';
 import {
-  askedRun,
+  askedFor,
   awaitsParticles,
   awaitsWorker,
+  backdropOf,
   IDLE,
   inputOf,
-  isToWait,
   lostRun,
   reduce,
   restoringOf,
   runningOf,
   tookPlace,
   trialOf,
-} from './run-state.js';
+} from './ledger.js';
+import { Pace, sizeOfRun } from './pace.js';
+import { Presenter } from './presenter.js';
 
 /**
  * @import { Description, FieldAnswer, FieldOk } from '../types.js'
  * @import {
- *   ColumnsMessage, Crash, DoneMessage, FromWorker, Job, Run, RunEvent, RunRequest, SampleRequest, SamplerOptions,
+ *   ColumnsMessage, Crash, DoneMessage, FromWorker, Job, LedgerEvent, RunRequest, SampleRequest, SamplerOptions,
+ *   Ticket,
  * } from './types.js'
  */
 
@@ -60,14 +62,14 @@ export class Sampler {
       onSafeMode: (crash) => this.#safeMode(crash),
       onLoadFailed: (text) => this.#loadFailed(text),
     });
-    this.runs = IDLE;
+    this.ledger = IDLE;
     /** Number of messages received from runs that are over. */
     this.stale = 0;
   }
 
   /** The last sampling that the core accepted. */
   get accepted() {
-    return this.runs.accepted;
+    return this.ledger.accepted;
   }
 
   start() {
@@ -83,18 +85,18 @@ export class Sampler {
 
   /** @param {SampleRequest} request */
   sample(request) {
-    const running = runningOf(this.runs);
+    const running = runningOf(this.ledger);
     // A second request with the same input during the first run is ignored, because it would only restart the run. It
     // is accepted after a fault, to clear it, and if the run only restores a surface, so that this surface becomes the
     // requested one.
     const same =
       running &&
-      running.id > this.runs.stoppedUpTo &&
-      !running.request.live &&
-      !running.request.restoring &&
+      running.id > this.ledger.stoppedUpTo &&
+      !KINDS[running.request.kind].isLive &&
+      !KINDS[running.request.kind].restores &&
       inputOf(running.request) === inputOf(request);
-    if (!same || request.live || this.store.fieldError.value) this.submit(request);
-    else if (!request.trial) this.commit();
+    if (!same || KINDS[request.kind].isLive || this.store.fieldError.value) this.submit(request);
+    else if (request.kind !== 'trial') this.commit();
   }
 
   /** Keeps the formula that was on trial. */
@@ -112,7 +114,7 @@ export class Sampler {
     const { value: description } = this.store.description;
     const valid = description ? clampSettings(description, settings) : settings;
     const following = [request.settings, valid];
-    this.submit({ ...request, settings: valid, following, coarse, live: true, grow: false });
+    this.submit({ ...request, kind: coarse ? 'sketch' : 'live', settings: valid, following });
   }
 
   /**
@@ -121,13 +123,13 @@ export class Sampler {
    */
   relax(steps) {
     if (this.store.busy.value) return;
-    const { held } = this.runs;
+    const { held } = this.ledger;
     if (held > 0 && this.#columns.count > 0) {
-      this.submit({ kind: 'relax', of: held, steps, live: false, grow: true, fit: false });
+      this.submit({ kind: 'relax', of: held, steps });
     } else {
       const request = this.#whole();
       const done = this.store.progress.value.relax_steps;
-      this.sample({ ...request, grow: false, settings: { ...request.settings, relax_steps: done + steps } });
+      this.sample({ ...request, settings: { ...request.settings, relax_steps: done + steps } });
     }
   }
 
@@ -139,21 +141,15 @@ export class Sampler {
 
   /** Completes the surface that stays on the page, with its report, after a request has failed. */
   #settle() {
-    const request = restoringOf(this.runs);
+    const request = restoringOf(this.ledger);
     if (request) this.submit(request);
   }
 
-  /** Sends a request, or has it wait for the one that runs. @param {RunRequest} request */
+  /** Sends a request to the worker, where the latest one waits for the job that runs. @param {RunRequest} request */
   submit(request) {
-    if (isToWait(this.runs, request, this.#nowMs())) this.#happened({ type: 'waits', request });
-    else this.#send(request);
-  }
-
-  /** @param {RunRequest} request */
-  #send(request) {
     // In safe mode nothing is sent. The state holds the request, which is sent when the sampler is restarted.
     if (!this.client.isThere) return this.#happened({ type: 'lost' });
-    const id = this.runs.lastId + 1;
+    const id = this.ledger.lastId + 1;
     this.client.post({ type: 'job', job: this.#jobOf(id, request) });
     this.#happened({ type: 'sent', request, nowMs: this.#nowMs() });
     if (request.kind === 'relax') this.#presenter.begin(id, request);
@@ -161,43 +157,30 @@ export class Sampler {
 
   /** @param {number} id @param {RunRequest} request @returns {Job} */
   #jobOf(id, request) {
-    if (request.kind === 'relax') {
-      return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
-    }
-    const { field, settings, following = [], grow, live, coarse = false } = request;
-    // A run of a drag needs no confirmation: it stops at the limit.
-    const unasked = request.confirmed || live || request.restoring;
+    if (request.kind === 'relax') return { ...request, id };
+    const { kind, field, settings, following = [] } = request;
     return {
-      kind: 'sample',
+      kind,
       id,
       field,
       settings,
       following,
-      grow,
-      live,
-      coarse: coarse && settings.method === 'refined',
       points: (field.points !== undefined && this.solved(field.points)) || null,
-      askAbove: unasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
+      askAbove: KINDS[kind].isUnasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
     };
   }
 
-  /** @param {RunEvent} event */
+  /** @param {LedgerEvent} event */
   #happened(event) {
-    this.runs = reduce(this.runs, event);
+    this.ledger = reduce(this.ledger, event);
     this.#attend();
   }
 
   /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
   #attend() {
-    this.store.busy.value = awaitsParticles(this.runs);
-    this.store.trial.value = trialOf(this.runs);
-    this.client.setBusy(awaitsWorker(this.runs));
-  }
-
-  /** Sends the request that waits, if the job that has ended was the last one sent. @param {boolean} wasRunning */
-  #sendWaiting(wasRunning) {
-    const { waiting } = this.runs;
-    if (wasRunning && waiting) this.#send(waiting);
+    this.store.busy.value = awaitsParticles(this.ledger);
+    this.store.trial.value = trialOf(this.ledger);
+    this.client.setBusy(awaitsWorker(this.ledger));
   }
 
   // ---- what the worker sends
@@ -212,7 +195,7 @@ export class Sampler {
         return this.#fieldAnswered(message.id, message.answer);
       default:
     }
-    const { current } = this.runs;
+    const { current } = this.ledger;
     if (!('id' in message) || message.id !== current?.id) {
       this.stale += 1;
       return;
@@ -244,9 +227,8 @@ export class Sampler {
 
   /** @param {number} id @param {FieldAnswer} answer */
   #fieldAnswered(id, answer) {
-    const run = askedRun(this.runs, id);
-    if (run?.request.kind !== 'sample') return;
-    const { request } = run;
+    const request = askedFor(this.ledger, id)?.request;
+    if (!request || request.kind === 'relax') return;
     batch(() => {
       if (answer.ok) this.#fieldAccepted(id, request, answer);
       else this.#fieldRefused(id, answer);
@@ -262,47 +244,45 @@ export class Sampler {
   #fieldAccepted(id, request, answer) {
     this.#happened({ type: 'accepted', id, bounds: answer.bounds });
     this.#presenter.begin(id, request);
-    if (this.#isTold(request)) this.#presenter.field(request.field, answer, request.restoring);
-    if (answer.grip && !request.live && !request.rests) this.store.dragging.value = false;
+    if (this.#isTold(request)) this.#presenter.field(request.field, answer, KINDS[request.kind].restores);
+    if (answer.grip && !KINDS[request.kind].isLive && request.kind !== 'rest') this.store.dragging.value = false;
   }
 
   /**
-   * Returns whether the page tells the field of this run: that of the surface in the picture while a mistake is in the
-   * formula, else that of the formula.
+   * Returns whether the page describes the field of this run. While the formula has a mistake, it describes the last
+   * valid surface instead.
    * @param {SampleRequest} request
    */
-  #isTold({ restoring, backdrop }) {
-    return !restoring || (!backdrop && this.store.fieldError.value !== null);
+  #isTold({ kind }) {
+    return !KINDS[kind].restores || (kind !== 'backdrop' && this.store.fieldError.value !== null);
   }
 
   /**
    * Takes the box in which a run samples, which is found after its field was accepted.
    * @param {FieldOk} answer
-   * @param {Run} run
+   * @param {Ticket} run
    */
   #boxFound(answer, { request }) {
-    if (request.kind !== 'sample') return;
+    if (request.kind === 'relax') return;
     this.#happened({ type: 'boxed', bounds: answer.bounds });
     if (this.#isTold(request)) this.#presenter.box(answer);
   }
 
   /** @param {number} id @param {Extract<FieldAnswer, {ok: false}>} answer */
   #fieldRefused(id, answer) {
-    const wasRunning = runningOf(this.runs)?.id === id;
     this.#presenter.fault(answer);
-    if (!this.runs.current) this.#presenter.idle({ run: id, phase: 'done' });
+    if (!this.ledger.current) this.#presenter.idle({ run: id, phase: 'done' });
     this.#dim();
     this.#happened({ type: 'refused', id });
-    this.#sendWaiting(wasRunning);
     this.#settle();
   }
 
   /** Dims the surface if it is not the requested one. */
   #dim() {
-    this.#presenter.dim(this.runs.astray);
+    this.#presenter.dim(this.ledger.astray);
   }
 
-  /** @param {ColumnsMessage} message @param {Run} run */
+  /** @param {ColumnsMessage} message @param {Ticket} run */
   #takeColumns(message, run) {
     const drawn = () => this.client.post({ type: 'drawn', id: message.id });
     // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
@@ -310,44 +290,45 @@ export class Sampler {
     if (run.stage === 'seeding') {
       this.#happened({ type: 'particles', description: this.store.description.value });
       this.#presenter.first(run);
-      if (run.request.kind === 'sample') this.#dim();
+      if (run.request.kind !== 'relax') this.#dim();
     }
     this.#presenter.particles(message, run, drawn);
   }
 
-  /** @param {DoneMessage} message @param {Run} run */
+  /** @param {DoneMessage} message @param {Ticket} run */
   #ended(message, run) {
     const { outcome, progress, reportFollows } = message;
     const { request } = run;
     const particles = progress?.particles ?? 0;
     const surface = tookPlace(outcome, particles);
-    const wasRunning = runningOf(this.runs)?.id === message.id;
     batch(() => {
-      this.#happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
+      this.#happened({ type: 'done', outcome, particles, reportFollows, nowMs: this.#nowMs() });
       if (surface) {
         this.#presenter.end(message, run, particles);
-        if (!request.backdrop) this.#learn(message, run, particles);
+        if (request.kind !== 'backdrop') this.#learn(message, run, particles);
       } else {
         this.#presenter.failure(message);
       }
       if (!surface || particles === 0) this.#dim();
     });
-    this.#sendWaiting(wasRunning);
-    if (request.kind !== 'sample') return;
+    if (request.kind === 'relax') return;
+    const behind = surface && particles === 0 && request.kind !== 'backdrop' ? backdropOf(this.ledger) : null;
+    if (behind) this.submit(behind);
     if (outcome === 'ask') this.#onAsk(message.predicted, request);
     // If an error ended a drag, no full run follows it.
-    if ((!surface && !request.restoring) || (request.live && this.store.fieldError.value)) this.#settle();
+    const { isLive, restores } = KINDS[request.kind];
+    if ((!surface && !restores) || (isLive && this.store.fieldError.value)) this.#settle();
   }
 
   /**
    * Updates the cost model from a finished run.
    * @param {DoneMessage} message
-   * @param {Run} run
+   * @param {Ticket} run
    * @param {number} particles
    */
   #learn({ seconds, progress, followed }, run, particles) {
     const { store } = this;
-    const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.#whole());
+    const sampled = run.request.kind === 'relax' ? (this.accepted ?? this.#whole()) : run.request;
     const size = sizeOfRun(sampled.settings, progress?.radius ?? 0, store.field.value?.bounds);
     const drag = this.#pace.record(run, sampled, {
       seconds,
@@ -372,7 +353,7 @@ export class Sampler {
    * @returns {SampleRequest | null} the run that is lost with the worker
    */
   #forget() {
-    const lost = lostRun(this.runs, this.store.description.value);
+    const lost = lostRun(this.ledger, this.store.description.value);
     this.client.forgetFiles();
     batch(() => {
       this.#happened({ type: 'lost' });
@@ -391,7 +372,7 @@ export class Sampler {
     batch(() => {
       const lost = this.#forget();
       const input = lost ? inputOf(lost) : '';
-      const again = lost !== null && input !== this.runs.crashedInput;
+      const again = lost !== null && input !== this.ledger.crashedInput;
       this.#happened({ type: 'crashed', input, again });
       this.store.notice.value = restartNotice(crash, lost, { again, version: this.#version });
       if (again) {
@@ -419,6 +400,6 @@ export class Sampler {
     this.store.notice.value = null;
     this.#happened({ type: 'revived' });
     this.client.revive();
-    if (this.store.description.value) this.submit({ ...this.#whole(), grow: false });
+    if (this.store.description.value) this.submit(this.#whole());
   }
 }

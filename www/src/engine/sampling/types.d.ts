@@ -17,44 +17,38 @@ import type {
   FileRequest,
   Measures,
   Report,
+  SampleKind,
   Seconds,
   Settings,
 } from '../types.js';
 
 export type Mesh = import('../types.js').Mesh;
 /**
- * Samples the field from the start. With `grow` the columns are sent while the front grows; otherwise they are sent
- * once the front is complete, so that the present picture stays until then. A `live` job comes from a drag: its
- * columns are sent once, at the end, and it has no report unless it is stopped. With `coarse` it ends where a
- * refinement has finished its coarse level: the particles that the full run refines. A job with more than
+ * Samples the field from the start, in the way of its kind (see `kinds.js`). The particles may follow the surface
+ * instead in the settings of `following`; with `isClosed` they are then neither born nor die. A job with more than
  * `askAbove` expected particles is returned without running. `points` is the solved model that `field` names.
  */
 export interface SampleJob {
-  kind: 'sample';
+  kind: SampleKind;
   id: number;
   field: FieldRequest;
   points: Pick<Solved, 'field' | 'info'> | null;
   settings: Settings;
-  /** settings of the runs whose particles may follow the surface instead */
   following: Settings[];
-  /** those that follow are neither born nor die */
   isClosed?: boolean;
-  grow: boolean;
-  live: boolean;
-  coarse: boolean;
   askAbove: number;
 }
 /** Relaxes the particles that the worker holds. They must be those of job `of`. */
-export type RelaxJob = { kind: 'relax'; id: number; of: number; steps: number; live: false; grow: true };
+export type RelaxJob = { kind: 'relax'; id: number; of: number; steps: number };
 export type Job = SampleJob | RelaxJob;
 /**
- * A `job` replaces the running one once the core has accepted its field. If the field is refused, the running job
- * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it
- * is sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page
- * draws a mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the
- * mesh as a file, once no job is left. `number` asks for the number that a text without names stands for. `measure`
- * measures particles that the sampler has not placed: a worker that is asked has no jobs. The first message is `core`,
- * or `no_core` if the core could not be loaded.
+ * A `job` takes the place of the one that waits, and replaces the running one once the core has accepted its field
+ * (see `jobs.js`). If the field is refused, the running job continues. `stop` ends every job sent before it.
+ * `curvature` says whether the page shows the curvature. If so, it is sent with the other columns, and at once for the
+ * particles that the worker holds. `mesh` says whether the page draws a mesh. If so, it is made at the end of every
+ * run, and sent with the last columns. `export` asks for the mesh as a file, once no job is left. `number` asks for
+ * the number that a text without names stands for. `measure` measures particles that the sampler has not placed: a
+ * worker that is asked has no jobs. The first message is `core`, or `no_core` if the core could not be loaded.
  */
 export type ToWorker =
   | { type: 'core'; module: WebAssembly.Module }
@@ -66,14 +60,11 @@ export type ToWorker =
   | { type: 'number'; request: number; text: string }
   | { type: 'measure'; request: number; field: Partial<FieldRequest>; placed: PlacedColumns; isAdaptive: boolean }
   | { type: 'stop' }
-  | { type: 'drawn'; id: number }
-  | { type: 'provoke'; fault: Fault };
+  | { type: 'drawn'; id: number };
 /** Particles that the sampler has not placed: vectors of three floats. */
 export type PlacedColumns = { positions: Float32Array; normals: Float32Array; radii: Float32Array };
 /** Figures, places and columns as those of a report. */
 export type PlacedMeasures = Measures & { energy: Float32Array; valence: Uint8Array };
-/** Faults that tests provoke. */
-export type Fault = 'panic' | 'hang' | 'overflow';
 /**
  * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than `askAbove` are expected;
  * `lost`: the worker no longer holds the particles to relax. A job whose field was refused ends with that answer. A
@@ -129,42 +120,14 @@ export type FromWorker =
   | { type: 'measured'; request: number; measures: PlacedMeasures }
   | { type: 'measured'; request: number; error: FieldFault }
   | { type: 'crashed'; id: number; message: string; stack: string };
-/**
- * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
- * question about a large number of particles. `restoring` completes the surface on the page while the state names
- * another one that cannot be sampled; where that one has no surface, it is a `backdrop`, which is seen and no more.
- * `trial`: the formula is still being typed (see `RunState.stood`).
- */
+/** A request to sample: `settings` are complete, and `following` is as in {@link SampleJob}. */
 export interface SampleRequest {
-  kind: 'sample';
+  kind: SampleKind;
   field: FieldRequest;
   settings: Settings;
-  grow: boolean;
-  live: boolean;
-  fit: boolean;
-  confirmed?: boolean;
-  restoring?: boolean;
-  backdrop?: boolean;
-  trial?: boolean;
-  /** of fewer particles than the settings of the state ask for, or of the coarse level alone */
-  coarse?: boolean;
-  /** the run of a surface that was being changed and has come to rest: the next change waits for its particles */
-  rests?: boolean;
-  /** settings of the runs whose particles may follow the surface instead (see `SampleJob`) */
   following?: Settings[];
 }
-export type RelaxRequest = {
-  kind: 'relax';
-  of: number;
-  steps: number;
-  live: false;
-  grow: true;
-  fit: false;
-  restoring?: false;
-  backdrop?: false;
-  trial?: false;
-  rests?: false;
-};
+export type RelaxRequest = { kind: 'relax'; of: number; steps: number };
 export type RunRequest = SampleRequest | RelaxRequest;
 /**
  * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are,
@@ -172,21 +135,19 @@ export type RunRequest = SampleRequest | RelaxRequest;
  */
 export type Stage = 'seeding' | 'growing' | 'measuring' | 'over';
 /**
- * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted, and
- * final once the box is found.
+ * What the page knows of a job that it sent to the worker. `bounds` is the clip box of its field, known once the field
+ * is accepted, and final once the box is found. `sinceMs` is when it was sent, or when the job before it ended.
  */
-export type Run = { id: number; request: RunRequest; bounds: Bounds | null; stage: Stage; sinceMs: number };
+export type Ticket = { id: number; request: RunRequest; bounds: Bounds | null; stage: Stage; sinceMs: number };
 export type Shown = { request: SampleRequest; reported: boolean };
-/** Which jobs there are: at most one waits here, those that are asked wait at the worker, and one is current. */
-export interface RunState {
+/** What the page knows of the jobs: those asked wait at the worker, and one is current. */
+export interface Ledger {
   /** id of the job sent last, 0 before the first */
   lastId: number;
-  /** the request that is sent once the worker has ended a job */
-  waiting: RunRequest | null;
   /** jobs whose field has not been answered yet, in the order sent */
-  asked: readonly Run[];
+  asked: readonly Ticket[];
   /** the job whose messages count: the last one whose field was accepted */
-  current: Run | null;
+  current: Ticket | null;
   /** the job whose particles the worker holds, 0 for none */
   held: number;
   /** the last sampling that the core accepted */
@@ -200,6 +161,8 @@ export interface RunState {
   stood: Shown | null;
   /** whether the surface on the page differs from the one requested last */
   astray: boolean;
+  /** when a job ended last */
+  endedMs: number;
   /** id of the last job sent before a stop; no job up to it continues */
   stoppedUpTo: number;
   /** the input on which the worker crashed last, from {@link inputOf} */
@@ -210,14 +173,13 @@ export interface RunState {
  * of the current run have arrived; `lost`: the worker and its jobs are gone; `crashed`: the worker failed on `input`,
  * which is sent `again` or given up.
  */
-export type RunEvent =
-  | { type: 'waits'; request: RunRequest }
+export type LedgerEvent =
   | { type: 'sent'; request: RunRequest; nowMs: number }
   | { type: 'accepted'; id: number; bounds: Bounds }
   | { type: 'boxed'; bounds: Bounds }
   | { type: 'refused'; id: number }
   | { type: 'particles'; description: Description | null }
-  | { type: 'done'; outcome: Outcome; particles: number; reportFollows: boolean }
+  | { type: 'done'; outcome: Outcome; particles: number; reportFollows: boolean; nowMs: number }
   | { type: 'reported' }
   | { type: 'committed' }
   | { type: 'stopped' }

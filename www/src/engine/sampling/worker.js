@@ -12,8 +12,7 @@ import { join, write } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
- * @import { InitOutput } from '../../wasm/core/core.js'
- * @import { Env, Fault, FromWorker, LoadFault, ToWorker } from './types.js'
+ * @import { Env, FromWorker, LoadFault, ToWorker } from './types.js'
  */
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
@@ -26,11 +25,9 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-const jobs = new Jobs(post);
+const jobs = new Jobs(post, () => performance.now());
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
-/** @type {Fault | null} */
-let provoked = null;
 /** Whether the page shows the curvature, and whether it draws a mesh. */
 let curvature = false;
 let mesh = false;
@@ -60,24 +57,7 @@ const pause = () =>
 
 /** @type {Core | null} */
 let core = null;
-/** @type {InitOutput | null} */
-let raw = null;
 const memory = { held: 0, meshed: 0 };
-
-/** Causes the fault that a test has requested: a real trap in the instance, a stack overflow or an endless loop. */
-function provoke() {
-  const fault = provoked;
-  provoked = null;
-  if (fault === 'hang') for (;;);
-  // An object address far outside the memory traps on its first use and leaves the instance in the same state as a
-  // panic.
-  if (fault === 'panic') /** @type {any} */ (raw).core_count(0x7ffffff0);
-  if (fault === 'overflow') {
-    /** @returns {number} */
-    const deeper = () => 1 + deeper();
-    deeper();
-  }
-}
 
 /** @param {Core} ours @returns {Env} */
 const surroundings = (ours) => ({
@@ -85,12 +65,10 @@ const surroundings = (ours) => ({
   pause,
   post: (message, transfer) => {
     if (message.type === 'columns') undrawn += 1;
+    if (message.type === 'done') jobs.sampled();
     post(message, transfer);
   },
-  interrupt: () => {
-    if (provoked) provoke();
-    return jobs.interrupt(ours);
-  },
+  interrupt: () => jobs.interrupt(ours),
   curvature: () => curvature,
   mesh: () => mesh,
   room: () => undrawn < 2,
@@ -199,16 +177,6 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'drawn':
       if (data.id === jobs.running?.id) undrawn = Math.max(0, undrawn - 1);
       break;
-    case 'provoke':
-      provoked = data.fault;
-      if (!jobs.running) {
-        try {
-          provoke();
-        } catch (error) {
-          crashed(0, error);
-        }
-      }
-      break;
     default:
   }
 };
@@ -226,7 +194,7 @@ function failed(fault, message) {
 /** @param {WebAssembly.Module} module */
 async function boot(module) {
   try {
-    raw = await init({ module_or_path: module });
+    await init({ module_or_path: module });
     core = new Core();
     core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
     post({ type: 'ready', description: core.describe() });

@@ -4,6 +4,7 @@ import { button } from '../button.js';
 import { h, uniqueId } from '../dom.js';
 import { verdictOf } from '../mesh-words.js';
 import { numberBox } from '../number.js';
+import { createSelect } from '../select.js';
 import { saveMesh } from '../share.js';
 import { borderOf } from './borders.js';
 
@@ -35,15 +36,12 @@ export function createMeshPanel(engine, { toast, close }) {
     return engine.busy.value || !engine.empty.value ? 'Making the mesh …' : 'There is no surface to make a mesh of.';
   };
   const note = h('p', { class: 'quiet' });
-  const format = select(
-    FORMATS.map(([id]) => [id, id.toUpperCase()]),
-    () => tell(),
-  );
+  const format = createSelect({
+    choices: FORMATS.map(([value]) => ({ value, label: value.toUpperCase() })),
+    change: () => tell(),
+  });
   const ways = engine.description.value?.vertices ?? [];
-  const vertices = select(
-    ways.map(({ value, label }) => [value, label]),
-    () => tell(),
-  );
+  const vertices = createSelect({ choices: ways, change: () => tell() });
   const verticesNote = h('p', { class: 'quiet' });
   const verticesLine = line('Vertices', vertices);
   /** Says what is in the file, and offers the ways to write its vertices. */
@@ -60,9 +58,11 @@ export function createMeshPanel(engine, { toast, close }) {
   };
   tell();
   const scale = numberBox({ name: 'Length of a unit of the formula', value: '1' });
-  const unit = select(UNITS.map((id) => [id, id || 'unspecified']));
-  unit.setAttribute('aria-label', 'Unit');
-  const up = select(AXES.map((id) => [id, id]));
+  const unit = createSelect({
+    name: 'Unit',
+    choices: UNITS.map((value) => ({ value, label: value || 'unspecified' })),
+  });
+  const up = createSelect({ choices: AXES.map((value) => ({ value, label: value })) });
   const save = async () => {
     const factor = await engine.readNumber(scale.value);
     if (factor === null || !(factor > 0 && factor < Infinity)) {
@@ -124,14 +124,6 @@ function showing(engine, made) {
     (made.value?.loops.length ?? 0) > 1 ? 'Show the next border' : 'Show them',
   );
 }
-
-/** @param {string[][]} options  values and texts @param {() => void} [change] */
-const select = (options, change) =>
-  h(
-    'select',
-    { class: 'select', on: { change } },
-    options.map(([value, text]) => h('option', { value }, text)),
-  );
 
 /** @param {string} label @param {...HTMLElement} inputs */
 function line(label, ...inputs) {

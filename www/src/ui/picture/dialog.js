@@ -1,10 +1,12 @@
 /** The dialog that saves the picture: as a file, on paper, as a film or as a sequence of pictures. */
+import { signal } from '@preact/signals-core';
 import { button } from '../button.js';
 import { createDialog } from '../dialog.js';
-import { fill, h, uniqueId } from '../dom.js';
+import { h, uniqueId } from '../dom.js';
+import { createSelect } from '../select.js';
 import { download, stem } from '../share.js';
 import { captionOf } from './compose.js';
-import { drawOn, durationOf, kindOfFilm, recordFilm, recordSequence } from './film.js';
+import { canFilm, drawOn, makeFilm, makeSequence } from './film.js';
 import { printPage } from './print.js';
 import { createRecorderBar } from './recorder-bar.js';
 import { FILM_SIZES, sizesOf, sizeWords } from './sizes.js';
@@ -17,8 +19,9 @@ import { FILM_SIZES, sizesOf, sizeWords } from './sizes.js';
 
 /** @typedef {{ id: string, label: string, size: Size }} SizeEntry */
 
-/** Seconds of a sequence. */
-const SEQUENCE_S = [2, 4, 8, 12];
+/** Lengths of a film, in seconds. */
+const LENGTHS_S = [2, 4, 8, 12];
+const USUAL_S = 4;
 /** Value of the choice by which the film shows what the user does, and of the turntable. */
 const FREE = 'free';
 const TURN = 'turn';
@@ -59,20 +62,8 @@ function choice(label, select) {
   return h('div', { class: 'picture-choice' }, h('label', { for: select.id }, label), select);
 }
 
-/** @param {() => string[][]} read  values and texts */
-function selectOf(read) {
-  const select = h('select', { class: 'select' });
-  const update = () => {
-    const { value } = select;
-    fill(
-      select,
-      read().map(([id, text]) => h('option', { value: id }, text)),
-    );
-    if ([...select.options].some((option) => option.value === value)) select.value = value;
-  };
-  update();
-  return { select, update };
-}
+/** @param {readonly SizeEntry[]} entries */
+const sizeChoices = (entries) => entries.map((entry) => ({ value: entry.id, label: sizeWords(entry) }));
 
 /** The entry that a select stands at. @param {readonly SizeEntry[]} entries @param {HTMLSelectElement} select */
 const chosen = (entries, { value }) => entries.find(({ id }) => id === value) ?? entries[0];
@@ -82,11 +73,14 @@ const action = (text, press, look = '') => button({ class: look, press }, text);
 
 /** @param {Shared} shared */
 function pictureSection({ engine, page, parts, transparent, close }) {
-  const sizes = () => sizesOf({ width: innerWidth, height: innerHeight, ratio: devicePixelRatio });
-  const { select, update } = selectOf(() => sizes().map((entry) => [entry.id, sizeWords(entry)]));
-  addEventListener('resize', update);
+  const ofWindow = () => sizesOf({ width: innerWidth, height: innerHeight, ratio: devicePixelRatio });
+  const sizes = signal(ofWindow());
+  addEventListener('resize', () => {
+    sizes.value = ofWindow();
+  });
+  const select = createSelect({ choices: () => sizeChoices(sizes.value) });
   const save = async () => {
-    const { size } = chosen(sizes(), select);
+    const { size } = chosen(sizes.peek(), select);
     try {
       const canvas = new OffscreenCanvas(size.width, size.height);
       const context = canvas.getContext('2d');
@@ -123,27 +117,26 @@ const wishOf = (engine, size) => ({
   engine,
   size,
   subject: { kind: FREE },
+  seconds: 0,
   signal: new AbortController().signal,
   tell: () => {},
 });
 
 /** @param {Shared} shared */
 function filmSection({ engine, page, parts, transparent, close }) {
-  const subjects = selectOf(() => [
-    [TURN, 'Turntable'],
-    ...(engine.field.peek()?.parameters ?? []).map(({ name }) => [name, `Parameter ${name}`]),
-    [FREE, 'My own moves'],
-  ]);
-  const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, sizeWords(entry)]));
-  const seconds = selectOf(() => SEQUENCE_S.map((value) => [String(value), `${value}\u202fs`]));
-  seconds.select.setAttribute('aria-label', 'Length of the sequence');
-  // The parameters are those of the present formula.
-  const update = () => subjects.update();
-  subjects.select.addEventListener('pointerdown', update);
-  subjects.select.addEventListener('focus', update);
+  const subjects = createSelect({
+    choices: () => [
+      { value: TURN, label: 'Turntable' },
+      ...(engine.field.value?.parameters ?? []).map(({ name }) => ({ value: name, label: `Parameter ${name}` })),
+      { value: FREE, label: 'My own moves' },
+    ],
+  });
+  const sizes = createSelect({ choices: sizeChoices(FILM_SIZES) });
+  const length = createSelect({ choices: LENGTHS_S.map((value) => ({ value, label: `${value}\u202fs` })) });
+  length.value = String(USUAL_S);
   /** @returns {Subject} */
   const subject = () => {
-    const { value } = subjects.select;
+    const { value } = subjects;
     const range = engine.field.peek()?.parameters.find(({ name }) => name === value);
     if (range) return { kind: 'parameter', range, course: page.motion.course.peek() };
     return { kind: value === FREE ? FREE : TURN };
@@ -155,50 +148,54 @@ function filmSection({ engine, page, parts, transparent, close }) {
     filming.value = true;
     close();
     page.motion.stop();
-    const { size } = chosen(FILM_SIZES, sizes.select);
+    const { size } = chosen(FILM_SIZES, sizes);
     const abort = new AbortController();
     const bar = createRecorderBar(() => abort.abort());
     try {
-      const film = await make({ engine, size, parts, subject: subject(), signal: abort.signal, tell: bar.tell });
-      if (film) download(film, `${stem(engine)}.${film.type === 'application/zip' ? 'zip' : film.type.slice(6)}`);
-    } catch {
-      page.toast({ id: 'film', kind: 'error', text: 'The film could not be made. Choose a smaller size.' });
+      const seconds = Number(length.value);
+      const film = await make({
+        engine,
+        size,
+        parts,
+        subject: subject(),
+        seconds,
+        signal: abort.signal,
+        tell: bar.tell,
+      });
+      if (film) download(film, `${stem(engine)}.${film.type.split('/')[1]}`);
+    } catch (error) {
+      const details = error instanceof Error ? error.message : String(error);
+      page.toast({ id: 'film', kind: 'error', text: 'The film could not be made. Choose a smaller size.', details });
     } finally {
       filming.value = false;
       bar.remove();
     }
   };
-  const sequence = () =>
-    record((wish) =>
-      recordSequence({ ...wish, transparent: transparent.checked, seconds: Number(seconds.select.value) }),
-    );
-  const canFilm = kindOfFilm() !== null;
+  const sequence = () => record((wish) => makeSequence({ ...wish, transparent: transparent.checked }));
   return [
     h('h3', null, 'Film'),
-    choice('Motion', subjects.select),
-    choice('Size', sizes.select),
+    choice('Motion', subjects),
+    choice('Size', sizes),
+    choice('Length', length),
     h('div', { class: 'picture-actions' }, [
-      canFilm ? action('Record film', () => record(recordFilm)) : null,
-      h('span', { class: 'picture-sequence' }, [
-        action('Picture sequence', () => {
-          // A recording of what the user does has no known end, and its pictures are not finished runs.
-          if (durationOf(subject()) < Infinity) void sequence();
-          else
-            page.toast({
-              id: 'film',
-              kind: 'info',
-              text: 'A picture sequence is made of the turntable or of a parameter.',
-            });
-        }),
-        seconds.select,
-      ]),
+      canFilm() ? action('Make film', () => record(makeFilm), 'primary') : null,
+      action('Picture sequence', () => {
+        // A recording of what the user does has no known end, and its pictures are not finished runs.
+        if (subject().kind !== FREE) void sequence();
+        else
+          page.toast({
+            id: 'film',
+            kind: 'info',
+            text: 'A picture sequence is made of the turntable or of a parameter.',
+          });
+      }),
     ]),
     h(
       'p',
       { class: 'quiet' },
-      canFilm
-        ? 'Films record in real time; panels are left out. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.'
-        : 'This browser records no films. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.',
+      canFilm() ? '' : 'This browser encodes no films. ',
+      'Both have 30 pictures a second, each of a finished run, without the panels; a sequence is a ZIP file of PNGs. ',
+      'Your own moves are recorded as you make them, until you stop.',
     ),
   ];
 }

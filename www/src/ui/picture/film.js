@@ -1,31 +1,29 @@
-/** Records the picture: as a film while it moves, or as a sequence of single pictures of full quality. */
+/**
+ * Makes films and sequences of the picture: each moment is sampled and drawn completely, however long that takes, and
+ * shown for a thirtieth of a second. Only a film of what the user does is recorded in the time in which it plays.
+ */
 import { effect } from '@preact/signals-core';
-import { CROSSING_S, placeAt, TURN_S, valueAt } from '../motion.js';
+import { placeAt, valueAt } from '../motion.js';
 import { compose } from './compose.js';
-import { withDuration } from './webm.js';
 
 /**
+ * @import { VideoCodec } from 'mediabunny'
  * @import { Engine } from '../../engine/types.js'
  * @import { Context, Subject, Wish } from './types.js'
  */
 
-/** Pictures per second of a sequence; the least time between two of a film. */
+/** Pictures per second. */
 const FRAMES_PER_S = 30;
 /** Bits of a film per pixel and second. Fine dots need more than a filmed scene. */
 const BITS_PER_PX_S = 5;
-/** Kinds of film, the best first. Safari makes only the last. */
-const KINDS = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
+/**
+ * The codec of an MP4 film, which all programs play, and those of a WebM film, where the browser does not encode it.
+ * @type {{ mp4: VideoCodec[], webm: VideoCodec[] }}
+ */
+const CODECS = { mp4: ['avc'], webm: ['vp9', 'av1', 'vp8'] };
 
-/** Returns the kind of film that this browser makes, or null. */
-export const kindOfFilm = () =>
-  typeof MediaRecorder === 'undefined' ? null : (KINDS.find((kind) => MediaRecorder.isTypeSupported(kind)) ?? null);
-
-/** Seconds of a recording; it has no end of its own where the user moves. @param {Subject} subject */
-export function durationOf(subject) {
-  if (subject.kind === 'turn') return TURN_S;
-  if (subject.kind === 'parameter') return subject.course === 'bounce' ? 2 * CROSSING_S : CROSSING_S;
-  return Infinity;
-}
+/** Whether this browser encodes films. Which kinds it encodes is known when one is made. */
+export const canFilm = () => typeof VideoEncoder !== 'undefined';
 
 /**
  * Returns a function that brings the surface into its pose at a share of the recording, 0 to 1, and one that takes it
@@ -81,71 +79,85 @@ export async function drawOn({ engine, size, parts }, context, transparent = fal
 }
 
 /**
- * Records a film in the time in which it plays: what takes longer to draw is drawn less often.
+ * Makes a film of so many seconds, or of what the user does until it is stopped. Stopped before its end, it keeps what
+ * it has.
  * @param {Wish} wish
- * @throws if the browser makes no films
+ * @throws if the browser encodes no film of that size
  */
-export async function recordFilm(wish) {
-  const { engine, size, subject, signal, tell } = wish;
-  const kind = kindOfFilm();
-  if (!kind) throw new Error('This browser makes no films.');
-  const canvas = document.createElement('canvas');
-  Object.assign(canvas, size);
-  const context = canvas.getContext('2d', { alpha: false });
-  if (!context) throw new Error('The browser gives no canvas.');
-  const seconds = durationOf(subject);
-  const { at, back } = poserOf(engine, subject);
+export async function makeFilm(wish) {
+  const { size, subject, seconds, signal, tell } = wish;
+  const { canvas, context } = sheetOf(size, { alpha: false });
+  const { output, source, type } = await encoderOf(canvas);
+  const isFree = subject.kind === 'free';
+  const count = isFree ? Infinity : seconds * FRAMES_PER_S;
+  const { at, back } = poserOf(wish.engine, subject);
   try {
-    await at(0);
-    await drawOn(wish, context);
-    const bits = BITS_PER_PX_S * size.width * size.height;
-    const recorder = new MediaRecorder(canvas.captureStream(FRAMES_PER_S), {
-      mimeType: kind,
-      videoBitsPerSecond: bits,
-    });
-    /** @type {Blob[]} */
-    const chunks = [];
-    recorder.ondataavailable = ({ data }) => void chunks.push(data);
-    const ended = new Promise((resolve) => {
-      recorder.onstop = resolve;
-    });
-    recorder.start(1000);
+    await output.start();
     const begunMs = performance.now();
-    for (let passed = 0; passed < seconds && !signal.aborted; passed = (performance.now() - begunMs) / 1000) {
-      tell(Number.isFinite(seconds) ? passed / seconds : null, passed);
-      await at(Math.min(1, passed / seconds));
+    const passed = () => (performance.now() - begunMs) / 1000;
+    for (let i = 0; i < count && !(signal.aborted && i > 0); i += 1) {
+      const timeS = isFree ? passed() : i / FRAMES_PER_S;
+      tell(isFree ? null : i / count, timeS);
+      await at(i / count);
       await drawOn(wish, context);
+      await source.add(timeS, 1 / FRAMES_PER_S);
+      // A page that is drawn from time to time shows how far it is, and can be stopped.
       await nextFrame();
+      while (isFree && !signal.aborted && passed() < timeS + 1 / FRAMES_PER_S) await nextFrame();
     }
-    const shown = (performance.now() - begunMs) / 1000;
-    recorder.stop();
-    await ended;
-    for (const track of recorder.stream.getTracks()) track.stop();
-    const film = withDuration(new Uint8Array(await new Blob(chunks).arrayBuffer()), shown);
-    return new Blob([film], { type: kind.replace(/;.*/, '') });
+    await output.finalize();
+    return new Blob([/** @type {ArrayBuffer} */ (output.target.buffer)], { type });
   } finally {
+    if (output.state !== 'finalized') await output.cancel();
     back();
   }
 }
 
 /**
+ * Returns a file of the kind that this browser encodes, and what takes the pictures of a canvas into it.
+ * @param {OffscreenCanvas} canvas
+ */
+async function encoderOf(canvas) {
+  const { BufferTarget, CanvasSource, getFirstEncodableVideoCodec, Mp4OutputFormat, Output, WebMOutputFormat } =
+    await import('mediabunny');
+  const { width, height } = canvas;
+  const bitrate = BITS_PER_PX_S * width * height;
+  for (const format of [new Mp4OutputFormat({ fastStart: 'in-memory' }), new WebMOutputFormat()]) {
+    const codecs = format instanceof Mp4OutputFormat ? CODECS.mp4 : CODECS.webm;
+    const codec = await getFirstEncodableVideoCodec(codecs, { width, height, bitrate });
+    if (!codec) continue;
+    const output = new Output({ format, target: new BufferTarget() });
+    const source = new CanvasSource(canvas, { codec, bitrate });
+    output.addVideoTrack(source, { frameRate: FRAMES_PER_S });
+    return { output, source, type: format.mimeType };
+  }
+  throw new Error('This browser encodes no films.');
+}
+
+/** A canvas for the pictures. @param {Wish['size']} size @param {CanvasRenderingContext2DSettings} [settings] */
+function sheetOf({ width, height }, settings) {
+  const canvas = new OffscreenCanvas(width, height);
+  const context = canvas.getContext('2d', settings);
+  if (!context) throw new Error('The browser gives no canvas.');
+  return { canvas, context };
+}
+
+/**
  * Makes single pictures, each of a finished run, and packs them into a ZIP file without compressing them again.
- * @param {Wish & { transparent: boolean, seconds: number }} wish
+ * @param {Wish & { transparent: boolean }} wish
  * @returns null if it was given up
  */
-export async function recordSequence(wish) {
+export async function makeSequence(wish) {
   const { engine, size, subject, signal, tell, transparent, seconds } = wish;
   const { Zip, ZipPassThrough } = await import('fflate');
-  const canvas = new OffscreenCanvas(size.width, size.height);
-  const context = canvas.getContext('2d');
-  if (!context) throw new Error('The browser gives no canvas.');
+  const { canvas, context } = sheetOf(size);
   /** @type {Uint8Array<ArrayBuffer>[]} */
   const parts = [];
   const zip = new Zip((error, chunk) => {
     if (error) throw error;
     parts.push(/** @type {Uint8Array<ArrayBuffer>} */ (chunk));
   });
-  const count = Math.max(2, Math.round(seconds * FRAMES_PER_S));
+  const count = seconds * FRAMES_PER_S;
   const { at, back } = poserOf(engine, subject);
   try {
     for (let i = 0; i < count; i += 1) {

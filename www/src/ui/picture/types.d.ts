@@ -27,6 +27,8 @@ export interface Wish {
   /** legend and caption of the present moment */
   parts: () => Parts;
   subject: Subject;
+  /** its length, except where the user moves */
+  seconds: number;
   /** ends the recording; a film keeps what it has */
   signal: AbortSignal;
   /** is told of the progress: of the whole, if that is known, and in seconds */

@@ -311,8 +311,8 @@ test('the core is fetched once: what the page preloads is what it uses, also for
     fetched += 1;
     await route.continue();
   });
-  const { errors } = await open(page);
-  await on(page, 'p.debug.panic()');
+  const { errors } = await open(page, `./faults/${link(coarse)}`);
+  await page.evaluate(() => new BroadcastChannel('faults').postMessage('panic'));
   await expect.poll(async () => (await counts(page)).restarts).toBe(1);
   await on(page, 'p.run()');
   expect(fetched).toBe(1);

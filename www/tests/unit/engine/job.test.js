@@ -8,15 +8,12 @@ import { fakeCore } from './fake-core.js';
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
 const sampleJob = (part = {}) => ({
-  kind: 'sample',
+  kind: 'grow',
   id: 7,
   field: { formula: 'x' },
   points: null,
   settings: {},
   following: [],
-  grow: true,
-  live: false,
-  coarse: false,
   askAbove: Infinity,
   ...part,
 });
@@ -165,7 +162,7 @@ describe('a job', () => {
     for (const usPerUnit of [0.05, 1, 20]) {
       const core = fakeCore({ particles: 200_000, relax_steps: 0, usPerUnit });
       const longest = longestOf(core, 'step');
-      await run(core, sampleJob({ settings: { relax_steps: 0 }, live: true }));
+      await run(core, sampleJob({ settings: { relax_steps: 0 }, kind: 'live' }));
       expect(longest(), `at ${usPerUnit} µs per unit`).toBeLessThan(50);
     }
   });
@@ -212,7 +209,7 @@ describe('a job', () => {
 
   test('a live job posts one whole picture and no report', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3 });
-    const { posted } = await run(core, sampleJob({ live: true, grow: false }));
+    const { posted } = await run(core, sampleJob({ kind: 'live' }));
     expect(of(posted, 'columns')).toHaveLength(1);
     expect(of(posted, 'columns')[0]).toMatchObject({ first: 0, total: 20_000 });
     expect(of(posted, 'report')).toHaveLength(0);
@@ -222,13 +219,14 @@ describe('a job', () => {
   test('the particles of the run before follow if its settings are among those that may', async () => {
     const core = fakeCore({ particles: 500 });
     const memory = { held: 0, meshed: 0 };
-    const live = { grow: false, live: true, following: [{ count: 500 }] };
+    const live = /** @type {const} */ ({ kind: 'live' });
+    const following = [{ count: 500 }];
     for (const [id, count, followed] of /** @type {const} */ ([
       [1, 500, false],
       [2, 300, true],
       [3, 300, true],
     ])) {
-      const { posted } = await run(core, sampleJob({ ...live, id, settings: { count } }), { memory });
+      const { posted } = await run(core, sampleJob({ ...live, following, id, settings: { count } }), { memory });
       const done = posted.find(({ type }) => type === 'done');
       expect(done).toMatchObject({ outcome: 'complete', followed, progress: { particles: 500 } });
       const columns = posted.filter(({ type }) => type === 'columns');
@@ -243,7 +241,7 @@ describe('a job', () => {
   });
 
   test('a live job that is stopped is the last of its drag, and is reported', async () => {
-    const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), {
+    const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ kind: 'live' }), {
       interrupt: () => 'stop',
     });
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', reportFollows: false });
@@ -252,14 +250,14 @@ describe('a job', () => {
       calls += 1;
       return calls > 5 ? 'stop' : null;
     };
-    const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt });
+    const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ kind: 'live' }), { interrupt });
     expect(of(later.posted, 'done')[0]).toMatchObject({ outcome: 'stopped', reportFollows: true });
     expect(of(later.posted, 'report')).toHaveLength(1);
   });
 
   test('without growth, the picture waits until the front is complete', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3 });
-    const { posted } = await run(core, sampleJob({ grow: false }));
+    const { posted } = await run(core, sampleJob({ kind: 'change' }));
     for (const range of of(posted, 'columns')) expect(range.total).toBe(20_000);
   });
 
@@ -315,7 +313,8 @@ describe('a job', () => {
   });
 
   test('leaves a mesh on the page until the next one is there, unless it is to be seen growing', async () => {
-    for (const job of [sampleJob({ grow: false }), sampleJob({ grow: false, live: true })]) {
+    for (const kind of /** @type {const} */ (['change', 'live'])) {
+      const job = sampleJob({ kind });
       const { posted } = await run(fakeCore({ particles: 20_000, relax_steps: 4 }), job, { mesh: true });
       const [first, ...more] = of(posted, 'columns').filter(({ radii }) => radii.length > 0);
       expect(first).toMatchObject({ first: 0, total: 20_000 });
@@ -324,14 +323,14 @@ describe('a job', () => {
     }
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
-    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true });
+    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 4 });
     const relaxed = await run(core, relax, { mesh: true, memory });
     expect(of(relaxed.posted, 'columns').filter(({ radii }) => radii.length > 0)).toHaveLength(1);
   });
 
   test('that is replaced while its particles are joined sends no mesh, and holds nothing', async () => {
     const core = fakeCore({ particles: 500, slices: 100_000 });
-    const { posted, memory } = await run(core, sampleJob({ grow: false }), {
+    const { posted, memory } = await run(core, sampleJob({ kind: 'change' }), {
       mesh: true,
       interrupt: () => (core.calls.includes('join') ? 'replace' : null),
     });
@@ -347,12 +346,12 @@ describe('a job', () => {
   });
 
   test('shows the levels of a refinement as they come, and of a drag the coarse one, whole', async () => {
-    const refined = await run(fakeCore({ particles: 100, refined_levels: 2 }), sampleJob({ grow: false }));
+    const refined = await run(fakeCore({ particles: 100, refined_levels: 2 }), sampleJob({ kind: 'change' }));
     expect(of(refined.posted, 'columns').at(-1)?.total).toBe(1600);
-    for (const coarse of [true, false]) {
+    for (const kind of /** @type {const} */ (['sketch', 'live'])) {
       const core = fakeCore({ particles: 100, refined_levels: 2 });
-      const { posted } = await run(core, sampleJob({ grow: false, live: true, coarse }));
-      expect(of(posted, 'columns').at(-1)?.total).toBe(coarse ? 100 : 1600);
+      const { posted } = await run(core, sampleJob({ kind, settings: { method: 'refined' } }));
+      expect(of(posted, 'columns').at(-1)?.total).toBe(kind === 'sketch' ? 100 : 1600);
       expect(of(posted, 'done')).toMatchObject([
         { outcome: 'complete', progress: { stop_reason: 'complete' }, reportFollows: false },
       ]);
@@ -362,15 +361,11 @@ describe('a job', () => {
   test('relaxing goes on from the particles at hand, and only from those', async () => {
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
-    const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true }, { memory });
+    const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4 }, { memory });
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
     expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
     for (const range of of(again.posted, 'columns')) expect(range.first).toBe(0);
-    const lost = await run(
-      core,
-      { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true },
-      { memory: { held: 0, meshed: 0 } },
-    );
+    const lost = await run(core, { kind: 'relax', id: 9, of: 7, steps: 1 }, { memory: { held: 0, meshed: 0 } });
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
   });
 
@@ -381,7 +376,7 @@ describe('a job', () => {
     // The core of the tests moves everything by a half in each step.
     expect(positions.map(([x]) => x)).toEqual([0, 0.5, 1]);
     expect(positions.every(({ length }) => length === 9000)).toBe(true);
-    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 2, live: false, grow: true });
+    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 2 });
     const again = await run(core, relax, { memory });
     expect(of(again.posted, 'past')[0].positions.map(([x]) => x)).toEqual([1.5, 2]);
   });
@@ -389,7 +384,7 @@ describe('a job', () => {
   test('of many particles only the positions as placed are kept, and of a drag none', async () => {
     const many = await run(fakeCore({ particles: 20_001, relax_steps: 3, usPerUnit: 1 }), sampleJob());
     expect(of(many.posted, 'past')[0].positions).toHaveLength(1);
-    const drag = await run(fakeCore({ particles: 3000, relax_steps: 3 }), sampleJob({ live: true }));
+    const drag = await run(fakeCore({ particles: 3000, relax_steps: 3 }), sampleJob({ kind: 'live' }));
     expect(of(drag.posted, 'past')).toEqual([]);
   });
 
@@ -412,7 +407,7 @@ async function work(core, first, meanwhile = () => {}) {
   /** @type {FromWorker[]} */
   const posted = [];
   const post = (/** @type {FromWorker} */ message) => void posted.push(structuredClone(message));
-  const jobs = new Jobs(post);
+  const jobs = new Jobs(post, () => core.clock.ms);
   const memory = { held: 0, meshed: 0 };
   jobs.add(first);
   for (let job = jobs.take(core); job; job = jobs.take(core)) {
@@ -523,6 +518,82 @@ describe('a job that comes while another is under way', () => {
       jobs.add(sampleJob({ id: 8, field: { formula: 'y' } }));
     });
     expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[8, 'complete']]);
+  });
+});
+
+describe('latest wins', () => {
+  /** The queue of a worker at work, whose clock the test moves. */
+  function queue() {
+    const core = fakeCore();
+    /** @type {number[]} */
+    const begun = [];
+    const jobs = new Jobs(
+      () => {},
+      () => core.clock.ms,
+    );
+    const begin = () => {
+      const job = jobs.take(core);
+      if (job) begun.push(job.id);
+    };
+    /** Lets time pass; the job that runs looks up at the end, as between two steps. @param {number} ms */
+    const pass = (ms) => {
+      core.clock.ms += ms;
+      if (jobs.running && jobs.interrupt(core) === 'replace') begin();
+    };
+    return { jobs, begun, begin, pass, core };
+  }
+  const live = (/** @type {number} */ id) => sampleJob({ id, kind: 'live' });
+
+  test('of a slider at 120 Hz every run comes to its end, and the last value is always run', () => {
+    const { jobs, begun, begin, pass } = queue();
+    let sinceMs = 0;
+    for (let id = 1; id <= 1200; id += 1) {
+      pass(8);
+      jobs.add(live(id));
+      // Each run takes 40 ms.
+      if (!jobs.running || 8 * id - sinceMs >= 40) {
+        begin();
+        sinceMs = 8 * id;
+      }
+    }
+    begin();
+    expect(begun.at(-1)).toBe(1200);
+    expect(begun).toEqual([...begun].sort((a, b) => a - b));
+    // 10 s at one run per 40 ms, and none was replaced.
+    expect(begun.length).toBeGreaterThan(230);
+    expect(begun.length).toBeLessThan(250);
+  });
+
+  test('a drag replaces a full run at once', () => {
+    const { jobs, begun, begin, pass } = queue();
+    jobs.add(sampleJob({ id: 1 }));
+    begin();
+    jobs.add(live(2));
+    pass(1);
+    expect(begun).toEqual([1, 2]);
+  });
+
+  test('a drag waits for a live run and for that of a control at rest, but neither for long nor for figures', () => {
+    for (const kind of /** @type {const} */ (['live', 'rest'])) {
+      const { jobs, begun, begin, pass } = queue();
+      jobs.add(sampleJob({ id: 1, kind }));
+      begin();
+      jobs.add(live(2));
+      pass(100);
+      expect(begun).toEqual([1]);
+      jobs.add(live(3));
+      pass(100);
+      expect(begun).toEqual([1, 3]);
+      // Any other run replaces it at once, and so does a live one while only figures are missing.
+      jobs.add(sampleJob({ id: 4, kind }));
+      begin();
+      jobs.add(live(5));
+      jobs.sampled();
+      pass(1);
+      jobs.add(sampleJob({ id: 6, kind: 'change' }));
+      pass(1);
+      expect(begun).toEqual([1, 3, 4, 5, 6]);
+    }
   });
 });
 

@@ -212,7 +212,7 @@ describe('a wish for a model', () => {
     const loader = new ModelLoader({ store, spawn, sample });
     const wish = (/** @type {string} */ surface) => {
       store.state.value = { ...store.state.value, surface, formula: '' };
-      return loader.load({ grow: true });
+      return loader.load('grow');
     };
     return { workers, store, loader, sample, wish };
   };
@@ -267,7 +267,7 @@ describe('a wish for a model', () => {
     await loading;
     const ask = (/** @type {number | null} */ centres) => {
       store.state.value = { ...store.state.value, centres };
-      return loader.load({});
+      return loader.load();
     };
     const fewer = ask(120);
     expect(loader.ready()).toBe(false);
@@ -292,7 +292,7 @@ describe('a wish for a model', () => {
     workers[0].say({ type: 'solved', solved: solved() });
     await opening;
     store.state.value = { ...store.state.value, centres: 400 };
-    const loading = loader.load({});
+    const loading = loader.load();
     expect(workers[1].order).toEqual({ file: file('cat.ply'), centres: 400 });
     workers[1].say({ type: 'solved', solved: solved() });
     await loading;

@@ -44,7 +44,7 @@ describe('a formula with a fault', () => {
 
   test('typed during a run lets that run go on, dimmed, with its figures', () => {
     const { sampler, store, columns, say, accept, jobs } = page();
-    sampler.sample(request('x', { fit: true }));
+    sampler.sample(request('x', { kind: 'new' }));
     accept(1);
     sampler.sample(request('x+'));
     // What comes before the answer is the run's too.
@@ -128,7 +128,7 @@ describe('the surface that stays', () => {
       start(2, 'y');
       say(done(2, outcome, 0, { progress: null }));
       expect(told.at(-1)).toBe('dim');
-      expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
+      expect(jobs().at(-1)).toMatchObject({ id: 3, kind: 'restore', field: { formula: 'x' } });
       accept(3);
       expect(store.field.value?.formula).toBe('y');
       complete(3, 9);
@@ -150,7 +150,7 @@ describe('the surface that stays', () => {
     say(columnsMessage(2, 7));
     start(3, 'y');
     say(done(3, 'refused', 0, { progress: null }));
-    expect(jobs().at(-1)).toMatchObject({ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 11 } });
+    expect(jobs().at(-1)).toMatchObject({ kind: 'restore', field: { formula: 'x' }, settings: { relax_steps: 11 } });
   });
 
   test('is the one asked for again where it is asked for while it is being restored', () => {
@@ -222,7 +222,7 @@ describe('the surface that stays', () => {
         });
       }
       if (end === 'mistake meanwhile') ended();
-      expect(jobs().at(-1)).toMatchObject({ field: { formula: 'x' }, live: false });
+      expect(jobs().at(-1)).toMatchObject({ kind: 'restore', field: { formula: 'x' } });
     }
   });
 
@@ -237,7 +237,7 @@ describe('the surface that stays', () => {
     accept(3, 'y');
     say(crash);
     expect(told.at(-1)).toBe('dim');
-    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
+    expect(jobs()).toMatchObject([{ kind: 'restore', field: { formula: 'x' } }]);
   });
 
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
@@ -315,7 +315,7 @@ describe('a worker that fails', () => {
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
     say(crash);
-    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
+    expect(jobs()).toMatchObject([{ kind: 'again', field: { formula: 'x' } }]);
     expect(store.busy.value).toBe(true);
   });
 
@@ -378,13 +378,13 @@ describe('a worker that fails', () => {
     expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
     say(crash);
     // The relaxation that was lost cannot be made again on its own: the run that ends with it is.
-    expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
+    expect(jobs()).toMatchObject([{ kind: 'again', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
     accept(4);
     complete(4, 7);
     say(crash);
     expect(jobs()).toHaveLength(0);
     sampler.relax(2);
-    expect(jobs()[0]).toMatchObject({ kind: 'sample', field: { formula: 'whole' } });
+    expect(jobs()[0]).toMatchObject({ kind: 'grow', field: { formula: 'whole' } });
   });
 
   test('to load says why, and tries again when asked', () => {

@@ -161,12 +161,9 @@ export function page() {
 }
 /** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
 export const request = (formula, more = {}) => ({
-  kind: 'sample',
+  kind: 'grow',
   field: { formula },
   settings: { max_particles: 1000, relax_steps: 10 },
-  grow: true,
-  live: false,
-  fit: false,
   ...more,
 });
 

@@ -1,5 +1,4 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { runningOf } from '../../../src/engine/sampling/run-state.js';
 import { description } from './description.js';
 import {
   asked,
@@ -106,7 +105,7 @@ test('a mesh is exported by the worker that holds it, and not by a new one', asy
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
     const { sampler, store, columns, say, accept, jobs } = page();
-    sampler.sample(request('x', { fit: true }));
+    sampler.sample(request('x', { kind: 'new' }));
     expect(store.busy.value).toBe(true);
     expect(jobs()).toHaveLength(1);
     accept(1);
@@ -212,7 +211,7 @@ describe('a run', () => {
     const { sampler, store, say, accept, start } = page();
     start(1);
     say(done(1, 'complete', 0));
-    sampler.sample(request('y', { live: true }));
+    sampler.sample(request('y', { kind: 'live' }));
     accept(2, 'y');
     expect(store.empty.value).toBe(true);
     say({ type: 'progress', id: 2, progress: progress(0, { phase: 'seeding' }) });
@@ -251,7 +250,7 @@ describe('a run', () => {
     accept(1);
     say(done(1, 'ask', 0, { predicted: 50_000 }));
     expect(asked).toEqual([50_000]);
-    sampler.sample(request('x', { confirmed: true }));
+    sampler.sample(request('x', { kind: 'agreed' }));
     expect(jobs()[1].askAbove).toBeGreaterThan(1e9);
   });
 });
@@ -292,62 +291,4 @@ test('a drag is counted: what was asked for, what was shown, how late', () => {
   vi.advanceTimersByTime(30);
   finish(2, 7);
   expect(store.lastDrag.value).toMatchObject({ requested: 3, shown: 2, latency_ms: 30, particles: 7 });
-});
-
-describe('latest wins', () => {
-  const live = (/** @type {string} */ formula) => request(formula, { live: true });
-  const formulas = (/** @type {any[]} */ jobs) => jobs.map((job) => job.field.formula);
-
-  test('a slider at 120 Hz never has more than one job waiting, and the last value is always run', () => {
-    const { sampler, say, accept, jobs } = page();
-    const end = (/** @type {{id: number}} */ { id }) => {
-      accept(id);
-      say(done(id, 'complete', 5));
-    };
-    for (let k = 0; k < 1200; k += 1) {
-      vi.advanceTimersByTime(8);
-      sampler.submit(live(String(k)));
-      const running = runningOf(sampler.runs);
-      // The worker takes 40 ms for each job.
-      if (running && Date.now() - running.sinceMs >= 40) end(running);
-    }
-    for (let running = runningOf(sampler.runs); running; running = runningOf(sampler.runs)) end(running);
-    const values = formulas(jobs()).map(Number);
-    expect(values.at(-1)).toBe(1199);
-    // 10 s of dragging at one job per 40 ms or so: nothing was run in vain, nothing starved.
-    expect(values.length).toBeGreaterThan(150);
-    expect(values.length).toBeLessThan(260);
-    expect(values).toEqual([...values].sort((a, b) => a - b));
-  });
-
-  test('a drag replaces a full run at once', () => {
-    const { sampler, jobs } = page();
-    sampler.submit(request('x'));
-    sampler.submit(live('y'));
-    expect(formulas(jobs())).toEqual(['x', 'y']);
-  });
-
-  test('a drag waits for the run that follows the one before, but not for long', () => {
-    for (const [afterMs, sent] of /** @type {const} */ ([
-      [100, ['x']],
-      [200, ['x', 'y']],
-    ])) {
-      const { sampler, jobs } = page();
-      sampler.submit(request('x', { rests: true }));
-      vi.advanceTimersByTime(afterMs);
-      sampler.submit(live('y'));
-      expect(formulas(jobs())).toEqual(sent);
-    }
-  });
-
-  test('a live job that takes too long gives way', () => {
-    const { sampler, jobs } = page();
-    sampler.submit(live('x'));
-    vi.advanceTimersByTime(100);
-    sampler.submit(live('y'));
-    expect(formulas(jobs())).toEqual(['x']);
-    vi.advanceTimersByTime(100);
-    sampler.submit(live('z'));
-    expect(formulas(jobs())).toEqual(['x', 'z']);
-  });
 });

@@ -33,7 +33,7 @@ export function spawnCore() {
   const core = new Core();
   const memory = { held: 0, meshed: 0 };
   const post = (/** @type {any} */ data) => queueMicrotask(() => worker.onmessage({ data }));
-  const jobs = new Jobs(post);
+  const jobs = new Jobs(post, () => performance.now());
   const env = {
     nowMs: () => performance.now(),
     pause: () => new Promise((resolve) => setTimeout(resolve)),

@@ -1,6 +1,5 @@
 import { describe, expect, test } from 'vitest';
 import { captionOf, endsOf } from '../../../src/ui/picture/compose.js';
-import { durationOf } from '../../../src/ui/picture/film.js';
 import { FILM_SIZES, sizesOf, sizeWords } from '../../../src/ui/picture/sizes.js';
 
 describe('the sizes of a picture', () => {
@@ -49,14 +48,4 @@ test('the ends of a scale are written as in the legend', () => {
   expect(endsOf({ ...legend, kind: 'sequential', range: [0.5, 2] })).toEqual(['0.5', '2']);
   expect(endsOf({ ...legend, kind: 'sequential', range: [2, 2] })).toEqual(['2 everywhere', '']);
   expect(endsOf({ ...legend, kind: 'diverging', range: [-1, 1] })).toEqual(['≤\u2009−1', '≥\u20091']);
-});
-
-test('a recording lasts as long as what moves takes, and without end where the user moves', () => {
-  const range = { name: 'a', min: 0, max: 1, step: 0.1 };
-  const [bounce, loop] = /** @type {const} */ (['bounce', 'loop']).map((course) =>
-    durationOf({ kind: 'parameter', range, course }),
-  );
-  expect(bounce).toBe(2 * loop);
-  expect(durationOf({ kind: 'turn' })).toBeGreaterThan(loop);
-  expect(durationOf({ kind: 'free' })).toBe(Infinity);
 });

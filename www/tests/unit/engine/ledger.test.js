@@ -2,6 +2,7 @@ import { describe, expect, test } from 'vitest';
 import {
   awaitsParticles,
   awaitsWorker,
+  backdropOf,
   IDLE,
   inputOf,
   lostRun,
@@ -9,11 +10,11 @@ import {
   relaxed,
   restoringOf,
   trialOf,
-} from '../../../src/engine/sampling/run-state.js';
+} from '../../../src/engine/sampling/ledger.js';
 import { description } from './description.js';
 
 /**
- * @import { Outcome, RunEvent, RunState, SampleRequest } from '../../../src/engine/sampling/types.js'
+ * @import { Ledger, LedgerEvent, Outcome, SampleRequest } from '../../../src/engine/sampling/types.js'
  * @import { Bounds } from '../../../src/engine/types.js'
  */
 
@@ -21,39 +22,42 @@ const { bounds } = description.surfaces[0];
 
 /** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
 const wish = (formula, more = {}) => ({
-  kind: 'sample',
+  kind: 'new',
   field: { formula },
   settings: { relax_steps: 10 },
-  grow: true,
-  live: false,
-  fit: true,
   ...more,
 });
-/** @param {SampleRequest} request @returns {RunEvent} */
+/** @param {SampleRequest} request @returns {LedgerEvent} */
 const sent = (request) => ({ type: 'sent', request, nowMs: 0 });
-/** @param {number} of @param {number} steps @returns {RunEvent} */
+/** @param {number} of @param {number} steps @returns {LedgerEvent} */
 const relax = (of, steps) => ({
   type: 'sent',
-  request: { kind: 'relax', of, steps, live: false, grow: true, fit: false },
+  request: { kind: 'relax', of, steps },
   nowMs: 0,
 });
-/** @param {number} id @returns {RunEvent} */
+/** @param {number} id @returns {LedgerEvent} */
 const accepted = (id) => ({ type: 'accepted', id, bounds });
-/** @type {RunEvent} */
+/** @type {LedgerEvent} */
 const particles = { type: 'particles', description };
-/** @param {Outcome} outcome @param {number} n @param {boolean} [reportFollows] @returns {RunEvent} */
-const done = (outcome, n, reportFollows = false) => ({ type: 'done', outcome, particles: n, reportFollows });
+/** @param {Outcome} outcome @param {number} n @param {boolean} [reportFollows] @returns {LedgerEvent} */
+const done = (outcome, n, reportFollows = false) => ({
+  type: 'done',
+  outcome,
+  particles: n,
+  reportFollows,
+  nowMs: 40,
+});
 
 /**
  * What has come of these events. No state is changed: each is frozen before the next event.
- * @param {RunEvent[]} events
+ * @param {LedgerEvent[]} events
  */
 const stateAfter = (...events) => events.reduce((state, event) => Object.freeze(reduce(state, event)), IDLE);
 
 /** A whole run of x, with its report. */
 const whole = () => [sent(wish('x')), accepted(1), particles, done('complete', 7, true), { type: 'reported' }];
-/** @type {(...more: RunEvent[]) => RunState} */
-const afterWhole = (...more) => stateAfter(.../** @type {RunEvent[]} */ (whole()), ...more);
+/** @type {(...more: LedgerEvent[]) => Ledger} */
+const afterWhole = (...more) => stateAfter(.../** @type {LedgerEvent[]} */ (whole()), ...more);
 
 describe('a run', () => {
   test('has the box that was found for it, and not that of its field before', () => {
@@ -67,7 +71,7 @@ describe('a run', () => {
 
   test('goes through its stages, and is waited for by the page and by the worker as long as each has to', () => {
     const seen = whole().map((_, k) => {
-      const state = stateAfter(.../** @type {RunEvent[]} */ (whole()).slice(0, k + 1));
+      const state = stateAfter(.../** @type {LedgerEvent[]} */ (whole()).slice(0, k + 1));
       return [state.current?.stage, awaitsParticles(state), awaitsWorker(state)];
     });
     expect(seen).toEqual([
@@ -88,7 +92,7 @@ describe('a run', () => {
   test('takes over when its field is accepted, and those asked before it are forgotten', () => {
     const state = stateAfter(sent(wish('x')), sent(wish('y')), sent(wish('z')), accepted(2));
     expect(state.current).toMatchObject({ id: 2, bounds, stage: 'seeding' });
-    expect(state.asked.map((run) => run.id)).toEqual([3]);
+    expect(state.asked.map((ticket) => ticket.id)).toEqual([3]);
     expect(state.accepted).toEqual(wish('y'));
     // An answer about one of them changes nothing any more.
     expect(reduce(state, accepted(1))).toBe(state);
@@ -105,6 +109,11 @@ describe('a run', () => {
   });
 });
 
+test('the time that a run has waited for the one before it is not its own', () => {
+  const state = stateAfter(sent(wish('x')), accepted(1), sent(wish('y')), done('complete', 7), accepted(2));
+  expect(state.current?.sinceMs).toBe(40);
+});
+
 describe('the surface on the page is not the one asked for', () => {
   test.each(/** @type {const} */ (['ask', 'refused', 'lost']))('after a run that ended with %s', (outcome) => {
     const state = afterWhole(sent(wish('x')), accepted(2), done(outcome, 0));
@@ -119,7 +128,7 @@ describe('the surface on the page is not the one asked for', () => {
   });
 
   test('while it is only restored', () => {
-    const restoring = sent(wish('x', { restoring: true }));
+    const restoring = sent(wish('x', { kind: 'restore' }));
     const state = afterWhole(sent(wish('y')), accepted(2), done('refused', 0), restoring, accepted(3));
     expect(state.astray).toBe(true);
     expect(reduce(state, done('stopped', 0)).astray).toBe(true);
@@ -140,7 +149,7 @@ describe('a relaxation', () => {
     expect(begun.current).toMatchObject({ id: 2, stage: 'seeding' });
     expect(begun.shown?.request.settings.relax_steps).toBe(10);
     const moved = reduce(begun, particles);
-    expect(moved.shown).toMatchObject({ reported: false, request: { settings: { relax_steps: 15 }, fit: false } });
+    expect(moved.shown).toMatchObject({ reported: false, request: { settings: { relax_steps: 15 }, kind: 'again' } });
     // Only the first particles count.
     expect(reduce(moved, particles)).toBe(moved);
   });
@@ -169,7 +178,7 @@ describe('when the worker goes', () => {
 
   test('a report that is owed is made with its run', () => {
     const state = stateAfter(sent(wish('x')), accepted(1), particles, done('complete', 7, true));
-    expect(lostRun(state, description)).toEqual(wish('x', { grow: false, fit: false }));
+    expect(lostRun(state, description)).toEqual(wish('x', { kind: 'again' }));
   });
 
   test('a relaxation is made with the run that it goes on with, and its steps count once', () => {
@@ -179,9 +188,9 @@ describe('when the worker goes', () => {
   });
 });
 
-test('what waits is lost first, and once', () => {
-  const live = (/** @type {string} */ formula) => wish(formula, { live: true });
-  const state = stateAfter(sent(live('x')), { type: 'waits', request: live('y') });
+test('what was sent last is lost first, and once', () => {
+  const live = (/** @type {string} */ formula) => wish(formula, { kind: 'live' });
+  const state = stateAfter(sent(live('x')), accepted(1), sent(live('y')));
   expect(lostRun(state, description)).toEqual(live('y'));
   expect(lostRun(reduce(state, { type: 'lost' }), description)).toBe(null);
 });
@@ -196,7 +205,7 @@ test('a worker started again by hand may be sent what the last failed on', () =>
 
 describe('a formula that is being typed', () => {
   const trial = (/** @type {string} */ formula, /** @type {number} */ id) => [
-    sent(wish(formula, { trial: true })),
+    sent(wish(formula, { kind: 'trial' })),
     accepted(id),
     particles,
     done('complete', 5),
@@ -205,19 +214,22 @@ describe('a formula that is being typed', () => {
   test('is on trial: of any number of its beginnings, the surface before the first comes back', () => {
     const state = afterWhole(...trial('xy', 2), ...trial('xyz', 3));
     expect(trialOf(state)).toBe('shown');
-    const back = restoringOf(reduce(state, sent(wish('xyz+', { trial: true }))));
+    const back = restoringOf(reduce(state, sent(wish('xyz+', { kind: 'trial' }))));
     expect(back).toBeNull();
-    const refused = reduce(reduce(state, sent(wish('xyz+', { trial: true }))), { type: 'refused', id: 4 });
-    expect(restoringOf(refused)).toMatchObject({ field: { formula: 'x' }, restoring: true, trial: false });
+    const refused = reduce(reduce(state, sent(wish('xyz+', { kind: 'trial' }))), { type: 'refused', id: 4 });
+    expect(restoringOf(refused)).toMatchObject({ field: { formula: 'x' }, kind: 'restore' });
   });
 
   test('without a surface has the one before as a backdrop, which is nobody’s surface but comes back again', () => {
-    const none = [sent(wish('xyz=-1', { trial: true })), accepted(3), done('complete', 0)];
-    const { waiting, ...state } = afterWhole(...trial('xy', 2), .../** @type {RunEvent[]} */ (none));
-    if (waiting?.kind !== 'sample') throw new Error('Nothing comes back.');
-    expect(waiting).toMatchObject({ field: { formula: 'x' }, backdrop: true });
-    const events = /** @type {RunEvent[]} */ ([sent(waiting), accepted(4), particles, done('complete', 7)]);
-    const after = events.reduce(reduce, { ...state, waiting });
+    const none = [sent(wish('xyz=-1', { kind: 'trial' })), accepted(3), done('complete', 0)];
+    const state = afterWhole(...trial('xy', 2), .../** @type {LedgerEvent[]} */ (none));
+    const behind = backdropOf(state);
+    if (!behind) throw new Error('Nothing comes back.');
+    expect(behind).toMatchObject({ field: { formula: 'x' }, kind: 'backdrop' });
+    // What was asked for meanwhile goes first.
+    expect(backdropOf(reduce(state, sent(wish('z'))))).toBeNull();
+    const events = /** @type {LedgerEvent[]} */ ([sent(behind), accepted(4), particles, done('complete', 7)]);
+    const after = events.reduce(reduce, state);
     expect(after).toMatchObject({ held: 0, shown: null, stood: { request: { field: { formula: 'x' } } } });
     expect(trialOf(after)).toBe('back');
     expect(trial('xyz', 5).reduce(reduce, after).stood?.request.field.formula).toBe('x');
@@ -231,6 +243,6 @@ describe('a formula that is being typed', () => {
     expect(afterWhole(...trial('xy', 2), sent(wish('xyz')), accepted(3), particles).stood).toBeNull();
     // A commitment that comes before the particles is kept for them.
     const early = [...trial('xy', 2).slice(0, 2), { type: 'committed' }, particles];
-    expect(afterWhole(.../** @type {RunEvent[]} */ (early)).stood).toBeNull();
+    expect(afterWhole(.../** @type {LedgerEvent[]} */ (early)).stood).toBeNull();
   });
 });

@@ -1,5 +1,5 @@
 /**
- * Turns the state into runs of the sampler and decides when they start.
+ * Turns the state into requests for runs of the sampler and decides when they are made.
  *
  * @module
  */
@@ -11,8 +11,9 @@ import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
 
 /**
- * @import { Pulled, RunOptions, RunsOptions } from './parts.js'
+ * @import { Pulled, RunOptions, SchedulerOptions } from './parts.js'
  * @import { SampleRequest } from './sampling/types.js'
+ * @import { SampleKind } from './types.js'
  */
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
@@ -21,18 +22,18 @@ const REST_MS = 250;
 const spawnSolver = () =>
   new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' });
 
-export class Runs {
+export class Scheduler {
   /**
    * Timer of the run that starts when a control or the typing pauses.
    * @type {ReturnType<typeof setTimeout> | undefined}
    */
   #timer;
 
-  /** @param {RunsOptions} parts */
+  /** @param {SchedulerOptions} parts */
   constructor({ store, columns, picture, onReady }) {
     this.store = store;
     this.#timer = undefined;
-    this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (options) => this.resample(options) });
+    this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (kind) => this.resample({ kind }) });
     this.sampling = new Sampler({
       store,
       columns,
@@ -47,30 +48,28 @@ export class Runs {
 
   /**
    * Returns the request that samples the present state, or the surface that is pulled.
-   * @param {RunOptions & Partial<SampleRequest>} [options]
+   * @param {RunOptions} [options]
    * @returns {SampleRequest}
    */
-  #request({ pulled, changed = false, ...options } = {}) {
+  #request({ kind = 'change', pulled, settings: given } = {}) {
     const { loader } = this;
     const about = description(this.store);
     const state = loader.present();
     const isMesh = this.store.meshing.value !== null;
-    const settings = completeSettings(about, isMesh ? { ...state.settings, method: 'refined' } : state.settings);
+    const own = completeSettings(about, isMesh ? { ...state.settings, method: 'refined' } : state.settings);
+    const settings = given ?? own;
+    const follows = state.view.flow && (kind === 'move' || kind === 'rest');
     return {
-      kind: 'sample',
+      kind,
       field: { ...fieldRequest(state, about, loader.key()), ...pulled },
       settings,
-      following: changed && state.view.flow ? [settings] : [],
-      grow: false,
-      live: false,
-      fit: false,
-      ...options,
+      following: follows ? [settings] : [],
     };
   }
 
   /** Samples the present state. @param {RunOptions} [options] */
   resample(options = {}) {
-    if (!this.#begin(options)) return;
+    if (!this.#begin(options.kind)) return;
     const request = this.#request(options);
     // The end of a pull is known by its answer.
     if (options.pulled) this.sampling.submit(request);
@@ -82,29 +81,26 @@ export class Runs {
    * @param {Pulled} [pulled]
    */
   resampleLive(pulled) {
-    if (!this.#begin({})) return;
+    if (!this.#begin()) return;
     this.sampling.sampleLive(this.#request({ pulled }), this.#diagonal());
-    this.#timer = setTimeout(
-      () => this.sampling.sample(this.#request({ pulled, changed: true, rests: true })),
-      REST_MS,
-    );
+    this.#timer = setTimeout(() => this.sampling.sample(this.#request({ kind: 'rest', pulled })), REST_MS);
   }
 
   /**
    * Samples another surface. A model that is still loading for another choice is given up.
-   * @param {RunOptions} [options]
+   * @param {SampleKind} [kind]
    */
-  choose(options) {
+  choose(kind) {
     this.store.loadingError.value = null;
     if (this.loader.orderKey !== this.loader.key()) this.loader.cancel();
-    this.resample(options);
+    this.resample({ kind });
   }
 
   /** Samples a formula that is being typed once the typing pauses, unless another request comes first. */
   chooseTyped() {
     this.forgetLater();
     this.store.typing.value = true;
-    this.#timer = setTimeout(() => this.choose({ trial: true }), TYPING_MS);
+    this.#timer = setTimeout(() => this.choose('trial'), TYPING_MS);
   }
 
   /** Cancels the run that waits for a pause. */
@@ -121,15 +117,15 @@ export class Runs {
 
   /**
    * Returns whether the state can be sampled now. If its model is not solved yet, the solution is started.
-   * @param {RunOptions} options
+   * @param {SampleKind} [kind]
    */
-  #begin(options) {
+  #begin(kind) {
     this.forgetLater();
     this.store.spot.value = null;
     const { loader } = this;
     if (!this.store.description.value) return false;
     if (!loader.ready()) {
-      void loader.load(options);
+      void loader.load(kind);
       return false;
     }
     loader.settled();
@@ -162,7 +158,7 @@ export class Runs {
           store.notice.value = null;
           const maxParticles = validSetting(description(store), 'max_particles', raised) ?? limit;
           change(store, { settings: { ...store.state.value.settings, max_particles: maxParticles } });
-          this.sampling.sample(this.#request({ confirmed: true, grow: true }));
+          this.sampling.sample(this.#request({ kind: 'agreed' }));
         },
       },
     };

@@ -1,26 +1,20 @@
 /**
- * The state of the runs, as a record that only {@link reduce} replaces, and functions of it. All functions are pure:
- * the client passes the events and acts on the result.
+ * What the page knows of the jobs that it has sent, as a record that only {@link reduce} replaces, and functions of it.
+ * All functions are pure: the sampler passes the events and acts on the result.
  *
  * @module
  */
 import { clampSettings } from '../share/state.js';
+import { KINDS } from './kinds.js';
 
 /**
  * @import { Description, Trial } from '../types.js'
- * @import { Outcome, Run, RunEvent, RunRequest, RunState, SampleRequest, Shown, Stage } from './types.js'
+ * @import { Ledger, LedgerEvent, Outcome, RunRequest, SampleRequest, Shown, Stage, Ticket } from './types.js'
  */
 
-/**
- * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
- * finish. So does the run that follows a drag, since the particles that it leaves can follow the surface again.
- */
-const PATIENCE_MS = 150;
-
-/** @type {RunState} */
+/** @type {Ledger} */
 export const IDLE = Object.freeze({
   lastId: 0,
-  waiting: null,
   asked: [],
   current: null,
   held: 0,
@@ -28,35 +22,36 @@ export const IDLE = Object.freeze({
   shown: null,
   stood: null,
   astray: false,
+  endedMs: 0,
   stoppedUpTo: 0,
   crashedInput: '',
 });
 
-/** @param {RunState} state @param {RunEvent} event @returns {RunState} */
+/** @param {Ledger} state @param {LedgerEvent} event @returns {Ledger} */
 export function reduce(state, event) {
   switch (event.type) {
-    case 'waits':
-      return { ...state, waiting: event.request };
     case 'sent': {
       const { request, nowMs } = event;
       const id = state.lastId + 1;
-      /** @type {Run} */
-      const run = { id, request, bounds: null, stage: 'seeding', sinceMs: nowMs };
-      const next = { ...state, lastId: id, waiting: null };
+      /** @type {Ticket} */
+      const ticket = { id, request, bounds: null, stage: 'seeding', sinceMs: nowMs };
+      const next = { ...state, lastId: id };
       // A relaxation sets no field, so it is current at once.
-      return request.kind === 'relax' ? { ...next, current: run } : { ...next, asked: [...state.asked, run] };
+      return request.kind === 'relax' ? { ...next, current: ticket } : { ...next, asked: [...state.asked, ticket] };
     }
     case 'accepted': {
-      const run = askedRun(state, event.id);
-      if (run?.request.kind !== 'sample') return state;
-      const { request } = run;
+      const ticket = askedFor(state, event.id);
+      if (!ticket || ticket.request.kind === 'relax') return state;
+      const { request } = ticket;
+      // That it has waited for the job before it says nothing of its own cost.
+      const sinceMs = Math.max(ticket.sinceMs, state.endedMs);
       return {
         ...state,
         asked: after(state.asked, event.id),
-        current: { ...run, bounds: event.bounds },
+        current: { ...ticket, bounds: event.bounds, sinceMs },
         held: 0,
-        accepted: request.backdrop ? state.accepted : request,
-        astray: request.restoring === true && state.astray,
+        accepted: request.kind === 'backdrop' ? state.accepted : request,
+        astray: KINDS[request.kind].restores === true && state.astray,
       };
     }
     case 'boxed':
@@ -72,9 +67,9 @@ export function reduce(state, event) {
     case 'committed':
       return committed(state);
     case 'stopped':
-      return { ...state, waiting: null, stoppedUpTo: state.lastId };
+      return { ...state, stoppedUpTo: state.lastId };
     case 'lost':
-      return { ...state, waiting: null, asked: [], current: null, held: 0 };
+      return { ...state, asked: [], current: null, held: 0 };
     case 'crashed':
       return { ...state, crashedInput: event.input, astray: state.astray || (event.input !== '' && !event.again) };
     case 'revived':
@@ -82,45 +77,44 @@ export function reduce(state, event) {
   }
 }
 
-/** @param {RunState} state @param {Description | null} description @returns {RunState} */
+/** @param {Ledger} state @param {Description | null} description @returns {Ledger} */
 function firstParticles(state, description) {
   const { current, shown } = state;
   if (current?.stage !== 'seeding') return state;
   const { request } = current;
   const next = atStage(state, 'growing');
-  if (request.backdrop) return { ...next, shown: null };
-  if (request.kind === 'sample') {
-    const stood = request.trial ? (state.stood ?? shown) : null;
+  if (request.kind === 'backdrop') return { ...next, shown: null };
+  if (request.kind !== 'relax') {
+    const stood = request.kind === 'trial' ? (state.stood ?? shown) : null;
     return { ...next, shown: { request, reported: false }, stood };
   }
   return { ...next, shown: shown && { request: relaxed(shown, request.steps, description), reported: false } };
 }
 
-/** @param {RunState} state @param {Extract<RunEvent, {type: 'done'}>} event */
-function done(state, { outcome, particles, reportFollows }) {
+/** @param {Ledger} state @param {Extract<LedgerEvent, {type: 'done'}>} event */
+function done(state, { outcome, particles, reportFollows, nowMs }) {
   const { current, shown, accepted } = state;
   if (!current) return state;
-  const next = atStage(state, reportFollows ? 'measuring' : 'over');
-  if (current.request.backdrop) return next;
+  const { kind } = current.request;
+  const next = { ...atStage(state, reportFollows ? 'measuring' : 'over'), endedMs: nowMs };
+  if (kind === 'backdrop') return next;
   if (tookPlace(outcome, particles)) {
     if (particles > 0) return { ...next, held: current.id };
     if (!state.stood || !shown) return { ...next, held: 0, shown: null, stood: state.stood ?? shown };
     // The surface of a trial stays until the one before it is back.
-    const waiting = state.asked.length === 0 ? { ...restored(state.stood), live: true, backdrop: true } : null;
-    return { ...next, held: 0, waiting };
+    return { ...next, held: 0 };
   }
   // The previous surface stays. It still counts as the requested one if a run of the same field was stopped.
-  const wanted = current.request.kind === 'sample' ? current.request : accepted;
+  const wanted = current.request.kind === 'relax' ? accepted : current.request;
   const same = JSON.stringify(shown?.request.field) === JSON.stringify(wanted?.field);
-  return { ...next, astray: current.request.restoring === true || outcome !== 'stopped' || !same };
+  return { ...next, astray: KINDS[kind].restores === true || outcome !== 'stopped' || !same };
 }
 
-/** @param {RunState} state @returns {RunState} */
+/** @param {Ledger} state @returns {Ledger} */
 function committed(state) {
-  const kept = (/** @type {Run} */ run) => ({
-    ...run,
-    request: { ...run.request, trial: /** @type {const} */ (false) },
-  });
+  /** @type {(ticket: Ticket) => Ticket} */
+  const kept = (ticket) =>
+    ticket.request.kind === 'trial' ? { ...ticket, request: { ...ticket.request, kind: 'change' } } : ticket;
   const { current, shown } = state;
   const isAwaited = current?.stage === 'seeding' || state.asked.length > 0;
   return {
@@ -131,67 +125,67 @@ function committed(state) {
   };
 }
 
-/** Returns what has become of the last trial. @param {RunState} state @returns {Trial} */
+/** Returns what has become of the last trial. @param {Ledger} state @returns {Trial} */
 export function trialOf({ stood, shown, current }) {
   if (stood && shown) return 'shown';
-  return current?.request.restoring ? 'back' : 'none';
+  return current && KINDS[current.request.kind].restores ? 'back' : 'none';
 }
 
 /** Returns the run that makes a surface again. @param {Shown} shown @returns {SampleRequest} */
-const restored = ({ request }) => ({ ...request, live: false, grow: false, fit: false, trial: false, restoring: true });
+const restored = ({ request }) => ({ ...request, kind: 'restore' });
+
+/**
+ * Returns the run after a trial that has no surface, which brings the one before it back as a backdrop. Null after any
+ * other, or if a later request is on its way.
+ * @param {Ledger} state
+ * @returns {SampleRequest | null}
+ */
+export const backdropOf = ({ asked, shown, stood }) =>
+  stood && shown && asked.length === 0 ? { ...stood.request, kind: 'backdrop' } : null;
 
 /**
  * Returns the run after a request that has failed: it completes the surface that stays, or brings back the one before a
  * trial. Null if that surface is there, or a later request is on its way.
- * @param {RunState} state
+ * @param {Ledger} state
  * @returns {SampleRequest | null}
  */
 export function restoringOf(state) {
   const { asked, current, shown, stood, crashedInput } = state;
-  if (!shown || asked.length > 0 || (current?.request.restoring && current.stage !== 'over')) return null;
-  const isTried = stood !== null || runningOf(state)?.request.trial;
+  const isRestored = current !== null && KINDS[current.request.kind].restores && current.stage !== 'over';
+  if (!shown || asked.length > 0 || isRestored) return null;
+  const isTried = stood !== null || runningOf(state)?.request.kind === 'trial';
   if (!isTried && (shown.reported || awaitsWorker(state))) return null;
   const request = restored(stood ?? shown);
   return inputOf(request) === crashedInput ? null : request;
 }
 
-/** @param {RunState} state @param {Stage} stage @returns {RunState} */
+/** @param {Ledger} state @param {Stage} stage @returns {Ledger} */
 const atStage = (state, stage) => ({ ...state, current: state.current && { ...state.current, stage } });
 
 /**
  * Returns the jobs sent after `id`. The worker answers in order, so earlier jobs without an answer were skipped.
- * @param {readonly Run[]} asked
+ * @param {readonly Ticket[]} asked
  * @param {number} id
  */
-const after = (asked, id) => asked.filter((run) => run.id > id);
+const after = (asked, id) => asked.filter((ticket) => ticket.id > id);
 
-/** Returns the job with this id if its field has not been answered. @param {RunState} state @param {number} id */
-export const askedRun = ({ asked }, id) => asked.find((run) => run.id === id);
+/** Returns the job with this id if its field has not been answered. @param {Ledger} state @param {number} id */
+export const askedFor = ({ asked }, id) => asked.find((ticket) => ticket.id === id);
 
 /**
  * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field
  * was refused. It ends before its report.
- * @param {RunState} state
+ * @param {Ledger} state
  */
 export function runningOf({ asked, current }) {
   if (asked.length > 0) return asked[asked.length - 1];
   return current?.stage === 'seeding' || current?.stage === 'growing' ? current : null;
 }
 
-/**
- * Returns whether a request waits for the job that runs. The latest one wins, and otherwise replaces that job.
- * @param {RunState} state @param {RunRequest} request @param {number} nowMs
- */
-export function isToWait(state, request, nowMs) {
-  const running = runningOf(state);
-  if (!request.live || !(running?.request.live || running?.request.rests)) return false;
-  return nowMs - running.sinceMs < PATIENCE_MS;
-}
-
-/** Returns whether the page waits for particles. @param {RunState} state */
+/** Returns whether the page waits for particles. @param {Ledger} state */
 export const awaitsParticles = (state) => runningOf(state) !== null;
 
-/** Returns whether the worker has work. @param {RunState} state */
+/** Returns whether the worker has work. @param {Ledger} state */
 export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current !== null && current.stage !== 'over');
 
 /**
@@ -203,7 +197,7 @@ export const tookPlace = (outcome, particles) => outcome === 'complete' || (outc
 
 /** Returns the key by which the inputs of runs are compared. @param {RunRequest} request */
 export const inputOf = (request) =>
-  JSON.stringify(request.kind === 'sample' ? [request.field, request.settings] : ['relax', request.steps]);
+  JSON.stringify(request.kind === 'relax' ? ['relax', request.steps] : [request.field, request.settings]);
 
 /**
  * Returns the run that repeats the surface on the page with that many more relaxation steps.
@@ -213,11 +207,10 @@ export const inputOf = (request) =>
  */
 export function relaxed({ request }, steps, description) {
   const settings = { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps };
+  const isKept = request.kind === 'trial' || request.kind === 'rest' || request.kind === 'restore';
   return {
     ...request,
-    live: false,
-    grow: false,
-    fit: false,
+    kind: isKept ? request.kind : 'again',
     settings: description ? clampSettings(description, settings) : settings,
   };
 }
@@ -225,13 +218,13 @@ export function relaxed({ request }, steps, description) {
 /**
  * Returns the run that is lost with the worker: its current run, or, for a pending report or a relaxation, the run that
  * leads to the same particles again.
- * @param {RunState} state @param {Description | null} description
+ * @param {Ledger} state @param {Description | null} description
  * @returns {SampleRequest | null}
  */
 export function lostRun(state, description) {
-  const { shown, current, waiting } = state;
-  const atWorker = waiting ?? runningOf(state)?.request ?? null;
-  if (atWorker?.kind === 'sample') return atWorker;
+  const { shown, current } = state;
+  const atWorker = runningOf(state)?.request ?? null;
+  if (atWorker && atWorker.kind !== 'relax') return atWorker;
   if (!shown || (!atWorker && shown.reported)) return null;
   return relaxed(shown, atWorker && current?.stage === 'seeding' ? atWorker.steps : 0, description);
 }
