@@ -149,6 +149,8 @@ export interface Drawn {
   guide?: readonly number[];
   /** where the ideal is, as a share of the width */
   ideal?: number;
+  /** the scale begins at the least value */
+  isZoomed?: boolean;
 }
 /** A state that can be restored: what is sampled and how, and from where it is seen. */
 export type Moment = Shape & { camera: CameraState };

@@ -236,6 +236,7 @@ function energyChart(energy, at) {
   return {
     title: 'Energy per step',
     kind: 'line',
+    isZoomed: true,
     rows: [{ fate: 'energy', name: 'energy', counts: [...energy] }],
     first: 0,
     at,
@@ -298,7 +299,7 @@ function chartOf(read, seek) {
     },
     () =>
       places() > 0
-        ? [draw(chart.value), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart.value))]
+        ? [draw(chart.value), ...scaleOf(chart.value).map(scaleText)]
         : h('p', { class: 'quiet' }, chart.value.missing ?? NOTHING),
   );
   return h(
@@ -315,6 +316,10 @@ function chartOf(read, seek) {
     h('div', { class: 'chart-foot', 'aria-hidden': 'true' }, () => places() > 0 && footOf(chart.value)),
   );
 }
+
+/** The end of a scale: the largest value is at the right, where a curve that falls leaves room, the least at the left. */
+const scaleText = (/** @type {string} */ text, /** @type {number} */ k) =>
+  h('span', { class: k === 0 ? 'chart-most' : 'chart-least', 'aria-hidden': 'true' }, text);
 
 /**
  * The charts as tables.

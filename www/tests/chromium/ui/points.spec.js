@@ -218,21 +218,21 @@ test('a file and the number of its points', async ({ page }) => {
     await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
     await settled(page);
     const fitted = page.locator('.model > .quiet');
-    await expect(fitted).toContainText('f is fitted to 900 points from 200 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 200 as centres');
     await expect(page.locator('.story')).toContainText('The surface that is fitted to the points of this file.');
     const slider = page.getByRole('slider', { name: 'Centres' });
     const number = page.getByRole('spinbutton', { name: 'Centres, number' });
     await number.fill('350');
     await number.press('Enter');
-    await expect(fitted).toContainText('f is fitted to 900 points from 350 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 350 as centres');
     await settled(page);
     expect((await state(page)).centres).toBe(350);
     // Changes of one value within 0.8 s are one step of the history.
     await page.waitForTimeout(900);
     await slider.press('Home');
-    await expect(fitted).toContainText('f is fitted to 900 points from 100 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 100 as centres');
     await page.getByRole('button', { name: 'Undo', exact: true }).click();
-    await expect(fitted).toContainText('f is fitted to 900 points from 350 of them');
+    await expect(fitted).toContainText('f is fitted to 900 points, with 350 as centres');
     await settled(page);
     // Of a model there are no more than it has, and a link holds the number.
     await page.getByRole('button', { name: 'Points', exact: true }).click();
